@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+#include <variant>
+
+#include "common/core/time.h"
+
+/// What the two halves of a coupling tell each other: a common part and one payload per law.
+/// Everything is absolute, never an increment: a lost packet may cost freshness, never state.
+namespace palp {
+
+/// Sums of u*dt [sqrt(W)*s] and u^2/2*dt [J] since the epoch began: losses lose no account.
+struct WavePayload {
+  double wave_integral{};  ///< [sqrt(W) s]
+  double wave_energy{};    ///< [J]
+};
+
+struct TdpaPayload {
+  double energy_in{};  ///< [J], never falls: the receiver keeps the largest
+};
+
+inline constexpr double kModelDepthScale = 1e-3;  ///< [m], L0: a constant of the protocol
+
+/// mmt, patient to surgeon: F = c1*xi^1.5 + c2*xi^2 + c3*xi^3 [N], xi = max(0, d)/L0.
+struct ModelPayload {
+  std::uint32_t version{};    ///< 0: none yet
+  std::array<double, 3> c{};  ///< [N], each >= 0
+  double surface{};           ///< [m]: d = position - surface
+  double depth_max{};         ///< [m], deepest data behind the model
+  double residual{};          ///< [N], measured minus model, now
+};
+
+using CouplingPayload = std::variant<std::monostate, WavePayload, TdpaPayload, ModelPayload>;
+
+/// What one half of a law tells the other, once per tick.
+struct PortSample {
+  double position{};  ///< [m], + into the tissue
+  double velocity{};  ///< [m/s]
+  double force{};     ///< [N]; surgeon: rendered to the hand, patient: contact, >= 0
+  CouplingPayload payload;
+};
+static_assert(std::is_trivially_copyable_v<PortSample>, "crosses threads by copy");
+
+/// A PortSample that arrived, with what the link knows about it.
+struct Incoming {
+  PortSample sample;
+  std::uint64_t number{};   ///< of the datagram that first carried it
+  bool fresh{};             ///< newer than all handed over before; else late or repaired
+  bool repaired{};          ///< a copy that rode in a later datagram (WIRE.md)
+  PeerTimePoint sent_at{};  ///< sender's line
+  TimePoint arrived_at{};   ///< our line; in real time the kernel's receive stamp
+};
+
+}  // namespace palp

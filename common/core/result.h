@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include <tl/expected.hpp>
+
+namespace palp {
+
+/// Bad input in one clear sentence: what, the value, the limit.
+struct Error {
+  std::string text;
+};
+
+/// A value, or the sentence that says why there is none.
+template <class T>
+using Result = tl::expected<T, Error>;
+
+[[nodiscard]] inline tl::unexpected<Error> fail(std::string text) {
+  return tl::unexpected<Error>(Error{std::move(text)});
+}
+
+}  // namespace palp

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "common/core/time.h"
+
+/// What goes into a depth estimator and what comes out of it.
+namespace palp {
+
+/// One measured point. The position has passed the same 20 Hz pole as the force carries from its
+/// transducer: position and force must share their dynamics, or contact looks like hysteresis.
+struct ContactSample {
+  TimePoint at{};
+  double position{};  ///< [m], tip, behind the co-filter; the surface is the estimator's to find
+  double force{};     ///< [N], as measured
+  double lateral{};   ///< [m]
+};
+
+/// Found: an inclusion at `depth`. None: there is no inclusion in reach. Invalid: no statement.
+enum class DepthVerdict : std::uint8_t { None, Found, Invalid };
+inline constexpr int kDepthVerdictCount = 3;
+
+[[nodiscard]] constexpr std::string_view to_string(DepthVerdict verdict) noexcept {
+  switch (verdict) {
+    case DepthVerdict::None:
+      return "none";
+    case DepthVerdict::Found:
+      return "found";
+    case DepthVerdict::Invalid:
+      return "invalid";
+  }
+  return "?";
+}
+
+/// Why a stroke gave no estimate.
+enum class DepthReason : std::uint8_t {
+  Ok,
+  StrokeTooShort,  ///< too little indentation to fit eq. (2)
+  StrokeTooFewSamples,
+  StrokeNotMonotone,
+  NoContact,  ///< the surface could not be found
+  ForceSaturated,
+  HashOutOfRange,  ///< outside the range in which eq. (3) holds
+};
+inline constexpr int kDepthReasonCount = 7;
+
+[[nodiscard]] constexpr std::string_view to_string(DepthReason reason) noexcept {
+  switch (reason) {
+    case DepthReason::Ok:
+      return "";
+    case DepthReason::StrokeTooShort:
+      return "stroke too short";
+    case DepthReason::StrokeTooFewSamples:
+      return "too few samples";
+    case DepthReason::StrokeNotMonotone:
+      return "stroke not monotone";
+    case DepthReason::NoContact:
+      return "no contact found";
+    case DepthReason::ForceSaturated:
+      return "force saturated";
+    case DepthReason::HashOutOfRange:
+      return "hash outside the range of eq. (3)";
+  }
+  return "?";
+}
+
+/// The result of one stroke (contact to reversal).
+struct DepthEstimate {
+  std::uint32_t number{};  ///< 1, 2, ... in this session; 0: none yet
+  TimePoint stroke_began_at{};
+  TimePoint stroke_ended_at{};
+  double lateral{};          ///< [m]
+  double indentation_max{};  ///< [m]
+  double force_max{};        ///< [N]
+  double surface{};          ///< [m], as found
+  DepthVerdict verdict{DepthVerdict::Invalid};
+  DepthReason reason{DepthReason::Ok};
+  double hash{};          ///< [N], the paper's h: the cubic (2) at 1 mm
+  double depth{};         ///< [m], top of the inclusion below the undeformed surface
+  double depth_stddev{};  ///< [m]; 0: this estimator gives none
+  double depth_low{};     ///< [m], 95 % interval; equal to depth: this estimator gives none
+  double depth_high{};    ///< [m]
+  double fit_rms{};       ///< [N]
+};
+
+}  // namespace palp

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "common/core/result.h"
+#include "common/coupling/coupling.h"
+#include "common/coupling/direct.h"
+
+/// The closed set of laws. To add one: a payload in core/port_sample.h (and a `oneof` member in
+/// proto/link.proto), one file pair here, one line in each list below.
+namespace palp::coupling {
+
+using SurgeonCoupling = std::variant<DirectSurgeon>;
+using PatientCoupling = std::variant<DirectPatient>;
+
+inline constexpr std::array<std::string_view, 1> kCouplingNames{"direct"};
+
+struct CouplingConfig {
+  std::string name{"direct"};
+  DirectConfig direct;
+};
+
+/// The half named by `config.name`, or a sentence that lists the names there are.
+[[nodiscard]] Result<SurgeonCoupling> make_surgeon_coupling(const CouplingConfig& config);
+[[nodiscard]] Result<PatientCoupling> make_patient_coupling(const CouplingConfig& config);
+
+inline void begin_epoch(SurgeonCoupling& law, double position) noexcept {
+  std::visit([&](auto& half) { half.begin_epoch(position); }, law);
+}
+inline void begin_epoch(PatientCoupling& law, double position) noexcept {
+  std::visit([&](auto& half) { half.begin_epoch(position); }, law);
+}
+inline SurgeonOutput step(SurgeonCoupling& law, const SurgeonInput& in, Duration dt) noexcept {
+  return std::visit([&](auto& half) { return half.step(in, dt); }, law);
+}
+inline PatientOutput step(PatientCoupling& law, const PatientInput& in, Duration dt) noexcept {
+  return std::visit([&](auto& half) { return half.step(in, dt); }, law);
+}
+
+}  // namespace palp::coupling

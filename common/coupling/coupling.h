@@ -1,0 +1,60 @@
+#pragma once
+
+#include <concepts>
+#include <span>
+
+#include "common/core/port_sample.h"
+#include "common/core/site_state.h"
+#include "common/core/time.h"
+
+/// A coupling is a control law in two halves, one per site, that talk in PortSamples. Pure: no
+/// clock, no I/O, no allocation in step(). Signs and units: common/core/conventions.h.
+namespace palp::coupling {
+
+struct SurgeonInput {
+  TimePoint now{};
+  SiteState state{};                  ///< laws fade and freeze by it
+  double position{};                  ///< [m], hand, clutched to the patient's axis
+  double velocity{};                  ///< [m/s]
+  double force_applied{};             ///< [N], behind the gate, last tick: energy is booked with it
+  std::span<const Incoming> arrived;  ///< since the last tick, by number; often none or several
+  Duration round_trip{};              ///< smoothed; for tuning only, never for safety
+};
+
+struct SurgeonOutput {
+  double force{};  ///< [N], + pushes the hand out; unlimited, the gate limits
+  PortSample to_patient;
+};
+
+struct PatientInput {
+  TimePoint now{};
+  SiteState state{};
+  double position{};                  ///< [m], tip
+  double velocity{};                  ///< [m/s]
+  double contact_force{};             ///< [N] >= 0, measured
+  double lateral{};                   ///< [m], along the surface; a new place is new tissue
+  std::span<const Incoming> arrived;  ///< since the last tick, by number
+  Duration round_trip{};
+};
+
+struct PatientOutput {
+  double target_position{};  ///< [m]; unlimited, the gate limits
+  PortSample to_surgeon;
+};
+
+/// A law is a value: copy it and both copies go on alike.
+template <class Law, class Input, class Output>
+concept HalfOfLaw = std::copyable<Law> &&
+    requires(Law law, const Input& in, double position, Duration dt) {
+  { law.begin_epoch(position) }
+  noexcept;  // sums restart; an energy tank is never refilled
+  { law.step(in, dt) }
+  noexcept->std::same_as<Output>;
+};
+
+/// The newest fresh sample, or nullptr: late and repaired samples never pass for it.
+[[nodiscard]] inline const Incoming* newest(std::span<const Incoming> arrived) noexcept {
+  return arrived.empty() || !arrived.back().fresh ? nullptr : &arrived.back();
+}
+
+}  // namespace palp::coupling

@@ -1,0 +1,38 @@
+#include "common/coupling/direct.h"
+
+namespace palp::coupling {
+
+void DirectSurgeon::begin_epoch(double /*position*/) noexcept {
+  heard_ = false;
+  fade_.set(1);  // nothing was heard, so the force is zero: there is nothing to fade in
+}
+
+SurgeonOutput DirectSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
+  if (const Incoming* last = newest(in.arrived)) {
+    tip_ = last->sample;
+    heard_ = true;
+  }
+  if (in.state == SiteState::Engaged) {
+    fade_.rise(seconds(dt), config_.fade_in);
+  } else {
+    fade_.fall(seconds(dt), config_.fade_out);
+  }
+  double force = 0;
+  if (heard_) {
+    const double ahead = config_.position_scale * in.position - tip_.position;
+    force = config_.force_scale * tip_.force + config_.spring * ahead;  // paper eq. (1)
+  }
+  force *= fade_.value();
+  return {force, {in.position, in.velocity, force, std::monostate{}}};
+}
+
+void DirectPatient::begin_epoch(double position) noexcept { target_ = position; }
+
+PatientOutput DirectPatient::step(const PatientInput& in, Duration /*dt*/) noexcept {
+  if (const Incoming* last = newest(in.arrived)) {
+    target_ = config_.position_scale * last->sample.position;
+  }
+  return {target_, {in.position, in.velocity, in.contact_force, std::monostate{}}};
+}
+
+}  // namespace palp::coupling

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+/// Numbered notes and the reasons of state changes: rt leaves a number, people read the text.
+namespace palp::record {
+
+enum class NoteCode : std::uint16_t {
+  None = 0,
+  // Reasons of a site's state changes.
+  LinkReady = 1,
+  PedalPressed = 2,
+  PedalReleased = 3,
+  PeerEngaged = 4,
+  PeerClutched = 5,
+  PeerRetracting = 6,
+  PeerStopped = 7,
+  GapHold = 8,
+  GapLost = 9,
+  GapOver = 10,
+  LinkDown = 11,
+  RetractDone = 12,
+  ForceLimit = 13,
+  DeviceFault = 14,
+  EmergencyStop = 15,
+  LocalReset = 16,
+  // Events.
+  EngageRefusedForce = 32,  ///< detail: contact force [N]
+  ForceGateClamped = 33,    ///< detail: force asked for [N]
+  MotionGateLimited = 34,   ///< detail: position asked for [m]
+  ForceRetreat = 35,        ///< detail: contact force [N]
+  NotFinite = 36,           ///< a law or a device gave NaN or infinity
+  SessionBegan = 37,        ///< a new peer session; samples of the old one count no more
+  RoundTripTooLong = 38,    ///< detail: round trip [s]; `direct` refuses to engage
+  ScriptPhase = 39,         ///< detail: number of the script's phase that begins
+};
+
+/// The text of a note, for people. Unknown codes give "unknown note".
+[[nodiscard]] std::string_view to_string(NoteCode code) noexcept;
+[[nodiscard]] inline std::string_view note_text(std::uint16_t code) noexcept {
+  return to_string(static_cast<NoteCode>(code));
+}
+
+}  // namespace palp::record

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+
+#include "common/core/time.h"
+
+namespace palp::patient {
+
+struct ForceSample {
+  TimePoint sampled_at{};
+  double force{};  ///< [N], contact, compression positive; noise may make it slightly negative
+  bool saturated{};
+};
+
+/// Thread: rt. Returns within 50 us and never blocks.
+class ForceSensor {
+ public:
+  virtual ~ForceSensor() = default;
+  virtual std::optional<ForceSample> sample(TimePoint now) noexcept = 0;  ///< nullopt: none new
+};
+
+}  // namespace palp::patient

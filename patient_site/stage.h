@@ -1,0 +1,30 @@
+#pragma once
+
+#include "common/core/time.h"
+
+namespace palp::patient {
+
+struct StageState {
+  TimePoint sampled_at{};
+  double position{};  ///< [m], tip
+  double velocity{};  ///< [m/s]
+  double lateral{};   ///< [m]
+  bool at_limit{};
+  bool faulted{};
+};
+
+struct StageTarget {
+  double position{};  ///< [m]
+  double lateral{};   ///< [m]
+};
+
+/// Thread: rt. Each call returns within 50 us and never blocks.
+class Stage {
+ public:
+  virtual ~Stage() = default;
+  virtual StageState read(TimePoint now) noexcept = 0;
+  virtual void move_to(const StageTarget& target) noexcept = 0;  ///< target of this tick
+  virtual void halt() noexcept = 0;  ///< hold here, drop the target; idempotent
+};
+
+}  // namespace palp::patient

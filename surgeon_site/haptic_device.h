@@ -1,0 +1,28 @@
+#pragma once
+
+#include "common/core/time.h"
+
+namespace palp::surgeon {
+
+struct HandState {
+  TimePoint sampled_at{};
+  double position{};      ///< [m], device axis, + into the tissue
+  double velocity{};      ///< [m/s]
+  double lateral{};       ///< [m], along the surface
+  bool dead_man_held{};   ///< the pedal; up: no force
+  bool emergency_stop{};  ///< latched by the device or by the user
+  bool faulted{};
+};
+
+/// Thread: rt. Each call returns within 50 us and never blocks; a slow device has its own thread
+/// and answers from a mailbox.
+class HapticDevice {
+ public:
+  virtual ~HapticDevice() = default;
+  virtual HandState read(TimePoint now) noexcept = 0;  ///< the last one again if none is new
+  virtual void apply(double force) noexcept = 0;       ///< [N], + pushes out; |force| <= max
+  [[nodiscard]] virtual double force_max() const noexcept = 0;         ///< [N], peak
+  [[nodiscard]] virtual double force_continuous() const noexcept = 0;  ///< [N], for i^2 t
+};
+
+}  // namespace palp::surgeon
