@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/core/site_state.h"
 #include "common/core/time.h"
 
 namespace palp::surgeon {
@@ -14,13 +15,24 @@ struct HandState {
   bool faulted{};
 };
 
+/// What the operator sees of the session: for a device's status lamp or screen, and for a scripted
+/// operator, who aligns the hand with the tip before pressing the pedal, as a person would.
+struct OperatorView {
+  SiteState state{};
+  SiteState peer_state{};
+  LinkState link{};
+  double tip_position{};  ///< [m], as last heard from the patient site, patient's axis
+  bool tip_known{};
+};
+
 /// Thread: rt. Each call returns within 50 us and never blocks; a slow device has its own thread
 /// and answers from a mailbox.
 class HapticDevice {
  public:
   virtual ~HapticDevice() = default;
-  virtual HandState read(TimePoint now) noexcept = 0;  ///< the last one again if none is new
-  virtual void apply(double force) noexcept = 0;       ///< [N], + pushes out; |force| <= max
+  virtual HandState read(TimePoint now) noexcept = 0;        ///< the last one again if none is new
+  virtual void apply(double force) noexcept = 0;             ///< [N], + pushes out; |force| <= max
+  virtual void show(const OperatorView& view) noexcept = 0;  ///< devices without a lamp ignore it
   [[nodiscard]] virtual double force_max() const noexcept = 0;         ///< [N], peak
   [[nodiscard]] virtual double force_continuous() const noexcept = 0;  ///< [N], for i^2 t
 };

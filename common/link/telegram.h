@@ -64,8 +64,7 @@ struct LinkHealth {
   std::uint64_t unsent{};     ///< the transport refused
   std::uint64_t malformed{};
   std::uint64_t foreign{};
-  std::uint64_t
-      replayed{};  ///< a number that was already seen: duplicates of the path, or an attack
+  std::uint64_t replayed{};  ///< number already seen: a duplicate of the path, or an attack
   std::uint64_t too_old{};
   std::uint64_t forged{};
 };
