@@ -1,0 +1,28 @@
+#pragma once
+
+#include <bit>
+#include <concepts>
+#include <cstdint>
+
+namespace palp::lab {
+
+/// A running 64-bit hash over numbers, for "same seed, same bits". Not for security.
+class Digest {
+ public:
+  void add(std::uint64_t word) noexcept {
+    state_ ^= word;
+    state_ *= 0x9fb21c651e98df25ULL;  // odd: the step is a bijection, no input is forgotten
+    state_ ^= state_ >> 29;
+  }
+  void add(double value) noexcept { add(std::bit_cast<std::uint64_t>(value)); }
+  template <std::integral T>
+  requires(!std::same_as<T, std::uint64_t>) void add(T value) noexcept {
+    add(static_cast<std::uint64_t>(value));
+  }
+  [[nodiscard]] std::uint64_t value() const noexcept { return state_; }
+
+ private:
+  std::uint64_t state_{0x6a09e667f3bcc908ULL};
+};
+
+}  // namespace palp::lab

@@ -1,0 +1,227 @@
+#include "lab/metrics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <tuple>
+
+#include "common/core/conventions.h"
+#include "common/core/line_fit.h"
+
+namespace palp::lab {
+namespace {
+
+constexpr double kUnstableSwing = 1.0 * kMillimetre;    ///< [m], in the second half of a hold
+constexpr double kUnstableCapTime = 0.2;                ///< [s], at the force cap in total
+constexpr double kUnstablePosition = 60 * kMillimetre;  ///< [m]
+constexpr double kUnstableSpeed = 3.0;                  ///< [m/s]
+constexpr double kSlopeFrom = 1.2 * kMillimetre;        ///< [m], window of the tapped stiffness
+constexpr double kSlopeTo = 3.6 * kMillimetre;          ///< [m]
+constexpr std::size_t kSlopeTicksMin = 21;
+constexpr double kFreeAirTail = 3.0;  ///< [s]
+constexpr std::size_t kStepTicks = 10;
+
+/// Runs of ticks that belong to one phase.
+std::vector<std::span<const TrialTick>> split_phases(const std::vector<TrialTick>& ticks) {
+  std::vector<std::span<const TrialTick>> phases;
+  const auto key = [](const PhaseTag& tag) { return std::tuple{tag.kind, tag.site, tag.index}; };
+  std::size_t begin = 0;
+  for (std::size_t k = 1; k <= ticks.size(); ++k) {
+    if (k < ticks.size() && key(ticks[k].phase) == key(ticks[begin].phase)) continue;
+    if (ticks[begin].phase.kind != PhaseKind::Other) {
+      phases.emplace_back(&ticks[begin], k - begin);
+    }
+    begin = k;
+  }
+  return phases;
+}
+
+struct Slopes {
+  LineFit felt;
+  LineFit truth;
+  void add(std::span<const TrialTick> tap) {
+    for (const TrialTick& tick : tap) {
+      if (!tick.counted || tick.hand_velocity <= 0) continue;
+      if (tick.hand <= kSlopeFrom || tick.hand >= kSlopeTo) continue;
+      felt.add(tick.hand, tick.hand_force);
+      truth.add(tick.hand, tick.force_true);
+    }
+  }
+  [[nodiscard]] bool defined() const { return felt.count() >= kSlopeTicksMin; }
+  [[nodiscard]] double error() const {
+    return defined() ? felt.slope() / truth.slope() - 1 : kUndefined;
+  }
+};
+
+double ratio_of_slopes(const Slopes& a, const Slopes& b) {
+  if (!a.defined() || !b.defined()) return kUndefined;
+  return b.felt.slope() / a.felt.slope() / (b.truth.slope() / a.truth.slope()) - 1;
+}
+
+/// Means over the last 40 % of a press hold.
+struct HoldMeans {
+  double position{kUndefined};  ///< [m]
+  double felt{kUndefined};      ///< [N]
+  double truth{kUndefined};     ///< [N]
+};
+
+HoldMeans hold_means(std::span<const TrialTick> hold) {
+  HoldMeans means{0, 0, 0};
+  double count = 0;
+  for (const TrialTick& tick : hold) {
+    if (!tick.counted || tick.phase.elapsed < 0.6 * tick.phase.duration) continue;
+    means.position += tick.hand;
+    means.felt += tick.hand_force;
+    means.truth += tick.force_true;
+    ++count;
+  }
+  return {means.position / count, means.felt / count, means.truth / count};
+}
+
+struct Secants {
+  double felt{kUndefined};   ///< [N/m]
+  double truth{kUndefined};  ///< [N/m]
+};
+
+Secants secants(const HoldMeans& shallow, const HoldMeans& deep) {
+  const double span = deep.position - shallow.position;
+  return {(deep.felt - shallow.felt) / span, (deep.truth - shallow.truth) / span};
+}
+
+/// max - min of x_m in the second half of a hold [m].
+double swing(std::span<const TrialTick> hold) {
+  double low = INFINITY;
+  double high = -INFINITY;
+  for (const TrialTick& tick : hold) {
+    if (!tick.counted || tick.phase.elapsed < 0.5 * tick.phase.duration) continue;
+    low = std::min(low, tick.hand);
+    high = std::max(high, tick.hand);
+  }
+  return high < low ? 0 : high - low;
+}
+
+void judge_stability(const std::vector<TrialTick>& ticks,
+                     std::span<const std::span<const TrialTick>> phases,
+                     const MetricsConfig& config,
+                     TrialMetrics& metrics) {
+  for (const auto& phase : phases) {
+    const PhaseKind kind = phase.front().phase.kind;
+    if (kind != PhaseKind::PressHold && kind != PhaseKind::LiftHold) continue;
+    if (swing(phase) >= kUnstableSwing) {
+      metrics.unstable = true;
+      metrics.unstable_reason = "the hand swings by 1 mm or more in a hold";
+    }
+  }
+  double at_cap = 0;
+  for (const TrialTick& tick : ticks) {
+    if (!tick.counted) continue;
+    if (std::abs(tick.hand_force) >= config.force_cap * (1 - 1e-9)) at_cap += config.period;
+    const bool runaway = !(std::abs(tick.hand) <= kUnstablePosition) ||
+                         !(std::abs(tick.hand_velocity) <= kUnstableSpeed);
+    if (runaway) {
+      metrics.unstable = true;
+      metrics.unstable_reason = "the hand ran away";
+    }
+  }
+  if (at_cap >= kUnstableCapTime) {
+    metrics.unstable = true;
+    metrics.unstable_reason = "the force stayed at the device's limit for 0.2 s";
+  }
+}
+
+void judge_taps(std::span<const std::span<const TrialTick>> phases, TrialMetrics& metrics) {
+  std::array<Slopes, 2> pooled;
+  for (const auto& phase : phases) {
+    const PhaseTag& tag = phase.front().phase;
+    if (tag.kind != PhaseKind::Tap) continue;
+    const auto site = static_cast<std::size_t>(tag.site);
+    Slopes own;
+    own.add(phase);
+    double deepest = -INFINITY;
+    for (const TrialTick& tick : phase) deepest = std::max(deepest, tick.hand);
+    metrics.taps.push_back({.site = tag.site,
+                            .index = tag.index,
+                            .hand_max = deepest,
+                            .stiffness_felt = own.defined() ? own.felt.slope() : kUndefined,
+                            .stiffness_true = own.defined() ? own.truth.slope() : kUndefined});
+    if (tag.index == 1) metrics.tap1_error[site] = own.error();
+    if (tag.index == 2) metrics.tap2_error[site] = own.error();
+    if (tag.index >= 2) pooled[site].add(phase);
+  }
+  metrics.tap_error[0] = pooled[0].error();
+  metrics.tap_error[1] = pooled[1].error();
+  metrics.ratio_error = ratio_of_slopes(pooled[0], pooled[1]);
+}
+
+void judge_holds(std::span<const std::span<const TrialTick>> phases, TrialMetrics& metrics) {
+  std::array<std::array<HoldMeans, 2>, 2> holds;
+  for (const auto& phase : phases) {
+    const PhaseTag& tag = phase.front().phase;
+    if (tag.kind == PhaseKind::PressHold && (tag.index == 1 || tag.index == 2)) {
+      holds[static_cast<std::size_t>(tag.site)][static_cast<std::size_t>(tag.index - 1)] =
+          hold_means(phase);
+    }
+    if (tag.kind == PhaseKind::LiftHold && tag.site == Site::B) {
+      double sum = 0;
+      double count = 0;
+      for (const TrialTick& tick : phase) {
+        if (!tick.counted || tick.phase.elapsed < 0.8 * tick.phase.duration) continue;
+        sum += std::abs(tick.tip - tick.hand);
+        ++count;
+      }
+      metrics.drift = sum / count;
+    }
+  }
+  const Secants a = secants(holds[0][0], holds[0][1]);
+  const Secants b = secants(holds[1][0], holds[1][1]);
+  metrics.static_error[0] = a.felt / a.truth - 1;
+  metrics.static_error[1] = b.felt / b.truth - 1;
+  metrics.static_ratio_error = b.felt / a.felt / (b.truth / a.truth) - 1;
+}
+
+void judge_forces(const std::vector<TrialTick>& ticks, TrialMetrics& metrics) {
+  double square = 0;
+  double count = 0;
+  double peak = 0;
+  for (std::size_t k = 0; k < ticks.size(); ++k) {
+    const TrialTick& tick = ticks[k];
+    metrics.force_peak = std::max(metrics.force_peak, std::abs(tick.hand_force));
+    metrics.contact_force_max = std::max(metrics.contact_force_max, tick.contact_force);
+    if (k >= kStepTicks) {
+      metrics.force_step_10ms = std::max(
+          metrics.force_step_10ms, std::abs(tick.hand_force - ticks[k - kStepTicks].hand_force));
+    }
+    const bool in_air = tick.counted && tick.phase.kind == PhaseKind::FreeAir &&
+                        tick.phase.elapsed >= tick.phase.duration - kFreeAirTail;
+    if (in_air) {
+      square += tick.hand_force * tick.hand_force;
+      peak = std::max(peak, std::abs(tick.hand_force));
+      ++count;
+    }
+  }
+  if (count > 0) {
+    metrics.drag_rms = std::sqrt(square / count);
+    metrics.drag_peak = peak;
+  }
+  if (!ticks.empty()) {
+    metrics.energy_operator = std::max(0.0, -ticks.back().energy_operator_min);
+    metrics.energy_net = std::max(0.0, -ticks.back().energy_net_min);
+  }
+}
+
+}  // namespace
+
+TrialMetrics judge(const std::vector<TrialTick>& ticks, const MetricsConfig& config) {
+  TrialMetrics metrics;
+  if (ticks.empty()) return metrics;
+  const auto phases = split_phases(ticks);
+  judge_stability(ticks, phases, config, metrics);
+  judge_taps(phases, metrics);
+  judge_holds(phases, metrics);
+  judge_forces(ticks, metrics);
+  return metrics;
+}
+
+}  // namespace palp::lab

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "common/core/site_state.h"
+
+/// Judges a run from the plant's true states: how stiff the tissue felt, how much energy came out
+/// of the operator's port, what drifted. Pure functions of the recorded ticks.
+namespace palp::lab {
+
+enum class PhaseKind : std::uint8_t { Other, FreeAir, Tap, PressHold, LiftHold };
+enum class Site : std::uint8_t { A, B };
+
+/// Where in the script a tick lies.
+struct PhaseTag {
+  PhaseKind kind{PhaseKind::Other};
+  Site site{Site::A};
+  int index{};        ///< of the tap (1, 2, ...) or of the press hold (1: shallow, 2: deep)
+  double elapsed{};   ///< [s] since the phase began
+  double duration{};  ///< [s]
+};
+
+/// True states of one 1 kHz tick. Positions are relative to the true surface at rest.
+struct TrialTick {
+  PhaseTag phase;
+  bool counted{};                ///< the surgeon's site was Engaged or in Hold
+  double hand{};                 ///< [m], x_m
+  double hand_velocity{};        ///< [m/s]
+  double hand_force{};           ///< [N], F_h as applied
+  double force_true{};           ///< [N], static law of the tissue at the hand's position
+  double contact_force{};        ///< [N], F_c, largest since the last tick
+  double tip{};                  ///< [m], x_s
+  double energy_operator{};      ///< [J], E_op: work of the hand on the device since the start
+  double energy_operator_min{};  ///< [J], least E_op so far, at plant steps
+  double energy_net_min{};       ///< [J], least (E_op - E_tissue) so far
+};
+
+struct MetricsConfig {
+  double force_cap{8.5};  ///< [N], of the haptic device
+  double period{1e-3};    ///< [s]
+};
+
+inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+/// One tap as the surgeon felt it.
+struct TapMetrics {
+  Site site{};
+  int index{};
+  double hand_max{};        ///< [m]
+  double stiffness_felt{};  ///< [N/m], slope of F_h on x_m while loading; NaN: undefined
+  double stiffness_true{};  ///< [N/m], slope of the static law at the same positions
+};
+
+/// Errors are rendered/true - 1 [-]; NaN: undefined.
+struct TrialMetrics {
+  bool unstable{};
+  const char* unstable_reason{""};
+  double tap_error[2]{kUndefined, kUndefined};     ///< [-], taps 2-4, sites A and B
+  double tap1_error[2]{kUndefined, kUndefined};    ///< [-]
+  double tap2_error[2]{kUndefined, kUndefined};    ///< [-]
+  double ratio_error{kUndefined};                  ///< [-]
+  double static_error[2]{kUndefined, kUndefined};  ///< [-], press holds
+  double static_ratio_error{kUndefined};           ///< [-]
+  double drag_rms{kUndefined};                     ///< [N]
+  double drag_peak{kUndefined};                    ///< [N]
+  double drift{kUndefined};                        ///< [m]
+  double energy_operator{};                        ///< [J], most the operator ever got
+  double energy_net{};                             ///< [J], most excess delivered to the tissue
+  double force_step_10ms{};                        ///< [N], worst change of F_h in 10 ms
+  double force_peak{};                             ///< [N]
+  double contact_force_max{};                      ///< [N]
+  std::vector<TapMetrics> taps;
+};
+
+[[nodiscard]] TrialMetrics judge(const std::vector<TrialTick>& ticks, const MetricsConfig& config);
+
+}  // namespace palp::lab
