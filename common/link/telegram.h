@@ -49,17 +49,19 @@ struct Arrivals {
 /// Running state of a link; counters never fall, except that a new session does not reset them.
 struct LinkHealth {
   LinkState state{};
-  Duration gap{};         ///< since the newest accepted datagram arrived
+  std::uint64_t session_id{};  ///< as handed over; 0: none, or ended by a gap of 30 s
+  Duration gap{};         ///< since the newest accepted datagram arrived; first since the handover
   Duration round_trip{};  ///< smoothed (1/8); 0: not measured yet
   Duration round_trip_min{};
   Duration jitter{};  ///< smoothed mean deviation of the round trip (1/4)
   std::uint64_t sent{};
-  std::uint64_t accepted{};   ///< telegrams newer than all before
-  std::uint64_t late{};       ///< authentic, but older than the newest
-  std::uint64_t repaired{};   ///< samples recovered from a later telegram
-  std::uint64_t lost{};       ///< numbers never seen, so far
-  std::uint64_t reordered{};  ///< telegrams that arrived after a newer one
-  std::uint64_t stale{};      ///< refused as too old to act on
+  std::uint64_t accepted{};  ///< telegrams newer than all before
+  std::uint64_t late{};      ///< authentic, but older than the newest accepted
+  std::uint64_t repaired{};  ///< samples recovered from a later telegram
+  std::uint64_t lost{};      ///< numbers below the highest never seen, so far; late ones leave it
+  std::uint64_t
+      reordered{};        ///< telegrams with a number below the highest, whatever became of them
+  std::uint64_t stale{};  ///< newer than all, but refused as too long on the way
   std::uint64_t old_epoch{};  ///< samples of an older epoch, dropped
   std::uint64_t unsent{};     ///< the transport refused
   std::uint64_t malformed{};

@@ -1,0 +1,85 @@
+#include "common/link/codec.h"
+
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
+namespace palp::link {
+namespace {
+
+bool within(double value, double limit) noexcept { return std::abs(value) <= limit; }  // NaN: no
+
+bool well_formed(const DepthReport& report) noexcept {
+  return static_cast<int>(report.verdict) < kDepthVerdictCount &&
+         static_cast<int>(report.reason) < kDepthReasonCount && within(report.depth, kLengthMax) &&
+         within(report.depth_stddev, kLengthMax) && within(report.depth_low, kLengthMax) &&
+         within(report.depth_high, kLengthMax) && within(report.hash, kForceMax);
+}
+
+struct PayloadForm {
+  bool operator()(std::monostate /*none*/) const noexcept { return true; }
+  bool operator()(const WavePayload& wave) const noexcept {
+    return within(wave.wave_integral, kSumMax) && within(wave.wave_energy, kSumMax);
+  }
+  bool operator()(const TdpaPayload& tdpa) const noexcept {
+    return within(tdpa.energy_in, kSumMax);
+  }
+  bool operator()(const ModelPayload& model) const noexcept {
+    for (const double c : model.c) {
+      if (!within(c, kForceMax)) return false;
+    }
+    return within(model.surface, kLengthMax) && within(model.depth_max, kLengthMax) &&
+           within(model.residual, kForceMax);
+  }
+};
+
+bool well_formed(const PortSample& sample) noexcept {
+  // A raw copy may hold any index.
+  if (sample.payload.index() >= std::variant_size_v<CouplingPayload>) return false;
+  return within(sample.position, kLengthMax) && within(sample.velocity, kSpeedMax) &&
+         within(sample.force, kForceMax) && std::visit(PayloadForm{}, sample.payload);
+}
+
+bool well_formed_earlier(const PortSample& sample) noexcept {
+  return well_formed(sample) && (std::holds_alternative<std::monostate>(sample.payload) ||
+                                 std::holds_alternative<WavePayload>(sample.payload));
+}
+
+bool well_formed_acknowledgement(const WireTelegram& telegram) noexcept {
+  if (telegram.echo_ns == kNothingHeard) {
+    return telegram.hold_us == 0 && telegram.newest_number == 0 && telegram.before_newest == 0;
+  }
+  return telegram.echo_ns <= kSentAtMaxNs && telegram.hold_us <= kHoldMaxUs &&
+         telegram.newest_number <= kNumberMax;
+}
+
+}  // namespace
+
+bool well_formed(const WireTelegram& telegram) noexcept {
+  if (telegram.sent_at_ns > kSentAtMaxNs || !well_formed_acknowledgement(telegram)) return false;
+  if (telegram.older_count > telegram.older.size()) return false;
+  for (std::size_t i = 0; i < telegram.older_count; ++i) {
+    if (!well_formed_earlier(telegram.older[i])) return false;
+  }
+  const SiteReport& site = telegram.telegram.site;
+  return static_cast<int>(site.state) < kSiteStateCount && within(site.lateral, kLengthMax) &&
+         well_formed(site.depth) && well_formed(telegram.telegram.port);
+}
+
+std::size_t RawCodec::encode(const WireTelegram& telegram, std::span<std::byte> out) noexcept {
+  static_assert(std::is_trivially_copyable_v<WireTelegram>);
+  static_assert(sizeof(WireTelegram) <= kTelegramSizeMax);
+  if (out.size() < sizeof telegram || !well_formed(telegram)) return 0;
+  std::memcpy(out.data(), &telegram, sizeof telegram);
+  return sizeof telegram;
+}
+
+std::optional<WireTelegram> RawCodec::decode(std::span<const std::byte> bytes) noexcept {
+  WireTelegram telegram;
+  if (bytes.size() != sizeof telegram) return std::nullopt;
+  std::memcpy(&telegram, bytes.data(), sizeof telegram);
+  if (!well_formed(telegram)) return std::nullopt;
+  return telegram;
+}
+
+}  // namespace palp::link

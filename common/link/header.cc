@@ -1,0 +1,54 @@
+#include "common/link/header.h"
+
+#include "common/core/check.h"
+
+namespace palp::link {
+namespace {
+
+template <class Unsigned>
+void put(Unsigned value, std::span<std::byte> out) noexcept {
+  for (std::size_t i = 0; i < sizeof(Unsigned); ++i) {
+    out[i] = static_cast<std::byte>(value >> (8 * (sizeof(Unsigned) - 1 - i)) & 0xFFU);
+  }
+}
+
+template <class Unsigned>
+Unsigned take(std::span<const std::byte> in) noexcept {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < sizeof(Unsigned); ++i) {
+    value = value << 8U | std::to_integer<std::uint64_t>(in[i]);
+  }
+  return static_cast<Unsigned>(value);
+}
+
+}  // namespace
+
+void pack_header(const Header& header, std::span<std::byte, kHeaderSize> out) noexcept {
+  PALP_CHECK(header.type <= PacketType::Close, "a packet type of ours");
+  PALP_CHECK(header.key <= kKeyMax, "a key id has two bits");
+  PALP_CHECK(header.number <= kNumberMax, "packet numbers never wrap");
+  out[0] = static_cast<std::byte>(kHeaderVersion << 4U | static_cast<unsigned>(header.type));
+  out[1] = static_cast<std::byte>(header.key << 6U);
+  put(header.length, out.subspan(2, 2));
+  put(header.connection, out.subspan(4, 4));
+  put(header.number, out.subspan(8, 8));
+}
+
+std::optional<Header> parse_header(std::span<const std::byte> datagram) noexcept {
+  if (datagram.size() < kHeaderSize) return std::nullopt;
+  const auto first = std::to_integer<unsigned>(datagram[0]);
+  const auto second = std::to_integer<unsigned>(datagram[1]);
+  if (first >> 4U != kHeaderVersion) return std::nullopt;
+  if ((first & 0x0FU) > static_cast<unsigned>(PacketType::Close)) return std::nullopt;
+  if ((second & 0x3FU) != 0) return std::nullopt;  // flags: all reserved
+  const Header header{.type = static_cast<PacketType>(first & 0x0FU),
+                      .key = static_cast<std::uint8_t>(second >> 6U),
+                      .length = take<std::uint16_t>(datagram.subspan(2, 2)),
+                      .connection = take<std::uint32_t>(datagram.subspan(4, 4)),
+                      .number = take<std::uint64_t>(datagram.subspan(8, 8))};
+  if (header.length != datagram.size() - kHeaderSize) return std::nullopt;
+  if (header.number > kNumberMax) return std::nullopt;
+  return header;
+}
+
+}  // namespace palp::link

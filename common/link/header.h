@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+/// The 16 clear bytes in front of every datagram (proto/WIRE.md). Pure functions.
+namespace palp::link {
+
+inline constexpr std::size_t kHeaderSize = 16;            ///< [bytes]
+inline constexpr std::uint8_t kHeaderVersion = 8;         ///< 1 would look like a DTLS record
+inline constexpr std::uint64_t kNumberMax = 1ULL << 53U;  ///< 285,000 years at 1 kHz
+inline constexpr std::uint8_t kKeyMax = 3;                ///< two bits
+
+enum class PacketType : std::uint8_t { Data, Control, Path, Close };
+
+struct Header {
+  PacketType type{};
+  std::uint8_t key{};          ///< id of the key, 0..3
+  std::uint16_t length{};      ///< [bytes], all after the header, tag included
+  std::uint32_t connection{};  ///< id given out by the receiver, 0: not known yet
+  std::uint64_t number{};      ///< of the packet; with keys it makes the nonce
+};
+
+/// Big-endian bytes. `header` keeps its limits (PALP_CHECK: it is ours).
+void pack_header(const Header& header, std::span<std::byte, kHeaderSize> out) noexcept;
+
+/// @returns nullopt where any field breaks its rule or `length` is not what follows the header.
+[[nodiscard]] std::optional<Header> parse_header(std::span<const std::byte> datagram) noexcept;
+
+}  // namespace palp::link

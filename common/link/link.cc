@@ -1,0 +1,348 @@
+#include "common/link/link.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "common/core/check.h"
+
+namespace palp::link {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+/// How far apart the repeated samples lie: single losses and the bursts of a few milliseconds that
+/// radio links show are both bridged, where repeating the last two samples helps against single
+/// losses only.
+constexpr Duration kOlderDistance = milliseconds{5};
+constexpr Duration kPeriodMin = microseconds{200};
+constexpr Duration kPeriodMax = milliseconds{100};
+
+std::uint64_t distance_in_numbers(Duration period) {
+  if (period < kPeriodMin || period > kPeriodMax) {
+    throw std::invalid_argument("link period is " + std::to_string(seconds(period) * 1e3) +
+                                " ms, must be 0.2 to 100 ms");
+  }
+  return static_cast<std::uint64_t>(
+      std::max<Duration::rep>(1, (kOlderDistance + period / 2) / period));
+}
+
+std::uint64_t nanoseconds_since(TimePoint start, TimePoint at) noexcept {
+  return static_cast<std::uint64_t>(std::max<Duration::rep>(0, (at - start).count()));
+}
+
+Duration as_duration(std::uint64_t wire_ns) noexcept {
+  return nanoseconds{static_cast<Duration::rep>(wire_ns)};
+}
+
+/// Whole microseconds, rounded: a truncated hold would lengthen every round trip by half of one.
+std::uint32_t hold_us(Duration hold) noexcept {
+  const auto rounded = (std::max(hold, Duration{0}) + nanoseconds{500}) / microseconds{1};
+  return static_cast<std::uint32_t>(std::min<Duration::rep>(rounded, kHoldMaxUs));
+}
+
+PortSample for_repetition(PortSample sample) noexcept {
+  if (!std::holds_alternative<WavePayload>(sample.payload)) sample.payload = std::monostate{};
+  return sample;
+}
+
+}  // namespace
+
+Link::Link(const LinkConfig& config, std::unique_ptr<Codec> codec)
+    : config_{config},
+      older_distance_{distance_in_numbers(config.period)},
+      codec_{std::move(codec)} {
+  PALP_CHECK(codec_ != nullptr, "a link needs a codec");
+  PALP_CHECK(kOlder * older_distance_ < kHistory, "the history reaches back far enough");
+  samples_.reserve(kDatagramsPerTickMax * kSamplesPerTelegram);
+}
+
+void Link::end_session() noexcept {
+  counters_.lost += conversation_.received.missing();
+  conversation_ = Conversation{};
+  session_id_ = 0;
+}
+
+Handover Link::adopt(Handover next, TimePoint now) noexcept {
+  Handover retired{.transport = nullptr,
+                   .protection = nullptr,
+                   .send_connection = send_connection_,
+                   .receive_connection = receive_connection_,
+                   .session_id = session_id_};
+  if (next.session_id == 0) {
+    end_session();
+    retired.transport = std::exchange(transport_, nullptr);
+    retired.protection = std::exchange(protection_, nullptr);
+    return retired;
+  }
+  if (next.session_id != session_id_) {
+    PALP_CHECK(next.protection != nullptr, "a new session has its own protection");
+    end_session();
+    session_id_ = next.session_id;
+    conversation_.began_at = now;
+  }
+  if (next.transport) retired.transport = std::exchange(transport_, std::move(next.transport));
+  if (next.protection) retired.protection = std::exchange(protection_, std::move(next.protection));
+  PALP_CHECK(transport_ != nullptr, "a session has a transport");
+  send_connection_ = next.send_connection;
+  receive_connection_ = next.receive_connection;
+  return retired;
+}
+
+void Link::attach_older(WireTelegram& wire, TimePoint now) const noexcept {
+  const std::uint64_t number = conversation_.next_number;
+  for (std::size_t i = 0; i < kOlder; ++i) {
+    const std::uint64_t distance = older_distance_ * (i + 1);
+    if (number < distance) return;
+    const Sent& sent = conversation_.history[(number - distance) % kHistory];
+    if (!sent.used || sent.number != number - distance) return;
+    // Its receiver derives the send time from ours, and books it under our epoch.
+    if (sent.epoch != wire.telegram.site.epoch) return;
+    const Duration expected = config_.period * static_cast<Duration::rep>(distance);
+    if (std::chrono::abs(now - sent.at - expected) > config_.period / 2) return;
+    wire.older[i] = sent.sample;
+    ++wire.older_count;
+  }
+}
+
+void Link::send(const Telegram& telegram, TimePoint now) noexcept {
+  if (session_id_ == 0) return;
+  Conversation& conversation = conversation_;
+  WireTelegram wire;
+  wire.sent_at_ns = nanoseconds_since(conversation.began_at, now);
+  if (conversation.heard) {
+    wire.echo_ns = conversation.newest_sent_at_ns;
+    wire.hold_us = hold_us(now - conversation.newest_arrived_at);
+    wire.newest_number = conversation.received.newest();
+    wire.before_newest = conversation.received.before_newest();
+  }
+  wire.telegram = telegram;
+  attach_older(wire, now);
+
+  std::array<std::byte, kTelegramSizeMax> plain;
+  const std::size_t size = codec_->encode(wire, plain);
+  if (size == 0) {  // a node that says what no peer would take
+    ++counters_.unsent;
+    return;
+  }
+  const Header header{.type = PacketType::Data,
+                      .key = 0,
+                      .length = 0,
+                      .connection = send_connection_,
+                      .number = conversation.next_number};
+  std::array<std::byte, kDatagramSizeMax> datagram;
+  const std::size_t sealed = protection_->seal(header, std::span{plain}.first(size), datagram);
+  PALP_CHECK(sealed != 0, "a telegram fits into a datagram");
+  const std::uint32_t epoch = telegram.site.epoch;
+  conversation.history[header.number % kHistory] = {
+      true, header.number, epoch, now, for_repetition(telegram.port)};
+  conversation.epoch_sent = std::max(conversation.epoch_sent, epoch);
+  ++conversation.next_number;
+  ++counters_.sent;
+  if (!transport_->send(std::span{datagram}.first(sealed), now)) ++counters_.unsent;
+}
+
+Arrivals Link::receive(TimePoint now) noexcept {
+  samples_.clear();
+  accepted_now_ = 0;
+  if (transport_) drain(now);
+  if (session_id_ != 0) {
+    if (gap(now) > config_.closed_after) {
+      end_session();
+    } else {
+      synchronise(now);
+    }
+  }
+  const auto by_number = [](const Incoming& a, const Incoming& b) { return a.number < b.number; };
+  if (!std::is_sorted(samples_.begin(), samples_.end(), by_number)) {
+    std::sort(samples_.begin(), samples_.end(), by_number);
+  }
+  for (const Incoming& incoming : samples_) counters_.repaired += incoming.repaired ? 1 : 0;
+  return {.samples = samples_,
+          .peer = conversation_.peer,
+          .peer_heard = conversation_.heard,
+          .accepted = accepted_now_};
+}
+
+/// Also without a session: whoever reads control messages off the same transport depends on it.
+void Link::drain(TimePoint now) noexcept {
+  for (std::size_t i = 0; i < kDatagramsPerTickMax; ++i) {
+    const std::optional<Datagram> received = transport_->receive(datagram_, now);
+    if (!received) return;
+    if (received->size > datagram_.size()) {  // was cut off
+      count(Rejection::Malformed);
+      continue;
+    }
+    const auto opened = open(std::span{datagram_}.first(received->size));
+    if (!opened) {
+      count(opened.error());
+      continue;
+    }
+    // From here on the datagram is authentic.
+    conversation_.received.mark(opened->number);
+    if (conversation_.received.newest() > opened->number) ++counters_.reordered;
+    const auto wire = codec_->decode(std::span{plain_}.first(opened->size));
+    if (!wire) {
+      count(Rejection::Malformed);
+      continue;
+    }
+    take(*wire, opened->number, std::min(received->arrived_at, now));
+  }
+}
+
+tl::expected<Link::Opened, Rejection> Link::open(std::span<const std::byte> datagram) noexcept {
+  const std::optional<Header> header = parse_header(datagram);
+  if (!header) return tl::unexpected(Rejection::Malformed);
+  if (session_id_ == 0 || header->type != PacketType::Data || header->key != 0 ||
+      header->connection != receive_connection_) {
+    return tl::unexpected(Rejection::Foreign);
+  }
+  switch (conversation_.received.judge(header->number)) {
+    case ReplayWindow::Verdict::Seen:
+      return tl::unexpected(Rejection::Replayed);
+    case ReplayWindow::Verdict::TooOld:
+      return tl::unexpected(Rejection::TooOld);
+    case ReplayWindow::Verdict::New:
+      break;
+  }
+  const auto size = protection_->open(datagram, plain_);
+  if (!size) return tl::unexpected(size.error());
+  return Opened{header->number, *size};
+}
+
+void Link::count(Rejection rejection) noexcept {
+  switch (rejection) {
+    case Rejection::Malformed:
+      ++counters_.malformed;
+      return;
+    case Rejection::Foreign:
+      ++counters_.foreign;
+      return;
+    case Rejection::Replayed:
+      ++counters_.replayed;
+      return;
+    case Rejection::TooOld:
+      ++counters_.too_old;
+      return;
+    case Rejection::Forged:
+      ++counters_.forged;
+      return;
+  }
+}
+
+void Link::take(const WireTelegram& wire, std::uint64_t number, TimePoint arrived_at) noexcept {
+  Conversation& conversation = conversation_;
+  const Duration sent_at = as_duration(wire.sent_at_ns);
+  const Duration excess =
+      conversation.clock.add_one_way(arrived_at - conversation.began_at - sent_at, arrived_at);
+  const bool newer = !conversation.heard || number > conversation.newest_number;
+  if (newer) {
+    const Duration limit = std::max(config_.stale_after, conversation.clock.least(arrived_at) / 2);
+    if (excess > limit) {
+      ++counters_.stale;
+      return;
+    }
+    accept(wire, number, arrived_at);
+  } else {
+    ++counters_.late;
+  }
+
+  const std::uint32_t epoch = wire.telegram.site.epoch;
+  hand_over({.sample = wire.telegram.port,
+             .number = number,
+             .fresh = newer,
+             .repaired = false,
+             .sent_at = PeerTimePoint{sent_at},
+             .arrived_at = arrived_at},
+            epoch);
+  for (std::size_t i = 0; i < wire.older_count; ++i) {
+    const std::uint64_t distance = older_distance_ * (i + 1);
+    if (number < distance) return;
+    const Duration earlier = config_.period * static_cast<Duration::rep>(distance);
+    hand_over({.sample = wire.older[i],
+               .number = number - distance,
+               .fresh = false,
+               .repaired = true,
+               .sent_at = PeerTimePoint{sent_at - earlier},
+               .arrived_at = arrived_at},
+              epoch);
+  }
+}
+
+void Link::accept(const WireTelegram& wire, std::uint64_t number, TimePoint arrived_at) noexcept {
+  Conversation& conversation = conversation_;
+  ++counters_.accepted;
+  ++accepted_now_;
+  if (!conversation.heard) conversation.first_accepted_at = arrived_at;
+  conversation.heard = true;
+  conversation.newest_number = number;
+  conversation.newest_sent_at_ns = wire.sent_at_ns;
+  conversation.newest_arrived_at = arrived_at;
+
+  const std::uint32_t wanted_before = epoch_wanted();
+  conversation.peer = wire.telegram.site;
+  if (epoch_wanted() > wanted_before) {  // what came just before belongs to a finished account
+    counters_.old_epoch += samples_.size();
+    samples_.clear();
+  }
+
+  if (wire.echo_ns == kNothingHeard) return;
+  const TimePoint echo = conversation.began_at + as_duration(wire.echo_ns);
+  if (!conversation.clock.add_round_trip(echo, microseconds{wire.hold_us}, arrived_at)) return;
+  if (conversation.echo_ns == kNothingHeard || wire.echo_ns > conversation.echo_ns) {
+    conversation.echo_ns = wire.echo_ns;
+    ++conversation.exchanges;
+  }
+}
+
+/// The newest epoch that either side is known to be in.
+std::uint32_t Link::epoch_wanted() const noexcept {
+  return std::max(conversation_.epoch_sent, conversation_.heard ? conversation_.peer.epoch : 0);
+}
+
+void Link::hand_over(const Incoming& incoming, std::uint32_t epoch) noexcept {
+  if (conversation_.handed_over.judge(incoming.number) != ReplayWindow::Verdict::New) return;
+  conversation_.handed_over.mark(incoming.number);
+  if (epoch < epoch_wanted()) {
+    ++counters_.old_epoch;
+    return;
+  }
+  samples_.push_back(incoming);
+}
+
+void Link::synchronise(TimePoint now) noexcept {
+  Conversation& conversation = conversation_;
+  if (conversation.synchronised || !conversation.clock.measured()) return;
+  if (conversation.clock.least(now) > config_.round_trip_max) return;
+  conversation.synchronised = conversation.exchanges >= config_.sync_exchanges ||
+                              now - conversation.first_accepted_at >= config_.sync_time;
+}
+
+Duration Link::gap(TimePoint now) const noexcept {
+  if (session_id_ == 0) return Duration{0};
+  return std::max(
+      Duration{0},
+      now - (conversation_.heard ? conversation_.newest_arrived_at : conversation_.began_at));
+}
+
+LinkState Link::judge(TimePoint now) const noexcept {
+  if (session_id_ == 0 || !conversation_.synchronised) return LinkState::Down;
+  if (gap(now) > config_.closed_after) return LinkState::Down;
+  return judge_gap(config_.watchdog, gap(now));
+}
+
+LinkHealth Link::health(TimePoint now) const noexcept {
+  LinkHealth health = counters_;
+  health.state = judge(now);
+  health.session_id = session_id_;
+  health.gap = gap(now);
+  health.round_trip = conversation_.clock.smoothed();
+  health.round_trip_min = conversation_.clock.least(now);
+  health.jitter = conversation_.clock.deviation();
+  health.lost += conversation_.received.missing();
+  return health;
+}
+
+}  // namespace palp::link

@@ -1,0 +1,40 @@
+#include "common/link/replay_window.h"
+
+#include <algorithm>
+
+#include "common/core/check.h"
+
+namespace palp::link {
+
+bool ReplayWindow::bit(std::uint64_t number) const noexcept {
+  return (words_[number / kWordBits % kWords] >> number % kWordBits & 1U) != 0;
+}
+
+ReplayWindow::Verdict ReplayWindow::judge(std::uint64_t number) const noexcept {
+  if (empty() || number > newest_) return Verdict::New;
+  if (newest_ - number >= kSize) return Verdict::TooOld;
+  return bit(number) ? Verdict::Seen : Verdict::New;
+}
+
+void ReplayWindow::mark(std::uint64_t number) noexcept {
+  PALP_CHECK(judge(number) == Verdict::New, "a number is marked once");
+  const std::uint64_t word_before = newest_ / kWordBits;
+  const std::uint64_t word = number / kWordBits;
+  if (word > word_before) {
+    const std::uint64_t stale = std::min<std::uint64_t>(word - word_before, kWords);
+    for (std::uint64_t i = 0; i < stale; ++i) words_[(word - i) % kWords] = 0;
+  }
+  words_[word % kWords] |= 1ULL << number % kWordBits;
+  newest_ = std::max(newest_, number);
+  ++marked_;
+}
+
+std::uint32_t ReplayWindow::before_newest() const noexcept {
+  std::uint32_t bits = 0;
+  for (std::uint32_t k = 0; k < 32 && k < newest_; ++k) {
+    if (bit(newest_ - 1 - k)) bits |= 1U << k;
+  }
+  return bits;
+}
+
+}  // namespace palp::link
