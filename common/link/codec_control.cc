@@ -36,7 +36,7 @@ bool parse(std::span<const std::byte> bytes, Message& message) {
 ControlBytes encode(const Hello& hello) {
   wire::Hello message;
   message.set_protocol_version(hello.protocol_version);
-  message.set_role(static_cast<wire::Role>(hello.role));
+  message.set_role(hello.role == Role::Surgeon ? wire::SURGEON : wire::PATIENT);
   message.set_session_id(hello.session_id);
   message.set_peer_session_id(hello.peer_session_id);
   message.set_connection_id(hello.connection_id);
@@ -64,7 +64,7 @@ std::optional<Hello> decode_hello(std::span<const std::byte> bytes) {
     return std::nullopt;
   }
   return Hello{.protocol_version = message.protocol_version(),
-               .role = static_cast<Role>(message.role()),
+               .role = message.role() == wire::SURGEON ? Role::Surgeon : Role::Patient,
                .session_id = message.session_id(),
                .peer_session_id = message.peer_session_id(),
                .connection_id = message.connection_id(),

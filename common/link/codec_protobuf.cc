@@ -100,19 +100,23 @@ Enum read_enum(int value) {
   return static_cast<Enum>(value >= 0 && value < kOutOfRange ? value : kOutOfRange);
 }
 
+DepthReport read(const wire::Depth& depth) {
+  if (depth.number() == 0) return {};  // none yet, whatever else it says
+  return {.number = depth.number(),
+          .verdict = read_enum<DepthVerdict>(depth.verdict()),
+          .reason = read_enum<DepthReason>(depth.reason()),
+          .depth = double{depth.depth_m()},
+          .depth_stddev = double{depth.depth_stddev_m()},
+          .depth_low = double{depth.depth_low_m()},
+          .depth_high = double{depth.depth_high_m()},
+          .hash = double{depth.hash_n()}};
+}
+
 SiteReport read(const wire::Site& site) {
-  const wire::Depth& depth = site.depth();
   return {.state = read_enum<SiteState>(site.state()),
           .epoch = site.epoch(),
           .lateral = double{site.lateral_m()},
-          .depth = {.number = depth.number(),
-                    .verdict = read_enum<DepthVerdict>(depth.verdict()),
-                    .reason = read_enum<DepthReason>(depth.reason()),
-                    .depth = double{depth.depth_m()},
-                    .depth_stddev = double{depth.depth_stddev_m()},
-                    .depth_low = double{depth.depth_low_m()},
-                    .depth_high = double{depth.depth_high_m()},
-                    .hash = double{depth.hash_n()}}};
+          .depth = read(site.depth())};
 }
 
 /// Steps over a base-128 number of at most 10 bytes. @returns false where it does not end.

@@ -1,0 +1,103 @@
+#include "common/link/codec_control.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "proto/link.pb.h"
+
+namespace palp::link {
+namespace {
+
+std::span<const std::byte> view(const std::string& bytes) {
+  return std::as_bytes(std::span{bytes});
+}
+
+Hello some_hello() {
+  return {.protocol_version = 3,
+          .role = Role::Patient,
+          .session_id = 0x1122334455667788ULL,
+          .peer_session_id = 42,
+          .connection_id = 0xDEADBEEF,
+          .settings_hash = 99,
+          .coupling = "direct",
+          .git = "0123abc"};
+}
+
+TEST(CodecControlTest, HelloComesBack) {
+  const Hello sent = some_hello();
+  const auto received = decode_hello(encode(sent).view());
+  ASSERT_TRUE(received);
+  EXPECT_EQ(received->protocol_version, sent.protocol_version);
+  EXPECT_EQ(received->role, sent.role);
+  EXPECT_EQ(received->session_id, sent.session_id);
+  EXPECT_EQ(received->peer_session_id, sent.peer_session_id);
+  EXPECT_EQ(received->connection_id, sent.connection_id);
+  EXPECT_EQ(received->settings_hash, sent.settings_hash);
+  EXPECT_EQ(received->coupling, sent.coupling);
+  EXPECT_EQ(received->git, sent.git);
+}
+
+TEST(CodecControlTest, ByeComesBack) {
+  const auto received = decode_bye(encode(Bye{7, 8, ByeReason::Busy, "busy"}).view());
+  ASSERT_TRUE(received);
+  EXPECT_EQ(received->session_id, 7U);
+  EXPECT_EQ(received->peer_session_id, 8U);
+  EXPECT_EQ(received->reason, ByeReason::Busy);
+  EXPECT_EQ(received->text, "busy");
+}
+
+TEST(CodecControlTest, LongTextIsCutAndStaysShort) {
+  Hello hello = some_hello();
+  hello.coupling.assign(1000, 'x');
+  hello.git.assign(1000, 'y');
+  EXPECT_EQ(decode_hello(encode(hello).view())->coupling.size(), kNameSizeMax);
+  const Bye bye{1, 2, ByeReason::Leaving, std::string(1000, 'z')};
+  EXPECT_EQ(decode_bye(encode(bye).view())->text.size(), kTextSizeMax);
+}
+
+TEST(CodecControlTest, TextComesOutPrintable) {
+  wire::Bye message;
+  message.set_text("a\x1b[31mb\n\xc3\xa4");
+  EXPECT_EQ(decode_bye(view(message.SerializeAsString()))->text, "a?[31mb???");
+}
+
+TEST(CodecControlTest, HelloOfANewerVersionIsStillRead) {
+  const ControlBytes bytes = encode(some_hello());
+  std::string longer{reinterpret_cast<const char*>(bytes.bytes.data()), bytes.size};
+  longer += std::string{"\x78\x01", 2};  // a field 15 that we do not know
+  EXPECT_TRUE(decode_hello(view(longer)));
+}
+
+TEST(CodecControlTest, RefusesWhatBreaksTheLimits) {
+  wire::Hello hello;
+  hello.set_session_id(1);
+  EXPECT_FALSE(decode_hello(view(hello.SerializeAsString())));  // says no role
+  hello.set_role(wire::PATIENT);
+  EXPECT_TRUE(decode_hello(view(hello.SerializeAsString())));
+  hello.set_role(static_cast<wire::Role>(3));
+  EXPECT_FALSE(decode_hello(view(hello.SerializeAsString())));
+  hello.set_role(wire::SURGEON);
+  hello.set_coupling(std::string(kNameSizeMax + 1, 'x'));
+  EXPECT_FALSE(decode_hello(view(hello.SerializeAsString())));
+  hello.clear_coupling();
+  hello.set_session_id(0);
+  EXPECT_FALSE(decode_hello(view(hello.SerializeAsString())));
+
+  wire::Bye bye;
+  bye.set_reason(static_cast<wire::Bye::Reason>(3));
+  EXPECT_FALSE(decode_bye(view(bye.SerializeAsString())));
+  bye.set_reason(static_cast<wire::Bye::Reason>(-1));
+  EXPECT_FALSE(decode_bye(view(bye.SerializeAsString())));
+  bye.clear_reason();
+  bye.set_text(std::string(kTextSizeMax + 1, 'x'));
+  EXPECT_FALSE(decode_bye(view(bye.SerializeAsString())));
+}
+
+RC_GTEST_PROP(CodecControlTest, SurvivesRandomBytes, (const std::vector<std::uint8_t>& junk)) {
+  const auto bytes = std::as_bytes(std::span{junk});
+  if (const auto hello = decode_hello(bytes)) RC_ASSERT(decode_hello(encode(*hello).view()));
+  if (const auto bye = decode_bye(bytes)) RC_ASSERT(decode_bye(encode(*bye).view()));
+}
+
+}  // namespace
+}  // namespace palp::link

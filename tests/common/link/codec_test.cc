@@ -1,0 +1,315 @@
+#include "common/link/codec.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "common/link/codec_protobuf.h"
+#include "proto/link.pb.h"
+#include "tests/common/link/bytes_equal.h"
+#include "tests/common/link/some_telegram.h"
+
+namespace palp::link {
+namespace {
+
+std::vector<std::byte> encoded(Codec& codec, const WireTelegram& telegram) {
+  std::vector<std::byte> bytes(kTelegramSizeMax);
+  bytes.resize(codec.encode(telegram, bytes));
+  return bytes;
+}
+
+std::span<const std::byte> view(const std::string& bytes) {
+  return std::as_bytes(std::span{bytes});
+}
+
+RC_GTEST_PROP(ProtobufCodecTest, DecodesExactlyWhatWasEncoded, (std::uint64_t seed)) {
+  ProtobufCodec codec;
+  const WireTelegram sent = some_telegram(seed);
+  const auto bytes = encoded(codec, sent);
+  RC_ASSERT(!bytes.empty());
+  const auto received = codec.decode(bytes);
+  RC_ASSERT(received.has_value());
+  RC_ASSERT(same(*received, rounded_as_on_wire(sent)));
+  RC_ASSERT(encoded(codec, *received) == bytes);
+}
+
+RC_GTEST_PROP(RawCodecTest, DecodesExactlyWhatWasEncoded, (std::uint64_t seed)) {
+  RawCodec codec;
+  const WireTelegram sent = some_telegram(seed);
+  const auto received = codec.decode(encoded(codec, sent));
+  RC_ASSERT(received.has_value());
+  RC_ASSERT(same(*received, sent));
+}
+
+RC_GTEST_PROP(CodecTest, WhatDecodesIsWellFormedWhateverBitsWereFlipped, (std::uint64_t seed)) {
+  ProtobufCodec protobuf;
+  RawCodec raw;
+  Draw draw{seed + 1};
+  for (Codec* codec : std::initializer_list<Codec*>{&protobuf, &raw}) {
+    auto bytes = encoded(*codec, some_telegram(seed));
+    const std::uint64_t flips = 1 + draw.below(8);
+    for (std::uint64_t i = 0; i < flips; ++i) {
+      const std::uint64_t bit = draw.below(8 * bytes.size());
+      bytes[bit / 8] ^= static_cast<std::byte>(1U << bit % 8);
+    }
+    if (const auto received = codec->decode(bytes)) {
+      RC_ASSERT(well_formed(*received));
+      RC_ASSERT(same(codec->decode(encoded(*codec, *received)).value(), *received));
+    }
+  }
+}
+
+RC_GTEST_PROP(CodecTest, SurvivesRandomBytes, (const std::vector<std::uint8_t>& junk)) {
+  ProtobufCodec protobuf;
+  RawCodec raw;
+  const auto bytes = std::as_bytes(std::span{junk});
+  if (const auto received = protobuf.decode(bytes)) RC_ASSERT(well_formed(*received));
+  if (const auto received = raw.decode(bytes)) RC_ASSERT(well_formed(*received));
+}
+
+TEST(ProtobufCodecTest, RefusesEveryTruncation) {
+  ProtobufCodec codec;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const auto bytes = encoded(codec, some_telegram(seed));
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+      const auto received = codec.decode(std::span{bytes}.first(size));
+      // A cut between fields leaves a shorter message, which must still be a whole one.
+      if (received) {
+        EXPECT_TRUE(well_formed(*received));
+        EXPECT_LT(received->older_count, 2U);
+      }
+    }
+  }
+}
+
+/// A message with site and sample, to be spoiled in one way.
+wire::Telegram plain_message() {
+  wire::Telegram message;
+  message.mutable_site();
+  message.mutable_sample();
+  return message;
+}
+
+TEST(ProtobufCodecTest, RefusesMessagesWithoutSiteOrSample) {
+  ProtobufCodec codec;
+  EXPECT_TRUE(codec.decode(view(plain_message().SerializeAsString())));
+  auto message = plain_message();
+  message.clear_site();
+  EXPECT_FALSE(codec.decode(view(message.SerializeAsString())));
+  message = plain_message();
+  message.clear_sample();
+  EXPECT_FALSE(codec.decode(view(message.SerializeAsString())));
+}
+
+TEST(ProtobufCodecTest, RefusesUnknownFieldsAtEveryDepth) {
+  ProtobufCodec codec;
+  const std::string unknown{"\x78\x01", 2};  // field 15, varint 1
+  ASSERT_FALSE(codec.decode(view(plain_message().SerializeAsString() + unknown)));
+
+  // By hand: telegram { site {} sample { wave { <unknown> } } }.
+  const std::string wave{"\x22\x02\x78\x01", 4};
+  const std::string sample = std::string{"\x3A\x04", 2} + wave;
+  EXPECT_FALSE(codec.decode(view(std::string{"\x32\x00", 2} + sample)));
+  const std::string empty_wave{"\x32\x00\x3A\x02\x22\x00", 6};
+  EXPECT_TRUE(codec.decode(view(empty_wave)));
+}
+
+TEST(ProtobufCodecTest, RefusesRepeatedFieldsAndTwoPayloads) {
+  ProtobufCodec codec;
+  const std::string once = plain_message().SerializeAsString();
+  EXPECT_FALSE(codec.decode(view(once + once)));
+  // sample { wave {} tdpa {} }: the parser would keep the last and pay for both.
+  EXPECT_FALSE(codec.decode(view({"\x32\x00\x3A\x04\x22\x00\x2A\x00", 8})));
+  EXPECT_TRUE(codec.decode(view({"\x32\x00\x3A\x02\x2A\x00", 6})));
+}
+
+TEST(ProtobufCodecTest, RefusesAFieldInAnotherWireType) {
+  ProtobufCodec codec;
+  EXPECT_FALSE(codec.decode(view({"\x32\x00\x3A\x00\x0D\x01\x02\x03\x04", 9})));  // sent_at fixed32
+  EXPECT_FALSE(codec.decode(view({"\x32\x00\x3A\x00\x0B\x0C", 6})));              // groups
+}
+
+TEST(ProtobufCodecTest, RefusesTheSecondEarlierSampleWithoutTheFirst) {
+  ProtobufCodec codec;
+  auto message = plain_message();
+  message.mutable_sample_second_earlier();
+  EXPECT_FALSE(codec.decode(view(message.SerializeAsString())));
+  message.mutable_sample_first_earlier();
+  EXPECT_TRUE(codec.decode(view(message.SerializeAsString())));
+  message.mutable_sample_first_earlier()->mutable_tdpa();
+  EXPECT_FALSE(codec.decode(view(message.SerializeAsString())));
+}
+
+TEST(ProtobufCodecTest, RefusesEnumeratorsOutOfRange) {
+  ProtobufCodec codec;
+  auto message = plain_message();
+  message.mutable_site()->set_state(static_cast<wire::SiteState>(5));
+  EXPECT_TRUE(codec.decode(view(message.SerializeAsString())));
+  for (const int bad : {6, 255, 256, 262, -1}) {
+    message.mutable_site()->set_state(static_cast<wire::SiteState>(bad));
+    EXPECT_FALSE(codec.decode(view(message.SerializeAsString()))) << bad;
+  }
+  message = plain_message();
+  message.mutable_site()->mutable_depth()->set_number(1);
+  EXPECT_TRUE(codec.decode(view(message.SerializeAsString())));
+  message.mutable_site()->mutable_depth()->set_verdict(static_cast<wire::DepthVerdict>(3));
+  EXPECT_FALSE(codec.decode(view(message.SerializeAsString())));
+  message.mutable_site()->mutable_depth()->clear_verdict();
+  message.mutable_site()->mutable_depth()->set_reason(static_cast<wire::DepthReason>(7));
+  EXPECT_FALSE(codec.decode(view(message.SerializeAsString())));
+}
+
+struct Border {
+  const char* name;
+  std::function<void(WireTelegram&, double)> set;
+  double limit;
+};
+
+TEST(CodecTest, EveryNumberHasItsLimitAndMustBeFinite) {
+  const auto model = [](WireTelegram& wire) -> ModelPayload& {
+    return wire.telegram.port.payload.emplace<ModelPayload>();
+  };
+  const std::vector<Border> borders{
+      {"position", [](auto& w, double x) { w.telegram.port.position = x; }, kLengthMax},
+      {"velocity", [](auto& w, double x) { w.telegram.port.velocity = x; }, kSpeedMax},
+      {"force", [](auto& w, double x) { w.telegram.port.force = x; }, kForceMax},
+      {"lateral", [](auto& w, double x) { w.telegram.site.lateral = x; }, kLengthMax},
+      {"depth", [](auto& w, double x) { w.telegram.site.depth.depth = x; }, kLengthMax},
+      {"stddev", [](auto& w, double x) { w.telegram.site.depth.depth_stddev = x; }, kLengthMax},
+      {"low", [](auto& w, double x) { w.telegram.site.depth.depth_low = x; }, kLengthMax},
+      {"high", [](auto& w, double x) { w.telegram.site.depth.depth_high = x; }, kLengthMax},
+      {"hash", [](auto& w, double x) { w.telegram.site.depth.hash = x; }, kForceMax},
+      {"integral",
+       [](auto& w, double x) {
+         w.telegram.port.payload = WavePayload{x, 0};
+       },
+       kSumMax},
+      {"energy",
+       [](auto& w, double x) {
+         w.telegram.port.payload = WavePayload{0, x};
+       },
+       kSumMax},
+      {"energy in", [](auto& w, double x) { w.telegram.port.payload = TdpaPayload{x}; }, kSumMax},
+      {"c1", [&](auto& w, double x) { model(w).c[0] = x; }, kForceMax},
+      {"c3", [&](auto& w, double x) { model(w).c[2] = x; }, kForceMax},
+      {"surface", [&](auto& w, double x) { model(w).surface = x; }, kLengthMax},
+      {"depth_max", [&](auto& w, double x) { model(w).depth_max = x; }, kLengthMax},
+      {"residual", [&](auto& w, double x) { model(w).residual = x; }, kForceMax},
+      {"older", [](auto& w, double x) { w.older_count = 1, w.older[0].force = x; }, kForceMax},
+  };
+  ProtobufCodec protobuf;
+  RawCodec raw;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const Border& border : borders) {
+    for (Codec* codec : std::initializer_list<Codec*>{&protobuf, &raw}) {
+      WireTelegram wire;
+      wire.telegram.site.depth.number = 1;
+      for (const double good : {border.limit, -border.limit}) {
+        border.set(wire, good);
+        EXPECT_TRUE(codec->decode(encoded(*codec, wire))) << border.name;
+      }
+      for (const double bad : {std::nextafter(border.limit, kInfinity),
+                               -1.01 * border.limit,
+                               kInfinity,
+                               std::nan("")}) {
+        border.set(wire, bad);
+        EXPECT_TRUE(encoded(*codec, wire).empty()) << border.name << " " << bad;
+      }
+    }
+  }
+}
+
+TEST(ProtobufCodecTest, DecodesNoNumberOutOfRange) {
+  ProtobufCodec codec;
+  for (const float bad : {std::nanf(""), std::numeric_limits<float>::infinity(), 10.001F}) {
+    auto message = plain_message();
+    message.mutable_sample()->set_position_m(bad);
+    EXPECT_FALSE(codec.decode(view(message.SerializeAsString()))) << bad;
+  }
+  auto message = plain_message();
+  message.mutable_sample()->mutable_wave()->set_wave_energy_j(std::nan(""));
+  EXPECT_FALSE(codec.decode(view(message.SerializeAsString())));
+}
+
+TEST(CodecTest, WholeNumbersHaveTheirLimits) {
+  ProtobufCodec codec;
+  WireTelegram wire;
+  wire.sent_at_ns = kSentAtMaxNs;
+  EXPECT_FALSE(encoded(codec, wire).empty());
+  wire.sent_at_ns = kSentAtMaxNs + 1;
+  EXPECT_TRUE(encoded(codec, wire).empty());
+  wire = {};
+  wire.echo_ns = kSentAtMaxNs + 1;
+  EXPECT_TRUE(encoded(codec, wire).empty());
+  wire.echo_ns = 0;
+  wire.hold_us = kHoldMaxUs;
+  EXPECT_FALSE(encoded(codec, wire).empty());
+  wire.hold_us = kHoldMaxUs + 1;
+  EXPECT_TRUE(encoded(codec, wire).empty());
+  wire.hold_us = 0;
+  wire.newest_number = kNumberMax + 1;
+  EXPECT_TRUE(encoded(codec, wire).empty());
+  wire = {};
+  wire.newest_number = 1;  // nothing was heard, so there is no number to name
+  EXPECT_TRUE(encoded(codec, wire).empty());
+  wire = {};
+  wire.older_count = 3;
+  EXPECT_TRUE(encoded(codec, wire).empty());
+}
+
+TEST(CodecTest, WritesNothingWhereTheRoomIsTooSmall) {
+  ProtobufCodec protobuf;
+  RawCodec raw;
+  for (Codec* codec : std::initializer_list<Codec*>{&protobuf, &raw}) {
+    const std::size_t size = encoded(*codec, some_telegram(1)).size();
+    std::vector<std::byte> room(size - 1);
+    EXPECT_EQ(codec->encode(some_telegram(1), room), 0U);
+  }
+}
+
+TEST(ProtobufCodecTest, TelegramsHaveTheSizesOfTheWirePage) {
+  ProtobufCodec codec;
+  WireTelegram wire;
+  wire.sent_at_ns = kSentAtMaxNs;
+  wire.echo_ns = kSentAtMaxNs;
+  wire.hold_us = kHoldMaxUs;
+  wire.newest_number = kNumberMax;
+  wire.before_newest = 1;
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 4U);  // the link part, and two empty parts
+
+  constexpr std::uint32_t kMost = ~0U;
+  wire.telegram.port = {1, 1, 1, std::monostate{}};
+  wire.older_count = 2;
+  wire.older.fill(wire.telegram.port);
+  wire.telegram.site = {SiteState::Stopped, kMost, 1, {}};
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 15U + 3 * 17U);  // direct, surgeon to patient
+  wire.telegram.site.depth = {
+      kMost, DepthVerdict::Found, DepthReason::HashOutOfRange, 1, 1, 1, 1, 1};
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 51U + 3 * 17U);  // direct, patient to surgeon
+  wire.telegram.port.payload = ModelPayload{kMost, {1, 1, 1}, 1, 1, 1};
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 51U + 55U + 2 * 17U);
+  wire.telegram.port.payload = TdpaPayload{1};
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 51U + 28U + 2 * 17U);
+  wire.telegram.port.payload = WavePayload{1, 1};
+  wire.older.fill(wire.telegram.port);
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 51U + 3 * 37U);  // the largest of all
+}
+
+TEST(ProtobufCodecTest, WorksInAnotherThreadThanItsMaker) {
+  const auto codec = std::make_unique<ProtobufCodec>();
+  bool same_there = false;
+  std::thread{[&] {
+    const auto received = codec->decode(encoded(*codec, some_telegram(3)));
+    same_there = received && same(*received, rounded_as_on_wire(some_telegram(3)));
+  }}.join();
+  EXPECT_TRUE(same_there);
+}
+
+}  // namespace
+}  // namespace palp::link

@@ -1,0 +1,619 @@
+#include "common/link/link.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "tests/common/link/link_couple.h"
+
+namespace palp::link {
+namespace {
+
+using std::chrono_literals::operator""s;
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""us;
+
+/// Loses the datagrams with these indices, delays the others.
+Fate losing(std::vector<std::uint64_t> lost, Duration delay = Duration{0}) {
+  return [=](std::uint64_t index, const Bytes& bytes) {
+    const bool gone = std::find(lost.begin(), lost.end(), index) != lost.end();
+    return gone ? std::vector<Release>{} : std::vector<Release>{{delay, bytes}};
+  };
+}
+
+const Fate kCut = [](std::uint64_t, const Bytes&) { return std::vector<Release>{}; };
+
+TEST(LinkTest, RefusesPeriodsItCannotServe) {
+  EXPECT_THROW((Link{LinkConfig{.period = 199us}, std::make_unique<RawCodec>()}),
+               std::invalid_argument);
+  EXPECT_THROW((Link{LinkConfig{.period = 101ms}, std::make_unique<RawCodec>()}),
+               std::invalid_argument);
+  EXPECT_NO_THROW((Link{LinkConfig{.period = 200us}, std::make_unique<RawCodec>()}));
+}
+
+TEST(LinkTest, WithoutASessionNothingHappens) {
+  Couple couple;
+  couple.run(10ms);
+  EXPECT_EQ(couple.surgeon_health().state, LinkState::Down);
+  EXPECT_EQ(couple.surgeon_health().sent, 0U);
+  EXPECT_FALSE(couple.surgeon.last.peer_heard);
+}
+
+TEST(LinkTest, SamplesArriveInOrderWithNumberAndStamps) {
+  Couple couple;
+  couple.pipe.up->fate = after(10ms);
+  couple.now += 5s;
+  couple.connect();
+  couple.before_send = [&] {
+    couple.surgeon.telegram.port.position = seconds(couple.now.time_since_epoch());
+  };
+  couple.run(100ms);
+  ASSERT_EQ(couple.patient.samples.size(), 90U);
+  for (std::uint64_t i = 0; i < 90; ++i) {
+    const Incoming& incoming = couple.patient.samples[i];
+    const Duration sent = i * 1ms;
+    EXPECT_EQ(incoming.number, i);
+    EXPECT_TRUE(incoming.fresh);
+    EXPECT_FALSE(incoming.repaired);
+    EXPECT_EQ(incoming.sent_at.time_since_epoch(), sent);
+    EXPECT_EQ(incoming.arrived_at, TimePoint{5s + sent + 10ms});
+    EXPECT_EQ(incoming.sample.position, double{static_cast<float>(5 + seconds(sent))});
+  }
+}
+
+TEST(LinkTest, RepairsALostSampleFromTheTelegramFiveMillisecondsLater) {
+  Couple couple;
+  couple.pipe.up->fate = losing({20});
+  couple.connect();
+  couple.before_send = [&] {
+    couple.surgeon.telegram.port.force = seconds(couple.now.time_since_epoch());
+    couple.surgeon.telegram.port.payload = WavePayload{seconds(couple.now.time_since_epoch()), 2};
+  };
+  couple.run(26ms);  // number 25 is sent in the tick that starts at 25 ms
+  EXPECT_EQ(couple.patient_health().lost, 1U);
+  EXPECT_EQ(couple.patient_health().repaired, 0U);
+  couple.tick();
+  ASSERT_EQ(couple.patient.samples.size(), 26U);
+  const Incoming& repaired = couple.patient.samples[24];
+  EXPECT_EQ(repaired.number, 20U);
+  EXPECT_TRUE(repaired.repaired);
+  EXPECT_FALSE(repaired.fresh);
+  EXPECT_EQ(repaired.sent_at.time_since_epoch(), Duration{20ms});
+  EXPECT_EQ(repaired.sample.force, double{0.020F});
+  EXPECT_EQ(std::get<WavePayload>(repaired.sample.payload).wave_integral, 0.020);
+  EXPECT_EQ(couple.patient.samples[25].number, 25U);  // sorted: the repaired one came before
+  EXPECT_TRUE(couple.patient.samples[25].fresh);
+  EXPECT_EQ(couple.patient_health().repaired, 1U);
+  EXPECT_EQ(couple.patient_health().lost, 1U);  // the datagram stays lost
+}
+
+TEST(LinkTest, RepairsABurstOfTenMilliseconds) {
+  Couple couple;
+  couple.pipe.up->fate = losing({20, 21, 22, 23, 24, 25, 26, 27, 28, 29});
+  couple.connect();
+  couple.run(60ms);
+  EXPECT_EQ(couple.patient.samples.size(), 59U);
+  EXPECT_EQ(couple.patient_health().repaired, 10U);
+}
+
+TEST(LinkTest, OnlyWaveSumsAreRepeated) {
+  Couple couple;
+  couple.pipe.up->fate = losing({20});
+  couple.connect();
+  couple.surgeon.telegram.port.payload = TdpaPayload{3};
+  couple.run(40ms);
+  const auto& samples = couple.patient.samples;
+  const auto repaired = std::find_if(
+      samples.begin(), samples.end(), [](const Incoming& incoming) { return incoming.repaired; });
+  ASSERT_NE(repaired, samples.end());
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(repaired->sample.payload));
+  EXPECT_TRUE(std::holds_alternative<TdpaPayload>(samples.back().sample.payload));
+}
+
+TEST(LinkTest, ASkippedPeriodLeavesOutSamplesWhoseTimeWouldBeWrong) {
+  Couple couple;
+  couple.connect();
+  couple.run(20ms);   // numbers 0 to 19
+  couple.now += 1ms;  // an overrun
+  couple.pipe.up->fate = losing({19});
+  std::uint64_t sent = 20;
+  couple.before_send = [&] { ++sent; };
+  Lane& up = *couple.pipe.up;
+  up.fate = [](std::uint64_t index, const Bytes& bytes) {  // 24 would repeat 19 one period off
+    if (index == 22) return std::vector<Release>{};
+    return std::vector<Release>{{Duration{0}, bytes}};
+  };
+  couple.run(20ms);
+  for (const Incoming& incoming : couple.patient.samples) {
+    const Duration expected =
+        static_cast<std::int64_t>(incoming.number) * 1ms + (incoming.number >= 20 ? 1ms : 0ms);
+    EXPECT_EQ(incoming.sent_at.time_since_epoch(), expected) << incoming.number;
+  }
+  EXPECT_EQ(couple.patient_health().repaired, 1U);  // 22, by 27, both after the overrun
+}
+
+TEST(LinkTest, ALateTelegramFillsItsGapAndIsNotFresh) {
+  Couple couple;
+  couple.pipe.up->fate = [](std::uint64_t index, const Bytes& bytes) {
+    return std::vector<Release>{{index == 20 ? 3500us : 500us, bytes}};
+  };
+  couple.connect();
+  couple.before_send = [&] {
+    couple.surgeon.telegram.site.lateral = seconds(couple.now.time_since_epoch());
+  };
+  couple.run(24ms);
+  EXPECT_EQ(couple.patient_health().lost, 1U);
+  couple.tick();
+  EXPECT_EQ(couple.patient_health().lost, 0U);
+  EXPECT_EQ(couple.patient_health().late, 1U);
+  EXPECT_EQ(couple.patient_health().reordered, 1U);
+  ASSERT_EQ(couple.patient.last.peer.lateral, double{0.023F});  // of the newest, not of the late
+  couple.run(10ms);
+  EXPECT_EQ(couple.patient_health().repaired, 0U);  // it was handed over already
+  EXPECT_EQ(couple.patient.samples.size(), 34U);
+  const auto late = std::find_if(couple.patient.samples.begin(),
+                                 couple.patient.samples.end(),
+                                 [](const Incoming& incoming) { return incoming.number == 20; });
+  EXPECT_FALSE(late->fresh);
+  EXPECT_FALSE(late->repaired);
+}
+
+TEST(LinkTest, TheTelegramAfterAGapIsTheNewest) {
+  Couple couple;
+  couple.pipe.up->fate = losing({20, 21, 22});
+  couple.connect();
+  couple.run(25ms);
+  EXPECT_EQ(couple.patient.samples.back().number, 23U);
+  EXPECT_TRUE(couple.patient.samples.back().fresh);
+  EXPECT_EQ(couple.patient_health().lost, 3U);
+}
+
+TEST(LinkTest, SamplesOfAnOldEpochAreDroppedAndTheReportIsUsed) {
+  Couple couple;
+  couple.pipe.down->fate = after(20ms);
+  couple.connect();
+  couple.run(50ms);
+  couple.surgeon.telegram.site.epoch = 1;  // engages
+  couple.patient.telegram.site.state = SiteState::Stopped;
+  couple.surgeon.samples.clear();
+  couple.run(25ms);  // the patient follows at 51 ms, which is heard of at 71
+  couple.patient.telegram.site.epoch = 1;
+  couple.run(15ms);
+  EXPECT_EQ(couple.surgeon.last.peer.state, SiteState::Stopped);
+  EXPECT_EQ(couple.surgeon.last.accepted, 1U);
+  const std::uint64_t handed = couple.surgeon.samples.size();
+  EXPECT_EQ(handed, 1U);  // the one received before epoch 1 was sent, in the same tick
+  EXPECT_EQ(couple.surgeon_health().old_epoch, 39U);
+  couple.run(20ms);
+  EXPECT_GT(couple.surgeon.samples.size(), handed);
+}
+
+TEST(LinkTest, NoSampleIsRepeatedIntoAnotherEpoch) {
+  Couple couple;
+  couple.pipe.up->fate = losing({28, 29});
+  couple.connect();
+  couple.run(30ms);
+  couple.surgeon.telegram.site.epoch = 1;
+  couple.run(30ms);
+  EXPECT_EQ(couple.patient_health().repaired, 0U);
+  EXPECT_EQ(couple.patient_health().old_epoch, 0U);
+  EXPECT_EQ(couple.patient.samples.size(), 57U);
+}
+
+TEST(LinkTest, SamplesBeforeAnEngagementInTheSameTickAreDropped) {
+  Couple couple;
+  couple.connect();
+  couple.run(20ms);
+  // Three telegrams arrive at once: epochs 0, 0, 1.
+  for (int i = 0; i < 3; ++i) {
+    couple.surgeon.telegram.site.epoch = i == 2 ? 1 : 0;
+    couple.surgeon.link.send(couple.surgeon.telegram, couple.now);
+  }
+  const Arrivals arrivals = couple.patient.link.receive(couple.now);
+  ASSERT_EQ(arrivals.samples.size(), 1U);
+  EXPECT_EQ(arrivals.samples[0].number, 22U);
+  EXPECT_EQ(couple.patient.link.health(couple.now).old_epoch, 3U);
+}
+
+TEST(LinkTest, RoundTripIsThatOfThePipe) {
+  Couple couple;
+  couple.pipe.up->fate = after(30ms);
+  couple.pipe.down->fate = after(12'345us);
+  couple.connect();
+  couple.run(1s);
+  for (const LinkHealth& health : {couple.surgeon_health(), couple.patient_health()}) {
+    EXPECT_NEAR(seconds(health.round_trip), 0.042345, 1e-6);
+    EXPECT_NEAR(seconds(health.round_trip_min), 0.042345, 1e-6);
+    EXPECT_LE(health.jitter, Duration{2us});
+  }
+}
+
+TEST(LinkTest, JitterShowsInTheDeviationAndNotInTheLeast) {
+  Couple couple;
+  couple.pipe.up->fate = [](std::uint64_t index, const Bytes& bytes) {
+    return std::vector<Release>{{index / 20 % 2 == 0 ? 10ms : 14ms, bytes}};
+  };
+  couple.connect();
+  couple.run(2s);
+  EXPECT_EQ(couple.surgeon_health().round_trip_min, Duration{10ms});
+  EXPECT_GT(couple.surgeon_health().jitter, Duration{500us});
+}
+
+TEST(LinkTest, OneBudgetPerTick) {
+  Couple couple;
+  couple.connect();
+  couple.run(1ms);
+  const LaneEnd flood{couple.pipe.up, couple.pipe.down};
+  for (int i = 0; i < 600; ++i) {
+    couple.pipe.up->push(Bytes(50), couple.now);
+  }
+  couple.patient.sending = false;
+  couple.surgeon.sending = false;
+  couple.tick();
+  EXPECT_EQ(couple.patient_health().malformed, kDatagramsPerTickMax - 1);  // and one telegram
+  couple.run(2ms);
+  EXPECT_EQ(couple.patient_health().malformed, 600U);
+}
+
+TEST(LinkTest, OverlongDatagramsAreMalformed) {
+  Couple couple;
+  couple.connect();
+  couple.pipe.up->fate = [](std::uint64_t, Bytes bytes) {
+    bytes.resize(kDatagramSizeMax + 1);
+    return std::vector<Release>{{Duration{0}, bytes}};
+  };
+  couple.run(10ms);
+  EXPECT_EQ(couple.patient_health().malformed, 9U);
+  EXPECT_EQ(couple.patient_health().accepted, 0U);
+}
+
+TEST(LinkTest, OtherTypesKeysAndConnectionsAreForeign) {
+  Couple couple;
+  couple.connect();
+  couple.run(5ms);
+  const LinkHealth before = couple.patient_health();
+  for (const auto& [byte, change] : {std::pair{0U, 1U}, {1U, 0x40U}, {7U, 1U}}) {
+    couple.pipe.up->fate = [byte = byte, change = change](std::uint64_t, Bytes bytes) {
+      bytes[byte] ^= static_cast<std::byte>(change);
+      return std::vector<Release>{{Duration{0}, bytes}};
+    };
+    couple.tick();
+  }
+  couple.surgeon.sending = false;
+  couple.tick();
+  EXPECT_EQ(couple.patient_health().foreign, before.foreign + 3);
+}
+
+TEST(LinkTest, ADuplicateIsReplayedAndAVeryOldOneTooOld) {
+  Couple couple;
+  Bytes first;
+  couple.pipe.up->fate = [&](std::uint64_t index, const Bytes& bytes) {
+    if (index == 0) first = bytes;
+    return std::vector<Release>{{Duration{0}, index == 50 ? first : bytes}};
+  };
+  couple.connect();
+  couple.run(52ms);
+  EXPECT_EQ(couple.patient_health().replayed, 1U);
+  couple.run(1s);
+  couple.pipe.up->push(Bytes{}, couple.now);
+  couple.pipe.up->fate = [&](std::uint64_t, const Bytes&) {
+    return std::vector<Release>{{Duration{0}, first}};
+  };
+  couple.tick();
+  couple.tick();
+  EXPECT_EQ(couple.patient_health().too_old, 1U);
+  EXPECT_EQ(couple.patient_health().lost, 1U);  // 50, in whose place 0 came again
+}
+
+/// A toy with a 16-byte tag: the sum of all bytes, as often as it fits.
+class TaggedProtection final : public PacketProtection {
+ public:
+  static constexpr std::size_t kTag = 16;
+  [[nodiscard]] std::size_t overhead() const noexcept override { return kTag; }
+  std::size_t seal(const Header& header,
+                   std::span<const std::byte> plain,
+                   std::span<std::byte> out) noexcept override {
+    Header complete = header;
+    complete.length = static_cast<std::uint16_t>(plain.size() + kTag);
+    pack_header(complete, out.first<kHeaderSize>());
+    std::copy(plain.begin(), plain.end(), out.begin() + kHeaderSize);
+    const std::size_t body = kHeaderSize + plain.size();
+    std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(body), kTag, sum(out.first(body)));
+    return body + kTag;
+  }
+  tl::expected<std::size_t, Rejection> open(std::span<const std::byte> datagram,
+                                            std::span<std::byte> plain) noexcept override {
+    if (datagram.size() < kHeaderSize + kTag) return tl::unexpected(Rejection::Malformed);
+    const auto body = datagram.first(datagram.size() - kTag);
+    for (const std::byte tag : datagram.last(kTag)) {
+      if (tag != sum(body)) return tl::unexpected(Rejection::Forged);
+    }
+    const auto payload = body.subspan(kHeaderSize);
+    std::copy(payload.begin(), payload.end(), plain.begin());
+    return payload.size();
+  }
+
+ private:
+  static std::byte sum(std::span<const std::byte> bytes) {
+    unsigned total = 7;
+    for (const std::byte b : bytes) total = total * 31 + std::to_integer<unsigned>(b);
+    return static_cast<std::byte>(total >> 3U & 0xFFU);
+  }
+};
+
+TEST(LinkTest, AForgedDatagramLeavesNoTraceButItsCounter) {
+  Couple couple;
+  couple.connect();
+  for (Side* side : {&couple.surgeon, &couple.patient}) {
+    Handover keys{.transport = nullptr,
+                  .protection = std::make_unique<TaggedProtection>(),
+                  .send_connection = side == &couple.surgeon ? 3U : 2U,
+                  .receive_connection = side == &couple.surgeon ? 2U : 3U,
+                  .session_id = 1};
+    (void)side->link.adopt(std::move(keys), couple.now);
+  }
+  // Before each genuine datagram a forged one, same number or far ahead.
+  couple.pipe.up->fate = [](std::uint64_t index, const Bytes& bytes) {
+    Bytes forged = bytes;
+    forged[index % 2 == 0 ? kHeaderSize : 10] ^= std::byte{0x10};
+    return std::vector<Release>{{Duration{0}, forged}, {Duration{0}, bytes}};
+  };
+  couple.run(100ms);
+  const LinkHealth health = couple.patient_health();
+  EXPECT_EQ(health.forged, 99U);
+  EXPECT_EQ(health.accepted, 99U);
+  EXPECT_EQ(health.replayed + health.too_old + health.lost + health.late, 0U);
+}
+
+TEST(LinkTest, AnAuthenticTelegramThatIsNotWellFormedIsMalformed) {
+  Couple couple;
+  couple.connect();
+  couple.pipe.up->fate = [](std::uint64_t index, Bytes bytes) {
+    if (index == 5) bytes[kHeaderSize] = std::byte{0x7F};
+    return std::vector<Release>{{Duration{0}, bytes}};
+  };
+  couple.run(10ms);
+  EXPECT_EQ(couple.patient_health().malformed, 1U);
+  EXPECT_EQ(couple.patient_health().accepted, 8U);
+  EXPECT_EQ(couple.patient_health().lost, 0U);  // it came
+}
+
+TEST(LinkTest, ANodeThatSaysNonsenseIsNotSent) {
+  Couple couple;
+  couple.connect();
+  couple.surgeon.telegram.port.force = std::nan("");
+  couple.run(10ms);
+  EXPECT_EQ(couple.surgeon_health().unsent, 10U);
+  EXPECT_EQ(couple.surgeon_health().sent, 0U);
+  EXPECT_EQ(couple.pipe.up->pushed(), 0U);
+}
+
+TEST(LinkTest, WatchdogIsExactToTheTick) {
+  Couple couple;
+  couple.connect();
+  couple.run(1s);
+  ASSERT_EQ(couple.patient_health().state, LinkState::Live);
+  couple.pipe.up->fate = kCut;
+  couple.tick();                             // takes what was sent in the tick before
+  const TimePoint heard = couple.now - 2ms;  // the pipe has no delay: it arrived when it was sent
+  ASSERT_EQ(couple.patient_health().gap, couple.now - 1ms - heard);
+  const auto state_at = [&](Duration gap) {
+    while (couple.now <= heard + gap) couple.tick();
+    EXPECT_EQ(couple.patient_health().gap, gap);
+    return couple.patient_health().state;
+  };
+  EXPECT_EQ(state_at(100ms), LinkState::Live);
+  EXPECT_EQ(state_at(101ms), LinkState::Hold);
+  EXPECT_EQ(state_at(500ms), LinkState::Hold);
+  EXPECT_EQ(state_at(501ms), LinkState::Lost);
+  EXPECT_EQ(state_at(30'000ms), LinkState::Lost);
+  EXPECT_EQ(couple.patient_health().session_id, 1U);
+  while (couple.now <= heard + 30'001ms) couple.tick();
+  EXPECT_EQ(couple.patient_health().state, LinkState::Down);
+  EXPECT_EQ(couple.patient_health().session_id, 0U);
+}
+
+TEST(LinkTest, OutOfHoldAndLostWithTheFirstAcceptedTelegram) {
+  for (const Duration blackout : {Duration{300ms}, Duration{5s}}) {
+    Couple couple;
+    couple.connect();
+    couple.run(1s);
+    couple.pipe.up->fate = kCut;
+    couple.run(blackout);
+    ASSERT_NE(couple.patient_health().state, LinkState::Live);
+    couple.pipe.up->fate = after(0ms);
+    couple.run(2ms);
+    EXPECT_EQ(couple.patient_health().state, LinkState::Live);
+  }
+}
+
+TEST(LinkTest, AfterThirtySecondsOnlyAnotherHandoverHelps) {
+  Couple couple;
+  couple.connect();
+  couple.run(1s);
+  couple.patient.sending = false;
+  couple.surgeon.sending = false;
+  couple.run(31s);
+  couple.patient.sending = true;
+  couple.surgeon.sending = true;
+  couple.run(1s);
+  EXPECT_EQ(couple.patient_health().state, LinkState::Down);
+  EXPECT_EQ(couple.patient.last.peer_heard, false);
+  couple.connect(2);
+  couple.run(1s);
+  EXPECT_EQ(couple.patient_health().state, LinkState::Live);
+  EXPECT_EQ(couple.patient_health().session_id, 2U);
+}
+
+TEST(LinkTest, WithoutASessionTheTransportIsStillDrained) {
+  Couple couple;
+  LinkConfig config;
+  couple.connect();
+  couple.run(1s);
+  couple.patient.sending = false;
+  couple.run(31s);
+  ASSERT_EQ(couple.surgeon_health().session_id, 0U);
+  const std::uint64_t foreign = couple.surgeon_health().foreign;
+  couple.pipe.down->push(Bytes(80, std::byte{0x80}), couple.now);
+  couple.pipe.down->push({}, couple.now);
+  couple.run(2ms);
+  EXPECT_TRUE(couple.pipe.down->empty());
+  EXPECT_EQ(couple.surgeon_health().foreign, foreign);  // malformed, both
+  EXPECT_GE(couple.surgeon_health().malformed, 2U);
+}
+
+TEST(LinkTest, DownUntilEightExchanges) {
+  Couple couple;
+  couple.pipe.up->fate = after(25ms);
+  couple.pipe.down->fate = after(25ms);
+  couple.connect();
+  // The surgeon's telegram of 0 ms is echoed in the patient's of 25 ms, which arrives at 50 ms.
+  couple.run(57ms);
+  EXPECT_EQ(couple.surgeon_health().state, LinkState::Down);
+  couple.tick();
+  EXPECT_EQ(couple.surgeon_health().state, LinkState::Live);
+  EXPECT_EQ(couple.patient_health().state, LinkState::Live);
+}
+
+TEST(LinkTest, DownAtMostTwoSecondsWhereEchoesAreRare) {
+  Couple couple{LinkConfig{.sync_exchanges = 1'000'000}};
+  couple.pipe.up->fate = after(25ms);
+  couple.connect();
+  couple.run(2000ms);  // the first one arrived at 0 ms
+  EXPECT_EQ(couple.surgeon_health().state, LinkState::Down);
+  couple.tick();
+  EXPECT_EQ(couple.surgeon_health().state, LinkState::Live);
+}
+
+TEST(LinkTest, NeverLiveWithoutAWayBack) {
+  Couple couple;
+  couple.pipe.up->fate = kCut;
+  couple.connect();
+  couple.run(20s);
+  EXPECT_EQ(couple.surgeon_health().state, LinkState::Down);
+  EXPECT_GT(couple.surgeon_health().accepted, 19'000U);
+}
+
+TEST(LinkTest, NeverLiveWhereTheRoundTripIsTooLong) {
+  for (const auto& [each_way, state] :
+       {std::pair{Duration{1250ms}, LinkState::Live}, {Duration{1251ms}, LinkState::Down}}) {
+    Couple couple;
+    couple.pipe.up->fate = after(each_way);
+    couple.pipe.down->fate = after(each_way);
+    couple.connect();
+    couple.run(8s);
+    EXPECT_EQ(couple.surgeon_health().state, state);
+  }
+}
+
+TEST(LinkTest, ATelegramThatTookTooLongIsStaleAndFeedsNothing) {
+  Couple couple;
+  couple.pipe.up->fate = after(10ms);
+  couple.connect();
+  couple.run(1s);
+  couple.pipe.up->fate = after(210ms);  // 200 ms more: just allowed
+  couple.run(300ms);
+  EXPECT_EQ(couple.patient_health().stale, 0U);
+  EXPECT_EQ(couple.patient_health().state, LinkState::Live);
+  const std::uint64_t accepted = couple.patient_health().accepted;
+  couple.pipe.up->fate = after(211ms);
+  couple.surgeon.telegram.site.state = SiteState::Stopped;
+  couple.run(350ms);
+  EXPECT_NEAR(static_cast<double>(couple.patient_health().stale), 138, 1);
+  EXPECT_LE(couple.patient_health().accepted, accepted + 211);
+  EXPECT_EQ(couple.patient_health().state, LinkState::Hold);
+  EXPECT_EQ(couple.patient.last.peer.state, SiteState::Parked);
+  couple.run(17s);  // the longer way has become the usual one
+  EXPECT_EQ(couple.patient_health().state, LinkState::Live);
+}
+
+TEST(LinkTest, OnLongLinksHalfTheRoundTripIsAllowed) {
+  Couple couple;
+  couple.pipe.up->fate = after(300ms);
+  couple.pipe.down->fate = after(300ms);
+  couple.connect();
+  couple.run(2s);
+  couple.pipe.up->fate = after(600ms);
+  couple.run(2s);
+  EXPECT_EQ(couple.patient_health().stale, 0U);
+  EXPECT_EQ(couple.patient_health().state, LinkState::Live);
+}
+
+TEST(LinkTest, ANewSessionStartsAnewAndCountersGoOn) {
+  Couple couple;
+  couple.pipe.up->fate = losing({5, 6});
+  couple.connect(1);
+  couple.surgeon.telegram.site.epoch = 4;
+  couple.run(1s);
+  const LinkHealth before = couple.patient_health();
+  ASSERT_EQ(before.lost, 2U);
+  couple.connect(2);
+  couple.patient.samples.clear();
+  const LinkHealth after_adopt = couple.patient.link.health(couple.now);
+  EXPECT_EQ(after_adopt.state, LinkState::Down);
+  EXPECT_EQ(after_adopt.round_trip, Duration{0});
+  EXPECT_EQ(after_adopt.accepted, before.accepted);
+  EXPECT_EQ(after_adopt.lost, 2U);
+
+  couple.surgeon.telegram.site.epoch = 0;
+  couple.run(100ms);
+  const LinkHealth health = couple.patient_health();
+  EXPECT_EQ(couple.patient.samples.front().number, 0U);
+  EXPECT_EQ(couple.patient.samples.size(), 99U);
+  EXPECT_EQ(health.accepted, before.accepted + 99);
+  EXPECT_EQ(health.foreign, before.foreign + 1);  // the last of the old session
+  EXPECT_EQ(health.replayed + health.too_old + health.old_epoch, 0U);
+  EXPECT_EQ(health.state, LinkState::Live);
+}
+
+TEST(LinkTest, ANewWayForTheSameSessionResetsNothing) {
+  Couple couple;
+  couple.connect();
+  couple.run(1s);
+  const LinkHealth before = couple.patient_health();
+  Handover way{.transport = couple.pipe.patient_end(),
+               .protection = nullptr,
+               .send_connection = 2,
+               .receive_connection = 3,
+               .session_id = 1};
+  const Handover retired = couple.patient.link.adopt(std::move(way), couple.now);
+  EXPECT_TRUE(retired.transport);
+  EXPECT_FALSE(retired.protection);
+  couple.run(10ms);
+  EXPECT_EQ(couple.patient_health().accepted, before.accepted + 10);
+  EXPECT_EQ(couple.patient_health().state, LinkState::Live);
+  EXPECT_EQ(couple.patient.samples.back().number, 1008U);
+}
+
+TEST(LinkTest, AnEmptyHandoverEndsTheSessionAndGivesEverythingBack) {
+  Couple couple;
+  couple.connect();
+  couple.run(1s);
+  const Handover retired = couple.patient.link.adopt({}, couple.now);
+  EXPECT_TRUE(retired.transport);
+  EXPECT_TRUE(retired.protection);
+  EXPECT_EQ(retired.session_id, 1U);
+  EXPECT_EQ(couple.patient.link.health(couple.now).state, LinkState::Down);
+  couple.run(10ms);
+  EXPECT_FALSE(couple.patient.last.peer_heard);
+}
+
+TEST(LinkTest, ARefusedSendIsCountedAndCostsANumber) {
+  class Refusing final : public Transport {
+   public:
+    bool send(std::span<const std::byte>, TimePoint) noexcept override { return false; }
+    std::optional<Datagram> receive(std::span<std::byte, kDatagramSizeMax>,
+                                    TimePoint) noexcept override {
+      return std::nullopt;
+    }
+  };
+  Link link{LinkConfig{}, std::make_unique<RawCodec>()};
+  (void)link.adopt(Couple::handover(std::make_unique<Refusing>(), 1, 2, 3), TimePoint{});
+  link.send({}, TimePoint{});
+  EXPECT_EQ(link.health(TimePoint{}).unsent, 1U);
+  EXPECT_EQ(link.health(TimePoint{}).sent, 1U);
+}
+
+}  // namespace
+}  // namespace palp::link

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "common/link/transport.h"
+
+/// Two directions of a datagram pipe in virtual time, with a script for what happens to each.
+namespace palp::link {
+
+using Bytes = std::vector<std::byte>;
+
+/// One datagram on its way out: after `delay`, with these bytes.
+struct Release {
+  Duration delay{};
+  Bytes bytes;
+};
+
+/// What becomes of the datagram with this index: nothing, one or several releases.
+using Fate = std::function<std::vector<Release>(std::uint64_t index, const Bytes& bytes)>;
+
+inline Fate after(Duration delay) {
+  return [delay](std::uint64_t, const Bytes& bytes) {
+    return std::vector<Release>{Release{delay, bytes}};
+  };
+}
+
+/// One direction.
+class Lane {
+ public:
+  Fate fate{after(Duration{0})};
+
+  void push(std::span<const std::byte> datagram, TimePoint now) {
+    for (Release& release : fate(pushed_++, Bytes{datagram.begin(), datagram.end()})) {
+      waiting_.emplace(now + release.delay, std::move(release.bytes));
+    }
+  }
+  std::optional<std::pair<TimePoint, Bytes>> pop(TimePoint now) {
+    if (waiting_.empty() || waiting_.begin()->first > now) return std::nullopt;
+    auto first = waiting_.extract(waiting_.begin());
+    ++popped_;
+    return std::pair{first.key(), std::move(first.mapped())};
+  }
+  [[nodiscard]] std::uint64_t pushed() const { return pushed_; }
+  [[nodiscard]] std::uint64_t popped() const { return popped_; }
+  [[nodiscard]] bool empty() const { return waiting_.empty(); }
+
+ private:
+  std::multimap<TimePoint, Bytes> waiting_;
+  std::uint64_t pushed_{};
+  std::uint64_t popped_{};
+};
+
+class LaneEnd final : public Transport {
+ public:
+  LaneEnd(std::shared_ptr<Lane> out, std::shared_ptr<Lane> in)
+      : out_{std::move(out)}, in_{std::move(in)} {}
+  bool send(std::span<const std::byte> datagram, TimePoint now) noexcept override {
+    out_->push(datagram, now);
+    return true;
+  }
+  std::optional<Datagram> receive(std::span<std::byte, kDatagramSizeMax> buffer,
+                                  TimePoint now) noexcept override {
+    auto next = in_->pop(now);
+    if (!next) return std::nullopt;
+    const std::size_t copied = std::min(buffer.size(), next->second.size());
+    std::copy_n(next->second.begin(), copied, buffer.begin());
+    return Datagram{next->second.size(), next->first};
+  }
+
+ private:
+  std::shared_ptr<Lane> out_;
+  std::shared_ptr<Lane> in_;
+};
+
+/// Up: surgeon to patient.
+struct TestPipe {
+  std::shared_ptr<Lane> up{std::make_shared<Lane>()};
+  std::shared_ptr<Lane> down{std::make_shared<Lane>()};
+
+  [[nodiscard]] std::unique_ptr<Transport> surgeon_end() const {
+    return std::make_unique<LaneEnd>(up, down);
+  }
+  [[nodiscard]] std::unique_ptr<Transport> patient_end() const {
+    return std::make_unique<LaneEnd>(down, up);
+  }
+};
+
+}  // namespace palp::link
