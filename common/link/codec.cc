@@ -16,28 +16,32 @@ bool well_formed(const DepthReport& report) noexcept {
          within(report.depth_high, kLengthMax) && within(report.hash, kForceMax);
 }
 
-struct PayloadForm {
-  bool operator()(std::monostate /*none*/) const noexcept { return true; }
-  bool operator()(const WavePayload& wave) const noexcept {
-    return within(wave.wave_integral, kSumMax) && within(wave.wave_energy, kSumMax);
+bool well_formed(const WavePayload& wave) noexcept {
+  return within(wave.wave_integral, kSumMax) && within(wave.wave_energy, kSumMax);
+}
+
+bool well_formed(const TdpaPayload& tdpa) noexcept { return within(tdpa.energy_in, kSumMax); }
+
+bool well_formed(const ModelPayload& model) noexcept {
+  for (const double c : model.c) {
+    if (!within(c, kForceMax)) return false;
   }
-  bool operator()(const TdpaPayload& tdpa) const noexcept {
-    return within(tdpa.energy_in, kSumMax);
-  }
-  bool operator()(const ModelPayload& model) const noexcept {
-    for (const double c : model.c) {
-      if (!within(c, kForceMax)) return false;
-    }
-    return within(model.surface, kLengthMax) && within(model.depth_max, kLengthMax) &&
-           within(model.residual, kForceMax);
-  }
-};
+  return within(model.surface, kLengthMax) && within(model.depth_max, kLengthMax) &&
+         within(model.residual, kForceMax);
+}
+
+/// A raw copy may hold any index: then none of these, and not well formed.
+bool well_formed(const CouplingPayload& payload) noexcept {
+  static_assert(std::variant_size_v<CouplingPayload> == 4, "a new payload needs its line here");
+  if (const auto* wave = std::get_if<WavePayload>(&payload)) return well_formed(*wave);
+  if (const auto* tdpa = std::get_if<TdpaPayload>(&payload)) return well_formed(*tdpa);
+  if (const auto* model = std::get_if<ModelPayload>(&payload)) return well_formed(*model);
+  return std::holds_alternative<std::monostate>(payload);
+}
 
 bool well_formed(const PortSample& sample) noexcept {
-  // A raw copy may hold any index.
-  if (sample.payload.index() >= std::variant_size_v<CouplingPayload>) return false;
   return within(sample.position, kLengthMax) && within(sample.velocity, kSpeedMax) &&
-         within(sample.force, kForceMax) && std::visit(PayloadForm{}, sample.payload);
+         within(sample.force, kForceMax) && well_formed(sample.payload);
 }
 
 bool well_formed_earlier(const PortSample& sample) noexcept {

@@ -139,7 +139,7 @@ bool take_varint(std::span<const std::byte>& bytes, std::uint64_t& value) noexce
 struct ProtobufCodec::ShapeBuilder {
   std::vector<Shape>& shapes;
 
-  std::uint8_t add(const Descriptor& message, std::size_t depth) const {
+  [[nodiscard]] std::uint8_t add(const Descriptor& message, std::size_t depth) const {
     PALP_CHECK(depth < kDepthMax, "telegrams nest no deeper");
     const std::size_t index = shapes.size();
     shapes.emplace_back();
@@ -163,7 +163,10 @@ struct ProtobufCodec::ShapeBuilder {
   }
 };
 
-ProtobufCodec::ProtobufCodec() { ShapeBuilder{shapes_}.add(*wire::Telegram::descriptor(), 0); }
+ProtobufCodec::ProtobufCodec() {
+  const std::uint8_t telegram = ShapeBuilder{shapes_}.add(*wire::Telegram::descriptor(), 0);
+  PALP_CHECK(telegram == 0, "the outermost message comes first");
+}
 
 bool ProtobufCodec::fits(std::size_t shape,
                          std::span<const std::byte> bytes,

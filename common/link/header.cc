@@ -5,10 +5,10 @@
 namespace palp::link {
 namespace {
 
-template <class Unsigned>
-void put(Unsigned value, std::span<std::byte> out) noexcept {
-  for (std::size_t i = 0; i < sizeof(Unsigned); ++i) {
-    out[i] = static_cast<std::byte>(value >> (8 * (sizeof(Unsigned) - 1 - i)) & 0xFFU);
+/// The lowest bytes of `value`, as many as `out` has room for.
+void put(std::uint64_t value, std::span<std::byte> out) noexcept {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = static_cast<std::byte>(value >> (8 * (out.size() - 1 - i)) & 0xFFU);
   }
 }
 

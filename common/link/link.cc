@@ -43,9 +43,9 @@ std::uint32_t hold_us(Duration hold) noexcept {
   return static_cast<std::uint32_t>(std::min<Duration::rep>(rounded, kHoldMaxUs));
 }
 
-PortSample for_repetition(PortSample sample) noexcept {
-  if (!std::holds_alternative<WavePayload>(sample.payload)) sample.payload = std::monostate{};
-  return sample;
+PortSample for_repetition(const PortSample& sample) noexcept {
+  if (std::holds_alternative<WavePayload>(sample.payload)) return sample;
+  return {sample.position, sample.velocity, sample.force, std::monostate{}};
 }
 
 }  // namespace
@@ -121,8 +121,7 @@ void Link::send(const Telegram& telegram, TimePoint now) noexcept {
   wire.telegram = telegram;
   attach_older(wire, now);
 
-  std::array<std::byte, kTelegramSizeMax> plain;
-  const std::size_t size = codec_->encode(wire, plain);
+  const std::size_t size = codec_->encode(wire, std::span{plain_}.first<kTelegramSizeMax>());
   if (size == 0) {  // a node that says what no peer would take
     ++counters_.unsent;
     return;
@@ -132,8 +131,7 @@ void Link::send(const Telegram& telegram, TimePoint now) noexcept {
                       .length = 0,
                       .connection = send_connection_,
                       .number = conversation.next_number};
-  std::array<std::byte, kDatagramSizeMax> datagram;
-  const std::size_t sealed = protection_->seal(header, std::span{plain}.first(size), datagram);
+  const std::size_t sealed = protection_->seal(header, std::span{plain_}.first(size), datagram_);
   PALP_CHECK(sealed != 0, "a telegram fits into a datagram");
   const std::uint32_t epoch = telegram.site.epoch;
   conversation.history[header.number % kHistory] = {
@@ -141,7 +139,7 @@ void Link::send(const Telegram& telegram, TimePoint now) noexcept {
   conversation.epoch_sent = std::max(conversation.epoch_sent, epoch);
   ++conversation.next_number;
   ++counters_.sent;
-  if (!transport_->send(std::span{datagram}.first(sealed), now)) ++counters_.unsent;
+  if (!transport_->send(std::span{datagram_}.first(sealed), now)) ++counters_.unsent;
 }
 
 Arrivals Link::receive(TimePoint now) noexcept {

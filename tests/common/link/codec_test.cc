@@ -291,14 +291,14 @@ TEST(ProtobufCodecTest, TelegramsHaveTheSizesOfTheWirePage) {
   EXPECT_EQ(encoded(codec, wire).size(), 37U + 15U + 3 * 17U);  // direct, surgeon to patient
   wire.telegram.site.depth = {
       kMost, DepthVerdict::Found, DepthReason::HashOutOfRange, 1, 1, 1, 1, 1};
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 51U + 3 * 17U);  // direct, patient to surgeon
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 52U + 3 * 17U);  // direct, patient to surgeon
   wire.telegram.port.payload = ModelPayload{kMost, {1, 1, 1}, 1, 1, 1};
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 51U + 55U + 2 * 17U);
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 52U + 55U + 2 * 17U);
   wire.telegram.port.payload = TdpaPayload{1};
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 51U + 28U + 2 * 17U);
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 52U + 28U + 2 * 17U);
   wire.telegram.port.payload = WavePayload{1, 1};
   wire.older.fill(wire.telegram.port);
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 51U + 3 * 37U);  // the largest of all
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 52U + 3 * 37U);  // the largest of all
 }
 
 TEST(ProtobufCodecTest, WorksInAnotherThreadThanItsMaker) {
