@@ -111,7 +111,7 @@ class Link {
   Conversation conversation_;
   LinkHealth counters_;  ///< its counters only; `lost` of former sessions
   std::uint32_t accepted_now_{};
-  std::vector<Incoming> samples_;  ///< never beyond the reserved size
+  std::vector<Incoming> samples_;                       ///< never beyond the reserved size
   std::array<std::byte, kDatagramSizeMax> datagram_{};  ///< the one being sent or received
   std::array<std::byte, kDatagramSizeMax> plain_{};     ///< its content
 };

@@ -19,15 +19,26 @@ void RecentMinimum::add(Duration value, TimePoint at) noexcept {
   } else if (bin.second == second) {
     bin.least = std::min(bin.least, value);
   }
+  if (!least_ || second > newest_second_) {
+    newest_second_ = second;
+    least_ = search(second);
+  } else if (second > newest_second_ - kSeconds) {
+    least_ = std::min(*least_, value);
+  }
+}
+
+std::optional<Duration> RecentMinimum::search(std::int64_t second) const noexcept {
+  std::optional<Duration> least;
+  for (const Bin& bin : bins_) {
+    if (!bin.used || bin.second <= second - kSeconds) continue;
+    least = least ? std::min(*least, bin.least) : bin.least;
+  }
+  return least;
 }
 
 std::optional<Duration> RecentMinimum::least(TimePoint now) const noexcept {
-  const std::int64_t oldest = second_of(now) - kSeconds + 1;
-  std::optional<Duration> least;
-  for (const Bin& bin : bins_) {
-    if (bin.used && bin.second >= oldest) least = least ? std::min(*least, bin.least) : bin.least;
-  }
-  return least;
+  const std::int64_t second = second_of(now);
+  return second == newest_second_ ? least_ : search(second);
 }
 
 bool PeerClock::add_round_trip(TimePoint echo, Duration hold, TimePoint arrived_at) noexcept {

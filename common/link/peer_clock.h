@@ -21,7 +21,11 @@ class RecentMinimum {
     Duration least{};
     bool used{};
   };
+  [[nodiscard]] std::optional<Duration> search(std::int64_t second) const noexcept;
+
   std::array<Bin, kSeconds> bins_{};
+  std::int64_t newest_second_{};
+  std::optional<Duration> least_{};  ///< as seen in newest_second_: asked for at every telegram
 };
 
 /// What echoed stamps say of the way to the peer and back: everything on one clock at a time, so no

@@ -30,9 +30,14 @@ void ReplayWindow::mark(std::uint64_t number) noexcept {
 }
 
 std::uint32_t ReplayWindow::before_newest() const noexcept {
+  const std::uint64_t word = newest_ / kWordBits;
+  const std::uint64_t place = newest_ % kWordBits;
+  // The 64 numbers below the newest one, the nearest in the highest bit.
+  std::uint64_t below = place == 0 ? 0 : words_[word % kWords] << (kWordBits - place);
+  if (word > 0) below |= words_[(word - 1) % kWords] >> place;
   std::uint32_t bits = 0;
-  for (std::uint32_t k = 0; k < 32 && k < newest_; ++k) {
-    if (bit(newest_ - 1 - k)) bits |= 1U << k;
+  for (std::uint32_t k = 0; k < 32; ++k, below <<= 1U) {
+    bits |= static_cast<std::uint32_t>(below >> (kWordBits - 1)) << k;
   }
   return bits;
 }

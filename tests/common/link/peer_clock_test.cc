@@ -1,6 +1,11 @@
 #include "common/link/peer_clock.h"
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 namespace palp::link {
 namespace {
@@ -26,6 +31,26 @@ TEST(RecentMinimumTest, AnOldOneDoesNotReplaceANewerSecond) {
   minimum.add(3ms, at(20s));
   minimum.add(1ms, at(4s));  // the same bin, a round before
   EXPECT_EQ(minimum.least(at(20s)), Duration{3ms});
+}
+
+RC_GTEST_PROP(RecentMinimumTest, AgreesWithALookThroughAll, ()) {
+  RecentMinimum minimum;
+  std::vector<std::pair<std::int64_t, Duration>> all;  // second, value
+  std::int64_t milliseconds = 0;
+  std::int64_t newest = 0;
+  for (int i = 0; i < 200; ++i) {
+    milliseconds = std::max<std::int64_t>(0, milliseconds + *rc::gen::inRange(-300, 2000));
+    const Duration value{*rc::gen::inRange(-1000, 1000)};
+    minimum.add(value, at(milliseconds * 1ms));
+    all.emplace_back(milliseconds / 1000, value);
+    newest = std::max(newest, milliseconds);
+    const std::int64_t now = newest + (i % 3 == 0 ? 1500 : 0);
+    std::optional<Duration> expected;
+    for (const auto& [second, one] : all) {
+      if (second > now / 1000 - 16) expected = std::min(expected.value_or(one), one);
+    }
+    RC_ASSERT(minimum.least(at(now * 1ms)) == expected);
+  }
 }
 
 TEST(PeerClockTest, TakesTheHoldOffTheWay) {
