@@ -43,7 +43,6 @@ std::optional<Duration> RecentMinimum::least(TimePoint now) const noexcept {
 
 bool PeerClock::add_round_trip(TimePoint echo, Duration hold, TimePoint arrived_at) noexcept {
   const Duration round_trip = (arrived_at - echo) - hold;
-  if (echo > arrived_at) return false;
   // The hold is told in whole microseconds: on a link without delay it may round past zero.
   constexpr Duration kHoldResolution = std::chrono::microseconds{1};
   if (round_trip < -kHoldResolution) return false;

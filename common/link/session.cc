@@ -244,7 +244,7 @@ void Session::on_bye(const Bye& bye, SessionOutput& out) {
     return;
   }
   const std::string text = bye.text.empty() ? "no reason given" : bye.text;
-  if (present_ && bye.peer_session_id == present_->own && bye.session_id == present_->peer) {
+  if (present_ && bye.session_id == present_->peer) {
     forget_session();
     repeat_ = config_.repeat_max;  // it went on purpose
     next_hello_at_.reset();

@@ -28,6 +28,7 @@ struct Party {
   std::vector<Refused> refused;
   std::vector<Closed> closed;
   Lane* out{};
+  bool hands_over{true};  ///< false: its Link has not heard of the session yet
 
   Party(const SessionConfig& config, std::uint64_t entropy) : session{config, entropy} {}
 
@@ -36,7 +37,7 @@ struct Party {
     if (!output.event) return;
     if (const auto* event = std::get_if<Established>(&*output.event)) {
       established.push_back(*event);
-      link_session = event->session_id;  // as io does with the Link
+      if (hands_over) link_session = event->session_id;  // as io does with the Link
       state = LinkState::Down;
     } else if (const auto* refusal = std::get_if<Refused>(&*output.event)) {
       refused.push_back(*refusal);
@@ -224,6 +225,11 @@ TEST(SessionTest, ASecondSurgeonIsRefusedWhileTheLinkHolds) {
     const auto heard = second.on_datagram(answer.datagrams[0].view(), town.now);
     EXPECT_FALSE(std::get<Refused>(heard.event.value()).final);
     EXPECT_TRUE(town.patient->session.established());
+
+    const auto again = second.tick(town.now + 2s, LinkState::Down, 0);
+    const auto same = town.patient->session.on_datagram(again.datagrams.at(0).view(), town.now);
+    EXPECT_EQ(same.datagrams.size(), 1U);
+    EXPECT_FALSE(same.event);  // people were told
   }
 }
 
@@ -312,9 +318,11 @@ TEST(SessionTest, ByeOfAStrangerEndsNothing) {
   town.both(LinkState::Live);
   town.run(1ms);
   const Established& session = town.surgeon->established.back();
-  for (const Bye& bye : {Bye{session.peer_session_id, 0, ByeReason::Leaving, ""},
-                         Bye{session.peer_session_id, 12345, ByeReason::Mismatch, ""},
-                         Bye{12345, 67890, ByeReason::Leaving, ""}}) {
+  for (const Bye& bye :
+       {Bye{session.peer_session_id, 0, ByeReason::Leaving, ""},
+        Bye{session.peer_session_id, 12345, ByeReason::Mismatch, ""},
+        Bye{12345, town.patient->established.back().peer_session_id, ByeReason::Busy, ""},
+        Bye{12345, 67890, ByeReason::Leaving, ""}}) {
     const Bytes bytes = datagram_of(PacketType::Close, encode(bye));
     EXPECT_FALSE(town.surgeon->session.on_datagram(bytes, town.now).event);
   }
@@ -378,6 +386,46 @@ TEST(SessionTest, APatientDoesNotAnswerAPatient) {
   const auto mirrored = two.on_datagram(own.datagrams.at(0).view(), TimePoint{});
   EXPECT_FALSE(mirrored.event);
   EXPECT_TRUE(mirrored.datagrams.empty());
+}
+
+TEST(SessionTest, AMirrorIsNotTakenForAPeer) {
+  Town town;
+  std::vector<Bytes> answers;
+  town.down.fate = [&](std::uint64_t, const Bytes& bytes) {
+    answers.push_back(bytes);
+    return std::vector<Release>{{Duration{0}, bytes}};
+  };
+  town.run(100ms);
+  ASSERT_FALSE(answers.empty());
+  const auto out = town.patient->session.on_datagram(answers.back(), town.now);
+  EXPECT_FALSE(out.event);
+  EXPECT_TRUE(out.datagrams.empty());
+}
+
+TEST(SessionTest, BeforeTheHandoverIsDoneTheSessionIsNotTakenForEnded) {
+  Town town;
+  town.surgeon->hands_over = false;
+  town.run(50ms);
+  EXPECT_TRUE(town.surgeon->session.established());
+  EXPECT_TRUE(town.surgeon->closed.empty());
+}
+
+TEST(SessionTest, AnotherPatientDoesNotDisturbASurgeonWhoseLinkWorks) {
+  Town town;
+  town.run(1s);
+  const ControlBytes question =
+      town.surgeon->session.tick(town.now + 2s, LinkState::Lost, town.surgeon->link_session)
+          .datagrams.at(0);
+  Session other{config_of(Role::Patient), 8};
+  const auto answer = other.on_datagram(question.view(), town.now);
+  ASSERT_EQ(answer.datagrams.size(), 1U);
+  for (const LinkState state : {LinkState::Live, LinkState::Hold, LinkState::Lost}) {
+    town.surgeon->state = state;
+    town.run(1ms);
+    const auto out = town.surgeon->session.on_datagram(answer.datagrams[0].view(), town.now);
+    EXPECT_FALSE(out.event);
+    EXPECT_EQ(out.datagrams.size(), state == LinkState::Lost ? 1U : 0U);  // offers a new session
+  }
 }
 
 TEST(SessionTest, AReplayOfAWholeConversationStartsNothing) {
