@@ -29,6 +29,16 @@ inline Fate after(Duration delay) {
   };
 }
 
+/// Loses the datagrams with these indices, delays the others.
+inline Fate losing(std::vector<std::uint64_t> lost, Duration delay = Duration{0}) {
+  return [=](std::uint64_t index, const Bytes& bytes) {
+    const bool gone = std::find(lost.begin(), lost.end(), index) != lost.end();
+    return gone ? std::vector<Release>{} : std::vector<Release>{{delay, bytes}};
+  };
+}
+
+inline const Fate kCut = [](std::uint64_t, const Bytes&) { return std::vector<Release>{}; };
+
 /// One direction.
 class Lane {
  public:
