@@ -1,0 +1,441 @@
+#include "common/config/command_line.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include "common/config/number.h"
+#include "common/config/settings_text.h"
+#include "common/core/check.h"
+
+namespace palp::config {
+namespace {
+
+using Values = std::vector<std::string>;
+
+Ending bad_input(std::string text) { return {ExitCode::BadInput, std::move(text)}; }
+
+std::optional<Ending> as_ending(const Result<void>& result) {
+  return result ? std::nullopt : std::optional{bad_input(result.error().text)};
+}
+
+std::string with_unit(const std::string& meaning, const std::string& unit) {
+  return unit == "1" ? meaning : meaning + " [" + unit + ']';
+}
+
+Result<double> read_number(const std::string& flag,
+                           const std::string& text,
+                           const NumberRange& range) {
+  const auto number = parse_number(text);
+  const std::string limits = range_text(range.min, range.max, range.unit);
+  if (!number) {
+    return fail(flag + " = " + printable(text) + " is not a number: " + limits);
+  }
+  if (*number < range.min || *number > range.max) {
+    return fail(flag + " = " + printable(text) + " is out of range: " + limits);
+  }
+  return *number;
+}
+
+Result<std::uint64_t> read_whole(const std::string& flag,
+                                 const std::string& text,
+                                 const WholeRange& range) {
+  const auto number = parse_whole(text);
+  if (number && *number >= range.min && *number <= range.max) {
+    return *number;
+  }
+  return fail(flag + " = " + printable(text) +
+              (number ? " is out of range: " : " is not a whole number: ") +
+              std::to_string(range.min) + " to " + std::to_string(range.max) +
+              (range.unit == "1" ? "" : ' ' + range.unit));
+}
+
+/// What was declared of one flag or argument.
+struct Declared {
+  std::string name;
+  CLI::Option* option{};
+  std::function<Result<void>(const Values&)> take;  ///< called with at least one value
+  bool once{true};
+  bool required{};
+};
+
+}  // namespace
+
+struct CommandLine::Parts {
+  std::string program;
+  std::unique_ptr<CLI::App> owned;  ///< of the program; verbs are owned by it
+  CLI::App* app{};
+  std::vector<Declared> declared;
+  std::vector<std::unique_ptr<CommandLine>> verbs;
+  bool verb_needed{true};
+
+  Document* document{};
+  std::string config_file;
+  Values overrides;
+  std::vector<std::array<std::string, 3>> knobs;  ///< given: path, value, flag
+
+  void declare(const std::string& name,
+               const std::string& placeholder,
+               const std::string& meaning,
+               bool once,
+               std::function<Result<void>(const Values&)> take);
+  void declare_switch(const std::string& name,
+                      const std::string& meaning,
+                      std::function<Result<void>(const Values&)> take);
+  [[nodiscard]] std::optional<Ending> take_values();
+  [[nodiscard]] std::optional<Ending> fill_document();
+  [[nodiscard]] std::optional<Ending> take_all();
+  [[nodiscard]] std::optional<Ending> unexpected_word() const;
+};
+
+void CommandLine::Parts::declare(const std::string& name,
+                                 const std::string& placeholder,
+                                 const std::string& meaning,
+                                 bool once,
+                                 std::function<Result<void>(const Values&)> take) {
+  // Values stay texts: the parser splits the line, what a text means is decided here.
+  const auto keep = [](const CLI::results_t&) { return true; };
+  CLI::Option* const option = app->add_option(name, keep, meaning);
+  const bool positional = name.front() != '-';
+  option->type_name(positional ? "" : placeholder);
+  option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  if (positional && !once) {
+    option->expected(-1);
+  } else {
+    option->expected(1)->allow_extra_args(false);
+  }
+  declared.push_back({.name = name, .option = option, .take = std::move(take), .once = once});
+}
+
+void CommandLine::Parts::declare_switch(const std::string& name,
+                                        const std::string& meaning,
+                                        std::function<Result<void>(const Values&)> take) {
+  declared.push_back(
+      {.name = name, .option = app->add_flag(name, meaning), .take = std::move(take)});
+}
+
+std::optional<Ending> CommandLine::Parts::take_values() {
+  for (const Declared& one : declared) {
+    const Values& values = one.option->results();
+    if (values.empty()) {
+      if (one.required) {
+        return bad_input(one.name + " is missing; see --help");
+      }
+      continue;
+    }
+    if (one.once && values.size() > 1) {
+      return bad_input(one.name + " is given " + std::to_string(values.size()) +
+                       " times, at most once is meant");
+    }
+    for (const std::string& value : values) {
+      if (value.rfind("--", 0) == 0) {  // the next flag, taken for the value
+        return bad_input(one.name + " needs a value, not " + printable(value));
+      }
+    }
+    if (auto ending = as_ending(one.take(values))) {
+      return ending;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Ending> CommandLine::Parts::fill_document() {
+  if (document == nullptr) {
+    return std::nullopt;
+  }
+  if (!config_file.empty()) {
+    const auto text = read_whole_file(config_file);
+    if (!text) {
+      return Ending{ExitCode::CannotOpen, "--config: " + text.error().text};
+    }
+    if (auto ending = as_ending(document->merge(*text, config_file))) {
+      return ending;
+    }
+  }
+  for (const std::string& assignment : overrides) {
+    if (auto ending = as_ending(document->set(assignment))) {
+      ending->text = "--set " + ending->text;
+      return ending;
+    }
+  }
+  for (const auto& [path, value, flag] : knobs) {
+    if (auto ending = as_ending(document->set(path, value, flag))) {
+      return ending;
+    }
+  }
+  return as_ending(document->check());
+}
+
+std::optional<Ending> CommandLine::Parts::take_all() {
+  if (auto ending = take_values()) {
+    return ending;
+  }
+  return fill_document();
+}
+
+std::optional<Ending> CommandLine::Parts::unexpected_word() const {
+  std::string names;
+  bool chosen = false;
+  for (const auto& verb : verbs) {
+    names += (names.empty() ? "" : ", ") + verb->parts_->app->get_name();
+    chosen = chosen || verb->parts_->app->parsed();
+  }
+  const auto left = app->remaining(true);
+  if (!left.empty()) {
+    const std::string word = '"' + printable(left.front()) + '"';
+    if (!chosen && !names.empty() && left.front().front() != '-') {
+      return bad_input(word + " is no verb of " + program + ", there are: " + names);
+    }
+    return bad_input(word + " is not expected here; see --help");
+  }
+  if (!chosen && !names.empty() && verb_needed) {
+    return bad_input("a verb is missing, one of: " + names);
+  }
+  return std::nullopt;
+}
+
+CommandLine::CommandLine(const std::string& program, const std::string& description)
+    : parts_{std::make_unique<Parts>()} {
+  parts_->program = program;
+  parts_->owned = std::make_unique<CLI::App>(description, program);
+  parts_->app = parts_->owned.get();
+  parts_->app->set_help_flag("--help,-h", "print this and exit");
+  parts_->app->set_version_flag(
+      "--version", program + " (palp) " PALP_VERSION, "print the version and exit");
+  parts_->app->allow_extras();  // to word the complaint ourselves
+}
+
+CommandLine::CommandLine(std::unique_ptr<Parts> parts) : parts_{std::move(parts)} {}
+CommandLine::~CommandLine() = default;
+
+CommandLine& CommandLine::verb(const std::string& name, const std::string& description) {
+  auto parts = std::make_unique<Parts>();
+  parts->program = parts_->program + ' ' + name;
+  parts->app = parts_->app->add_subcommand(name, description);
+  parts->app->allow_extras();
+  parts_->app->require_subcommand(0, 1);
+  parts_->verbs.push_back(std::unique_ptr<CommandLine>{new CommandLine{std::move(parts)}});
+  return *parts_->verbs.back();
+}
+
+void CommandLine::verbs_optional() { parts_->verb_needed = false; }
+
+void CommandLine::text(const std::string& flag,
+                       std::string& value,
+                       const std::string& placeholder,
+                       const std::string& meaning) {
+  parts_->declare(flag, placeholder, meaning, true, [flag, &value](const Values& given) {
+    if (given.front().empty() || given.front().find('\0') != std::string::npos) {
+      return Result<void>{fail(flag + " is empty")};
+    }
+    value = given.front();
+    return Result<void>{};
+  });
+}
+
+void CommandLine::choice(const std::string& flag,
+                         std::string& value,
+                         const std::vector<std::string>& choices,
+                         const std::string& meaning) {
+  std::string names;
+  for (const std::string& name : choices) {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  const std::string preset = value.empty() ? "" : ", default " + value;
+  parts_->declare(
+      flag,
+      "NAME",
+      meaning + ": " + names + preset,
+      true,
+      [flag, &value, choices, names](const Values& given) -> Result<void> {
+        if (std::find(choices.begin(), choices.end(), given.front()) == choices.end()) {
+          return fail(flag + " = " + printable(given.front()) + " is not one of: " + names);
+        }
+        value = given.front();
+        return {};
+      });
+}
+
+void CommandLine::number(const std::string& flag,
+                         double& value,
+                         const NumberRange& range,
+                         const std::string& meaning) {
+  parts_->declare(flag,
+                  "X",
+                  with_unit(meaning, range.unit) + ", " + range_text(range.min, range.max, "") +
+                      ", default " + number_text(value),
+                  true,
+                  [flag, &value, range](const Values& given) {
+                    return read_number(flag, given.front(), range).map([&value](double number) {
+                      value = number;
+                    });
+                  });
+}
+
+void CommandLine::number(const std::string& flag,
+                         std::optional<double>& value,
+                         const NumberRange& range,
+                         const std::string& meaning) {
+  parts_->declare(flag,
+                  "X",
+                  with_unit(meaning, range.unit) + ", " + range_text(range.min, range.max, ""),
+                  true,
+                  [flag, &value, range](const Values& given) {
+                    return read_number(flag, given.front(), range).map([&value](double number) {
+                      value = number;
+                    });
+                  });
+}
+
+void CommandLine::whole(const std::string& flag,
+                        std::uint64_t& value,
+                        const WholeRange& range,
+                        const std::string& meaning) {
+  parts_->declare(
+      flag,
+      "N",
+      with_unit(meaning, range.unit) + ", default " + std::to_string(value),
+      true,
+      [flag, &value, range](const Values& given) {
+        return read_whole(flag, given.front(), range).map([&value](std::uint64_t n) { value = n; });
+      });
+}
+
+void CommandLine::whole(const std::string& flag,
+                        std::optional<std::uint64_t>& value,
+                        const WholeRange& range,
+                        const std::string& meaning) {
+  parts_->declare(
+      flag, "N", with_unit(meaning, range.unit), true, [flag, &value, range](const Values& given) {
+        return read_whole(flag, given.front(), range).map([&value](std::uint64_t n) { value = n; });
+      });
+}
+
+void CommandLine::endpoint(const std::string& flag,
+                           std::optional<Endpoint>& value,
+                           std::uint16_t port_min,
+                           const std::string& meaning) {
+  parts_->declare(flag, "HOST:PORT", meaning, true, [flag, &value, port_min](const Values& given) {
+    return parse_endpoint(given.front(), port_min)
+        .map([&value](const Endpoint& there) { value = there; })
+        .map_error([&flag](const Error& error) { return Error{flag + ": " + error.text}; });
+  });
+}
+
+void CommandLine::toggle(const std::string& flag, bool& value, const std::string& meaning) {
+  parts_->declare_switch(flag, meaning, [&value](const Values&) {
+    value = true;
+    return Result<void>{};
+  });
+}
+
+void CommandLine::argument(const std::string& name,
+                           std::string& value,
+                           const std::string& meaning) {
+  text(name, value, "", meaning);
+}
+
+void CommandLine::arguments(const std::string& name,
+                            std::vector<std::string>& values,
+                            const std::string& meaning) {
+  parts_->declare(name, "", meaning, false, [&values](const Values& given) {
+    values = given;
+    return Result<void>{};
+  });
+  required();
+}
+
+void CommandLine::settings(Document& document) {
+  PALP_CHECK(parts_->document == nullptr, "one document for one command line");
+  parts_->document = &document;
+  text("--config", parts_->config_file, "FILE", "settings, in protobuf's text format");
+  parts_->declare(
+      "--set", "PATH=VALUE", "one setting; may be repeated", false, [this](const Values& given) {
+        parts_->overrides = given;
+        return Result<void>{};
+      });
+  parts_->app->footer("Settings, for --config and --set:\n" + document.describe());
+}
+
+void CommandLine::knob(const std::string& flag, const std::string& path) {
+  PALP_CHECK(parts_->document != nullptr, "settings() comes before knob()");
+  const std::string meaning = parts_->document->describe(path);
+  if (parts_->document->is_switch(path)) {
+    parts_->declare_switch(flag, meaning, [this, flag, path](const Values&) {
+      parts_->knobs.push_back({path, "true", flag});
+      return Result<void>{};
+    });
+    return;
+  }
+  parts_->declare(flag, "VALUE", meaning, true, [this, flag, path](const Values& given) {
+    parts_->knobs.push_back({path, given.front(), flag});
+    return Result<void>{};
+  });
+}
+
+void CommandLine::required() {
+  PALP_CHECK(!parts_->declared.empty(), "required() follows a declaration");
+  parts_->declared.back().required = true;
+}
+
+std::optional<Ending> CommandLine::parse(int argc, const char* const* argv) {
+  PALP_CHECK(parts_->owned != nullptr, "the program parses, not its verbs");
+  CLI::App& app = *parts_->app;
+  const auto prefixed = [this](Ending ending) {
+    ending.text = parts_->program + ": " + ending.text;
+    return ending;
+  };
+  try {
+    app.parse(std::max(argc, 1), argv);  // an empty argv has no program name either
+  } catch (const CLI::CallForHelp&) {
+    return Ending{ExitCode::Done, app.help()};
+  } catch (const CLI::CallForVersion& version) {
+    return Ending{ExitCode::Done, std::string{version.what()} + '\n'};
+  } catch (const CLI::ArgumentMismatch& mismatch) {  // "--seed: 1 required N missing"
+    const std::string_view what{mismatch.what()};
+    return prefixed(bad_input(printable(what.substr(0, what.find(':'))) + " needs a value"));
+  } catch (const CLI::ParseError& error) {
+    return prefixed(bad_input(printable(error.what())));
+  }
+  std::optional<Ending> ending = parts_->unexpected_word();
+  if (!ending) {
+    ending = parts_->take_all();
+  }
+  for (const auto& verb : parts_->verbs) {
+    if (!ending && verb->parts_->app->parsed()) {
+      ending = verb->parts_->take_all();
+    }
+  }
+  return ending ? std::optional{prefixed(*ending)} : std::nullopt;
+}
+
+bool CommandLine::given(std::string_view flag) const {
+  for (const Declared& one : parts_->declared) {
+    if (one.name == flag) {
+      return !one.option->empty();
+    }
+  }
+  PALP_CHECK(false, "given() asks for a flag that was declared");
+  return false;
+}
+
+std::string CommandLine::chosen_verb() const {
+  for (const auto& verb : parts_->verbs) {
+    if (verb->parts_->app->parsed()) {
+      return verb->parts_->app->get_name();
+    }
+  }
+  return {};
+}
+
+int leave(const Ending& ending) {
+  const bool done = ending.code == ExitCode::Done;
+  const bool ended = !ending.text.empty() && ending.text.back() == '\n';
+  (void)std::fputs((ending.text + (ended ? "" : "\n")).c_str(), done ? stdout : stderr);
+  return exit_status(ending.code);
+}
+
+}  // namespace palp::config

@@ -1,0 +1,92 @@
+#include "common/config/report.h"
+
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "common/config/number.h"
+
+namespace palp::config {
+namespace {
+
+tl::unexpected<Error> cannot_write(const std::string& path, int error) {
+  return fail("cannot write " + printable(path) + ": " + std::generic_category().message(error));
+}
+
+/// Zero, or the error number.
+int write_all(int file, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(file, text.data(), text.size());
+    if (written < 0 && errno != EINTR) {
+      return errno;
+    }
+    text.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
+  }
+  return 0;
+}
+
+/// Writes `text` into `path`, made or emptied first. Zero, or the error number.
+int fill_file(const std::string& path, std::string_view text, bool sync) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) {
+    return errno;
+  }
+  int error = write_all(file, text);
+  if (error == 0 && sync && ::fsync(file) != 0) {
+    error = errno;
+  }
+  if (::close(file) != 0 && error == 0) {
+    error = errno;
+  }
+  return error;
+}
+
+/// So that the new name survives a power cut; a folder that cannot be synced is no error.
+void sync_folder(const std::filesystem::path& file) {
+  const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
+  const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (handle >= 0) {
+    (void)::fsync(handle);
+    (void)::close(handle);
+  }
+}
+
+}  // namespace
+
+Result<void> write_whole_file(const std::string& path, std::string_view text) {
+  struct stat there {};
+  const bool exists = ::stat(path.c_str(), &there) == 0;
+  if (exists && S_ISDIR(there.st_mode)) {
+    return cannot_write(path, EISDIR);
+  }
+  if (exists && !S_ISREG(there.st_mode)) {  // renaming would put a file in the place of the device
+    const int error = fill_file(path, text, false);
+    return error == 0 ? Result<void>{} : cannot_write(path, error);
+  }
+  std::string target = path;
+  if (exists) {  // a link stays a link: the file behind it is replaced
+    std::error_code unresolved;
+    const auto resolved = std::filesystem::canonical(path, unresolved);
+    target = unresolved ? path : resolved.string();
+  }
+  const std::string temporary = target + ".partial." + std::to_string(::getpid());
+  int error = fill_file(temporary, text, true);
+  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) {
+    error = errno;
+  }
+  if (error != 0) {
+    (void)::unlink(temporary.c_str());
+    return cannot_write(path, error);
+  }
+  sync_folder(target);
+  return {};
+}
+
+std::string json_number(double value) { return std::isfinite(value) ? number_text(value) : "null"; }
+
+}  // namespace palp::config

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "common/core/result.h"
+
+/// Writing what scripts read.
+namespace palp::config {
+
+/// The file is there whole or not at all: written to a temporary name in the same folder, synced,
+/// renamed. A device or a pipe (/dev/stdout) is written to directly. Blocks; not for a control
+/// thread. The error is a CannotOpen.
+[[nodiscard]] Result<void> write_whole_file(const std::string& path, std::string_view text);
+
+/// A JSON number that reads back as the same double, or "null" where it is not finite.
+[[nodiscard]] std::string json_number(double value);
+
+}  // namespace palp::config
