@@ -84,7 +84,7 @@ struct CommandLine::Parts {
                std::function<Result<void>(const Values&)> take);
   void declare_switch(const std::string& name,
                       const std::string& meaning,
-                      std::function<Result<void>(const Values&)> take);
+                      std::function<void()> take);
   [[nodiscard]] std::optional<Ending> take_values();
   [[nodiscard]] std::optional<Ending> fill_document();
   [[nodiscard]] std::optional<Ending> take_all();
@@ -112,9 +112,15 @@ void CommandLine::Parts::declare(const std::string& name,
 
 void CommandLine::Parts::declare_switch(const std::string& name,
                                         const std::string& meaning,
-                                        std::function<Result<void>(const Values&)> take) {
-  declared.push_back(
-      {.name = name, .option = app->add_flag(name, meaning), .take = std::move(take)});
+                                        std::function<void()> take) {
+  const auto take_one = [name, take = std::move(take)](const Values& given) -> Result<void> {
+    if (given.front() != "true") {  // which the parser puts there for a bare "--flag"
+      return fail(name + " takes no value");
+    }
+    take();
+    return {};
+  };
+  declared.push_back({.name = name, .option = app->add_flag(name, meaning), .take = take_one});
 }
 
 std::optional<Ending> CommandLine::Parts::take_values() {
@@ -326,10 +332,7 @@ void CommandLine::endpoint(const std::string& flag,
 }
 
 void CommandLine::toggle(const std::string& flag, bool& value, const std::string& meaning) {
-  parts_->declare_switch(flag, meaning, [&value](const Values&) {
-    value = true;
-    return Result<void>{};
-  });
+  parts_->declare_switch(flag, meaning, [&value] { value = true; });
 }
 
 void CommandLine::argument(const std::string& name,
@@ -364,9 +367,8 @@ void CommandLine::knob(const std::string& flag, const std::string& path) {
   PALP_CHECK(parts_->document != nullptr, "settings() comes before knob()");
   const std::string meaning = parts_->document->describe(path);
   if (parts_->document->is_switch(path)) {
-    parts_->declare_switch(flag, meaning, [this, flag, path](const Values&) {
+    parts_->declare_switch(flag, meaning, [this, flag, path] {
       parts_->knobs.push_back({path, "true", flag});
-      return Result<void>{};
     });
     return;
   }

@@ -1,0 +1,343 @@
+#include "common/config/command_line.h"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+#include <unistd.h>
+
+#include "common/config/report.h"
+#include "proto/config.pb.h"
+
+namespace palp::config {
+namespace {
+
+using testing::HasSubstr;
+
+std::optional<Ending> parse(CommandLine& line, const std::vector<std::string>& words) {
+  std::vector<const char*> argv{"program"};
+  for (const std::string& word : words) {
+    argv.push_back(word.c_str());
+  }
+  return line.parse(static_cast<int>(argv.size()), argv.data());
+}
+
+/// A program with a flag of each kind, and what it read.
+struct Program {
+  CommandLine line{"palp-x", "does x"};
+  std::string report;
+  std::string mode{"exact"};
+  double rate{1};
+  std::uint64_t count{10};
+  std::optional<double> limit;
+  std::optional<std::uint64_t> seed;
+  std::optional<Endpoint> peer;
+  bool bare{};
+
+  Program() {
+    line.text("--report", report, "FILE", "where the report goes");
+    line.choice("--mode", mode, {"exact", "netem-6.1"}, "which one");
+    line.number("--rate-hz", rate, {.min = 0.5, .max = 50, .unit = "Hz"}, "how often");
+    line.whole("--count", count, {.min = 1, .max = 100, .unit = "packets"}, "how many");
+    line.number("--limit-n", limit, {.min = -1, .max = 1, .unit = "N"}, "how far");
+    line.whole("--seed", seed, {.min = 0, .max = UINT64_MAX}, "seed of the run");
+    line.endpoint("--peer", peer, 1, "where to");
+    line.toggle("--bare", bare, "without bytes");
+  }
+};
+
+/// The sentence that `words` get, without the program's name; the code must be BadInput.
+std::string refusal(const std::vector<std::string>& words) {
+  Program program;
+  const auto ending = parse(program.line, words);
+  if (!ending) {
+    return "";
+  }
+  EXPECT_EQ(ending->code, ExitCode::BadInput);
+  EXPECT_EQ(ending->text.rfind("palp-x: ", 0), 0U) << ending->text;
+  return ending->text.substr(8);
+}
+
+TEST(CommandLineTest, ReadsFlagsOfEveryKind) {
+  Program program;
+  EXPECT_FALSE(program.line.given("--report"));
+  ASSERT_FALSE(parse(program.line,
+                     {"--report",
+                      "a.json",
+                      "--mode=netem-6.1",
+                      "--rate-hz",
+                      "2.5",
+                      "--count",
+                      "7",
+                      "--limit-n",
+                      "-0.5",
+                      "--seed",
+                      "18446744073709551615",
+                      "--peer",
+                      "127.0.0.1:9000",
+                      "--bare"}));
+  EXPECT_EQ(program.report, "a.json");
+  EXPECT_EQ(program.mode, "netem-6.1");
+  EXPECT_EQ(program.rate, 2.5);
+  EXPECT_EQ(program.count, 7U);
+  EXPECT_EQ(program.limit, -0.5);
+  EXPECT_EQ(program.seed, UINT64_MAX);
+  EXPECT_EQ(program.peer, (Endpoint{.address = "127.0.0.1", .port = 9000}));
+  EXPECT_TRUE(program.bare);
+  EXPECT_TRUE(program.line.given("--report"));
+}
+
+TEST(CommandLineTest, KeepsDefaultsOfWhatIsNotGiven) {
+  Program program;
+  ASSERT_FALSE(parse(program.line, {}));
+  EXPECT_EQ(program.rate, 1);
+  EXPECT_EQ(program.count, 10U);
+  EXPECT_FALSE(program.limit);
+  EXPECT_FALSE(program.seed);
+  EXPECT_FALSE(program.bare);
+}
+
+TEST(CommandLineTest, NamesFlagValueAndLimit) {
+  EXPECT_EQ(refusal({"--rate-hz", "50.5"}), "--rate-hz = 50.5 is out of range: 0.5 to 50 Hz");
+  EXPECT_EQ(refusal({"--rate-hz", "fast"}), "--rate-hz = fast is not a number: 0.5 to 50 Hz");
+  EXPECT_EQ(refusal({"--count", "0"}), "--count = 0 is out of range: 1 to 100 packets");
+  EXPECT_EQ(refusal({"--count", "-3"}), "--count = -3 is not a whole number: 1 to 100 packets");
+  EXPECT_EQ(refusal({"--mode", "fast"}), "--mode = fast is not one of: exact, netem-6.1");
+  EXPECT_EQ(
+      refusal({"--peer", "here:9"}),
+      "--peer: \"here\" in \"here:9\" is not a numeric address: 127.0.0.1, [::1] or localhost");
+}
+
+TEST(CommandLineTest, HoldsRangesOnBothSidesOfTheirBorders) {
+  EXPECT_EQ(refusal({"--rate-hz", "0.5"}), "");
+  EXPECT_EQ(refusal({"--rate-hz", "50"}), "");
+  EXPECT_NE(refusal({"--rate-hz", "0.4999999999999999"}), "");
+  EXPECT_NE(refusal({"--rate-hz", "50.00000000000001"}), "");
+  EXPECT_EQ(refusal({"--count", "1"}), "");
+  EXPECT_EQ(refusal({"--count", "100"}), "");
+  EXPECT_NE(refusal({"--count", "101"}), "");
+  EXPECT_NE(refusal({"--seed", "18446744073709551616"}), "");
+  EXPECT_NE(refusal({"--peer", "127.0.0.1:0"}), "");
+}
+
+TEST(CommandLineTest, RefusesWhatIsNotWhollyAFiniteNumber) {
+  for (const char* value : {"nan", "inf", "-inf", "1e999", "2x", " 2", "2 ", "+2", "0x2", ""}) {
+    EXPECT_NE(refusal({"--rate-hz", value}), "") << value;
+  }
+}
+
+TEST(CommandLineTest, RefusesUnknownMissingAndRepeated) {
+  EXPECT_EQ(refusal({"--nothing"}), "\"--nothing\" is not expected here; see --help");
+  EXPECT_EQ(refusal({"word"}), "\"word\" is not expected here; see --help");
+  EXPECT_EQ(refusal({"--report"}), "--report needs a value");
+  EXPECT_EQ(refusal({"--report", "--bare"}), "--report needs a value, not --bare");
+  EXPECT_EQ(refusal({"--report", ""}), "--report is empty");
+  EXPECT_EQ(refusal({"--seed", "1", "--seed", "2"}),
+            "--seed is given 2 times, at most once is meant");
+  EXPECT_EQ(refusal({"--bare=maybe"}), "--bare takes no value");
+  EXPECT_EQ(refusal({"--bare=false"}), "--bare takes no value");
+  EXPECT_NE(refusal({"--rep", "a"}), "") << "no abbreviations";
+}
+
+TEST(CommandLineTest, HelpSaysMeaningUnitRangeAndDefault) {
+  Program program;
+  const auto ending = parse(program.line, {"--help"});
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, ExitCode::Done);
+  EXPECT_THAT(ending->text, HasSubstr("does x"));
+  EXPECT_THAT(ending->text, HasSubstr("how often [Hz], 0.5 to 50, default 1"));
+  EXPECT_THAT(ending->text, HasSubstr("--peer HOST:PORT"));
+}
+
+TEST(CommandLineTest, HelpWinsOverMistakes) {
+  Program program;
+  const auto ending = parse(program.line, {"--help", "--nothing", "--rate-hz", "x"});
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, ExitCode::Done);
+}
+
+TEST(CommandLineTest, VersionNamesTheProgram) {
+  Program program;
+  const auto ending = parse(program.line, {"--version"});
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, ExitCode::Done);
+  EXPECT_EQ(ending->text.rfind("palp-x (palp) 0.", 0), 0U) << ending->text;
+}
+
+/// A program with verbs, each with flags and arguments of its own.
+struct VerbProgram {
+  CommandLine line{"palp-v", "has verbs"};
+  CommandLine& run{line.verb("run", "runs a scenario")};
+  CommandLine& merge{line.verb("merge", "merges files")};
+  std::string scenario;
+  std::optional<std::uint64_t> seed;
+  std::vector<std::string> files;
+
+  VerbProgram() {
+    run.argument("SCENARIO", scenario, "what to run");
+    run.required();
+    run.whole("--seed", seed, {.min = 0, .max = 9}, "seed");
+    merge.arguments("FILES", files, "what to merge");
+  }
+};
+
+std::string verb_refusal(const std::vector<std::string>& words) {
+  VerbProgram program;
+  const auto ending = parse(program.line, words);
+  return ending ? ending->text : "";
+}
+
+TEST(CommandLineTest, ReadsVerbsAndArguments) {
+  VerbProgram program;
+  ASSERT_FALSE(parse(program.line, {"run", "standard", "--seed", "3"}));
+  EXPECT_EQ(program.line.chosen_verb(), "run");
+  EXPECT_EQ(program.scenario, "standard");
+  EXPECT_EQ(program.seed, 3U);
+  VerbProgram other;
+  ASSERT_FALSE(parse(other.line, {"merge", "a", "b", "c"}));
+  EXPECT_EQ(other.line.chosen_verb(), "merge");
+  EXPECT_THAT(other.files, testing::ElementsAre("a", "b", "c"));
+}
+
+TEST(CommandLineTest, RefusesWrongVerbsAndArguments) {
+  EXPECT_EQ(verb_refusal({}), "palp-v: a verb is missing, one of: run, merge");
+  EXPECT_EQ(verb_refusal({"walk"}), "palp-v: \"walk\" is no verb of palp-v, there are: run, merge");
+  EXPECT_EQ(verb_refusal({"run"}), "palp-v: SCENARIO is missing; see --help");
+  EXPECT_EQ(verb_refusal({"merge"}), "palp-v: FILES is missing; see --help");
+  EXPECT_EQ(verb_refusal({"run", "a", "b"}), "palp-v: \"b\" is not expected here; see --help");
+  EXPECT_EQ(verb_refusal({"run", "a", "--seed", "10"}),
+            "palp-v: --seed = 10 is out of range: 0 to 9");
+  EXPECT_NE(verb_refusal({"run", "a", "merge", "b"}), "");
+  EXPECT_NE(verb_refusal({"merge", "a", "--seed", "1"}), "") << "a flag of another verb";
+}
+
+TEST(CommandLineTest, HelpOfAVerbIsItsOwn) {
+  VerbProgram program;
+  const auto ending = parse(program.line, {"run", "--help"});
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, ExitCode::Done);
+  EXPECT_THAT(ending->text, HasSubstr("SCENARIO"));
+}
+
+TEST(CommandLineTest, VerbsMayBeOptional) {
+  VerbProgram program;
+  program.line.verbs_optional();
+  ASSERT_FALSE(parse(program.line, {}));
+  EXPECT_EQ(program.line.chosen_verb(), "");
+}
+
+/// A site, as its main() would declare it.
+class SettingsFlagsTest : public testing::Test {
+ protected:
+  SettingsFlagsTest() {
+    line_.settings(document_);
+    line_.knob("--delay-ms", "impairment.delay_ms");
+    line_.knob("--listen", "listen");
+    line_.knob("--insecure", "link.insecure");
+  }
+  ~SettingsFlagsTest() override { std::filesystem::remove(file_); }
+
+  [[nodiscard]] const proto::config::PatientConfig& patient() const {
+    return document_.as<proto::config::PatientConfig>();
+  }
+
+  Document document_{patient_document()};
+  CommandLine line_{"palp-patient", "the patient site"};
+  std::string file_{(std::filesystem::temp_directory_path() /
+                     ("palp_command_line_test_" + std::to_string(::getpid()) + ".conf"))
+                        .string()};
+};
+
+TEST_F(SettingsFlagsTest, FlagsBeatSetWhichBeatsTheFileWhichBeatsDefaults) {
+  ASSERT_TRUE(write_whole_file(
+      file_, "impairment { delay_ms: 1 jitter_ms: 1 loss: 0.5 } motion_gate { force_limit_n: 1 }"));
+  ASSERT_FALSE(parse(line_,
+                     {"--delay-ms",
+                      "3",
+                      "--set",
+                      "impairment.delay_ms=2",
+                      "--set",
+                      "impairment.jitter_ms=2",
+                      "--config",
+                      file_,
+                      "--insecure"}));
+  EXPECT_EQ(patient().impairment().delay_ms(), 3);
+  EXPECT_EQ(patient().impairment().jitter_ms(), 2);
+  EXPECT_EQ(patient().impairment().loss(), 0.5);
+  EXPECT_EQ(patient().motion_gate().force_limit_n(), 1);
+  EXPECT_EQ(patient().motion_gate().force_stop_n(), 5);
+  EXPECT_TRUE(patient().link().insecure());
+}
+
+TEST_F(SettingsFlagsTest, NamesTheFlagOfABadKnob) {
+  const auto ending = parse(line_, {"--delay-ms", "nan"});
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, ExitCode::BadInput);
+  EXPECT_EQ(ending->text,
+            "palp-patient: --delay-ms = nan is not a number: one-way delay [ms], 0 to 5000, "
+            "default 0");
+}
+
+TEST_F(SettingsFlagsTest, NamesThePathOfABadSetting) {
+  const auto ending = parse(line_, {"--set", "motion_gate.force_limit_n=12"});
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, ExitCode::BadInput);
+  EXPECT_EQ(ending->text,
+            "palp-patient: --set motion_gate.force_limit_n = 12 is out of range: 0.1 to 10 N");
+}
+
+TEST_F(SettingsFlagsTest, NamesThePlaceInABadFile) {
+  ASSERT_TRUE(write_whole_file(file_, "seed: 1\nseed: x\n"));
+  const auto ending = parse(line_, {"--config", file_});
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, ExitCode::BadInput);
+  EXPECT_THAT(ending->text, HasSubstr(":2:"));
+}
+
+TEST_F(SettingsFlagsTest, AFileThatCannotBeReadIsCannotOpen) {
+  const auto ending = parse(line_, {"--config", "/nowhere/a.conf"});
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, ExitCode::CannotOpen);
+  EXPECT_EQ(ending->text,
+            "palp-patient: --config: cannot read /nowhere/a.conf: No such file or directory");
+}
+
+TEST_F(SettingsFlagsTest, ChecksRelationsWhenAllIsTogether) {
+  const auto ending = parse(line_, {"--set", "link.hold_after_ms=600"});
+  ASSERT_TRUE(ending);
+  EXPECT_THAT(ending->text, HasSubstr("is above link.lost_after_ms = 500 ms"));
+}
+
+TEST_F(SettingsFlagsTest, HelpListsFlagsAndEverySetting) {
+  const auto ending = parse(line_, {"--help"});
+  ASSERT_TRUE(ending);
+  EXPECT_THAT(ending->text, HasSubstr("one-way delay [ms], 0 to 5000, default 0"));
+  EXPECT_THAT(ending->text, HasSubstr("motion_gate.force_limit_n"));
+  EXPECT_THAT(ending->text, HasSubstr("simulated_phantom.sensor_noise_mn"));
+}
+
+RC_GTEST_PROP(CommandLineTest, GarbageGetsOneSentence, (const std::vector<std::string>& noise)) {
+  std::vector<std::string> words;
+  for (const std::string& word : noise) {
+    words.push_back(word.substr(0, word.find('\0')));
+    if (word.size() % 3 == 0) {
+      words.emplace_back("--rate-hz");
+    }
+  }
+  Program program;
+  const auto ending = parse(program.line, words);
+  RC_ASSERT(!ending || ending->code == ExitCode::Done ||
+            (ending->code == ExitCode::BadInput && ending->text.find('\n') == std::string::npos));
+}
+
+TEST(LeaveTest, GivesTheExitStatusOfEachCode) {
+  EXPECT_EQ(leave({ExitCode::Done, "done"}), 0);
+  EXPECT_EQ(leave({ExitCode::Missed, "missed"}), 1);
+  EXPECT_EQ(leave({ExitCode::BadInput, "bad"}), 2);
+  EXPECT_EQ(leave({ExitCode::CannotOpen, "closed"}), 3);
+  EXPECT_EQ(leave({ExitCode::CutShort, "cut"}), 4);
+}
+
+}  // namespace
+}  // namespace palp::config

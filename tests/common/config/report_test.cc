@@ -1,0 +1,92 @@
+#include "common/config/report.h"
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "common/config/settings_text.h"
+
+namespace palp::config {
+namespace {
+
+/// A folder of its own, removed at the end.
+class ReportTest : public testing::Test {
+ protected:
+  ReportTest() { std::filesystem::create_directories(folder_); }
+  ~ReportTest() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string path(const std::string& name) const {
+    return (folder_ / name).string();
+  }
+  [[nodiscard]] std::size_t file_count() const {
+    std::size_t count = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator{folder_}) {
+      ++count;
+    }
+    return count;
+  }
+
+ private:
+  std::filesystem::path folder_{std::filesystem::temp_directory_path() /
+                                ("palp_report_test_" + std::to_string(::getpid()) + '_' +
+                                 testing::UnitTest::GetInstance()->current_test_info()->name())};
+};
+
+TEST_F(ReportTest, WritesWholeFilesAndLeavesNothingElse) {
+  ASSERT_TRUE(write_whole_file(path("a.json"), "{}\n"));
+  ASSERT_TRUE(write_whole_file(path("a.json"), "{\"schema\": 1}\n"));
+  EXPECT_EQ(read_whole_file(path("a.json")), "{\"schema\": 1}\n");
+  EXPECT_EQ(file_count(), 1U);
+}
+
+TEST_F(ReportTest, AReaderOfTheOldFileKeepsIt) {
+  ASSERT_TRUE(write_whole_file(path("a.json"), "old"));
+  std::filesystem::create_hard_link(path("a.json"), path("held"));
+  ASSERT_TRUE(write_whole_file(path("a.json"), "new"));
+  EXPECT_EQ(read_whole_file(path("held")), "old");  // replaced by renaming, not overwritten
+}
+
+TEST_F(ReportTest, FollowsALinkInsteadOfReplacingIt) {
+  ASSERT_TRUE(write_whole_file(path("real"), "old"));
+  std::filesystem::create_symlink("real", path("link"));
+  ASSERT_TRUE(write_whole_file(path("link"), "new"));
+  EXPECT_TRUE(std::filesystem::is_symlink(path("link")));
+  EXPECT_EQ(read_whole_file(path("real")), "new");
+}
+
+TEST_F(ReportTest, WritesIntoDevicesAndPipesWithoutReplacingThem) {
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  const auto read_end = std::filesystem::path{path("pipe")};
+  const int reader = ::open(read_end.c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  EXPECT_TRUE(write_whole_file(path("pipe"), "text"));
+  char got[8] = {};
+  EXPECT_EQ(::read(reader, got, sizeof got), 4);
+  (void)::close(reader);
+  EXPECT_TRUE(std::filesystem::is_fifo(path("pipe")));
+}
+
+TEST_F(ReportTest, SaysWhyItCannotWrite) {
+  EXPECT_EQ(write_whole_file(path("none/a.json"), "x").error().text,
+            "cannot write " + path("none/a.json").substr(0, 80) +
+                (path("none/a.json").size() > 80 ? "..." : "") + ": No such file or directory");
+  std::filesystem::create_directory(path("folder"));
+  EXPECT_FALSE(write_whole_file(path("folder"), "x"));
+  EXPECT_FALSE(write_whole_file("", "x"));
+  EXPECT_EQ(file_count(), 1U);  // the folder: no partial file stays
+}
+
+TEST(JsonNumberTest, WritesNullForWhatIsNotFinite) {
+  EXPECT_EQ(json_number(0.1), "0.1");
+  EXPECT_EQ(json_number(-3), "-3");
+  EXPECT_EQ(json_number(std::nan("")), "null");
+  EXPECT_EQ(json_number(std::numeric_limits<double>::infinity()), "null");
+}
+
+}  // namespace
+}  // namespace palp::config
