@@ -212,6 +212,7 @@ CommandLine::CommandLine(const std::string& program, const std::string& descript
   parts_->app->set_version_flag(
       "--version", program + " (palp) " PALP_VERSION, "print the version and exit");
   parts_->app->allow_extras();  // to word the complaint ourselves
+  parts_->app->get_formatter()->label("SUBCOMMAND", "VERB");
 }
 
 CommandLine::CommandLine(std::unique_ptr<Parts> parts) : parts_{std::move(parts)} {}
@@ -222,6 +223,8 @@ CommandLine& CommandLine::verb(const std::string& name, const std::string& descr
   parts->program = parts_->program + ' ' + name;
   parts->app = parts_->app->add_subcommand(name, description);
   parts->app->allow_extras();
+  parts->app->fallthrough();  // the program's own flags may stand behind the verb too
+  parts->app->group("Verbs");
   parts_->app->require_subcommand(0, 1);
   parts_->verbs.push_back(std::unique_ptr<CommandLine>{new CommandLine{std::move(parts)}});
   return *parts_->verbs.back();

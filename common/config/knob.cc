@@ -143,12 +143,15 @@ Result<void> check_relation(const Message& settings,
   return {};
 }
 
+bool is_share(const FieldDescriptor& field) { return knob_of(field).unit() == "share"; }
+
 std::string describe_knob(const FieldDescriptor& field) {
   const proto::config::Knob& knob = knob_of(field);
   std::string text = knob.means();
   if (is_number(field)) {
-    text += knob.unit() == "1" ? ", " : " [" + knob.unit() + "], ";
-    text += range_text(knob.min(), knob.max(), "");
+    const bool bare = knob.unit() == "1" || knob.unit() == "share";
+    text += bare ? ", " : " [" + knob.unit() + "], ";
+    text += range_text(knob.min(), knob.max(), bare ? knob.unit() : "");
   } else if (knob.one_of_size() > 0) {
     text += ": " + choices(knob);
   }

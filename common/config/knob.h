@@ -32,6 +32,9 @@ namespace palp::config {
                                           const google::protobuf::FieldDescriptor& field,
                                           const std::string& name);
 
+/// The field is a fraction of a whole.
+[[nodiscard]] bool is_share(const google::protobuf::FieldDescriptor& field);
+
 /// "k_p of eq. (1) [N/m], 0 to 2000, default 200": what --help says about a field.
 [[nodiscard]] std::string describe_knob(const google::protobuf::FieldDescriptor& field);
 

@@ -28,6 +28,14 @@ std::optional<double> parse_number(std::string_view text) noexcept {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
+std::optional<double> parse_share(std::string_view text) noexcept {
+  if (!text.ends_with('%')) {
+    return parse_number(text);
+  }
+  const auto percent = parse_number(text.substr(0, text.size() - 1));
+  return percent ? std::optional{*percent / 100} : std::nullopt;
+}
+
 std::optional<std::uint64_t> parse_whole(std::string_view text) noexcept {
   return parse<std::uint64_t>(text);
 }
@@ -52,7 +60,9 @@ std::string printable(std::string_view text) {
 
 std::string range_text(double min, double max, std::string_view unit) {
   std::string text = number_text(min) + " to " + number_text(max);
-  if (!unit.empty() && unit != "1") {
+  if (unit == "share") {
+    text += " (" + number_text(100 * min) + "% to " + number_text(100 * max) + "%)";
+  } else if (!unit.empty() && unit != "1") {
     text.append(" ").append(unit);
   }
   return text;

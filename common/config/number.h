@@ -11,6 +11,9 @@ namespace palp::config {
 
 [[nodiscard]] std::optional<double> parse_number(std::string_view text) noexcept;
 
+/// As parse_number(); also "5%" for 0.05.
+[[nodiscard]] std::optional<double> parse_share(std::string_view text) noexcept;
+
 /// Digits only.
 [[nodiscard]] std::optional<std::uint64_t> parse_whole(std::string_view text) noexcept;
 /// Digits, and "-" before them.
@@ -23,7 +26,7 @@ namespace palp::config {
 /// with "..." after 80 characters.
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// "0.1 to 10 N"; the unit "1" or "" is left out.
+/// "0.1 to 10 N"; the unit "1" or "" is left out; "share": "0 to 1 (0% to 100%)".
 [[nodiscard]] std::string range_text(double min, double max, std::string_view unit);
 
 }  // namespace palp::config

@@ -86,7 +86,7 @@ Result<void> write_value(std::string_view value, const std::string& shown, const
       writer.SetBool(target.group, target.field, value == "true");
       return {};
     case FieldDescriptor::CPPTYPE_DOUBLE:
-      if (const auto number = parse_number(value)) {
+      if (const auto number = is_share(*target.field) ? parse_share(value) : parse_number(value)) {
         writer.SetDouble(target.group, target.field, *number);
         return {};
       }

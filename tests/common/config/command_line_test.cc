@@ -200,6 +200,20 @@ TEST(CommandLineTest, ReadsVerbsAndArguments) {
   EXPECT_THAT(other.files, testing::ElementsAre("a", "b", "c"));
 }
 
+TEST(CommandLineTest, TakesFlagsOfTheProgramOnBothSidesOfTheVerb) {
+  for (const bool behind : {false, true}) {
+    VerbProgram program;
+    std::string report;
+    program.line.text("--report", report, "FILE", "report");
+    using Words = std::vector<std::string>;
+    ASSERT_FALSE(parse(program.line,
+                       behind ? Words{"run", "standard", "--report", "r", "--seed", "3"}
+                              : Words{"--report", "r", "run", "standard", "--seed", "3"}));
+    EXPECT_EQ(report, "r");
+    EXPECT_EQ(program.seed, 3U);
+  }
+}
+
 TEST(CommandLineTest, RefusesWrongVerbsAndArguments) {
   EXPECT_EQ(verb_refusal({}), "palp-v: a verb is missing, one of: run, merge");
   EXPECT_EQ(verb_refusal({"walk"}), "palp-v: \"walk\" is no verb of palp-v, there are: run, merge");

@@ -26,6 +26,16 @@ TEST(NumberTest, RefusesWhatIsNotWhollyAFiniteNumber) {
   }
 }
 
+TEST(NumberTest, ReadsSharesAsFractionOrPerCent) {
+  EXPECT_EQ(parse_share("0.05"), 0.05);
+  EXPECT_EQ(parse_share("5%"), 0.05);
+  EXPECT_EQ(parse_share("100%"), 1.0);
+  for (const char* text : {"", "%", "5 %", "5%%", "nan%", "5%x"}) {
+    EXPECT_FALSE(parse_share(text)) << text;
+  }
+  EXPECT_EQ(range_text(0, 1, "share"), "0 to 1 (0% to 100%)");
+}
+
 RC_GTEST_PROP(NumberTest, TextReadsBackAsTheSameNumber, (double value)) {
   RC_PRE(std::isfinite(value));
   RC_ASSERT(parse_number(number_text(value)) == value);

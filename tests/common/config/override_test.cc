@@ -34,6 +34,15 @@ TEST(OverrideTest, SetsFieldsOfEveryKind) {
   EXPECT_EQ(patient.simulated_phantom().phantom(), "file:a=b.csv");
 }
 
+TEST(OverrideTest, TakesSharesInPerCent) {
+  PatientConfig patient;
+  ASSERT_TRUE(apply_override("impairment.loss=5%", patient));
+  EXPECT_EQ(patient.impairment().loss(), 0.05);
+  EXPECT_EQ(error_of("impairment.loss=101%"),
+            "impairment.loss = 1.01 is out of range: 0 to 1 (0% to 100%)");
+  EXPECT_THAT(error_of("impairment.delay_ms=5%"), HasSubstr("is not a number"));
+}
+
 TEST(OverrideTest, LaterBeatsEarlier) {
   PatientConfig patient;
   ASSERT_TRUE(apply_override("seed=1", patient));
