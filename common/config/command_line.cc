@@ -1,6 +1,7 @@
 #include "common/config/command_line.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <functional>
 #include <utility>
@@ -22,35 +23,10 @@ std::optional<Ending> as_ending(const Result<void>& result) {
   return result ? std::nullopt : std::optional{bad_input(result.error().text)};
 }
 
-std::string with_unit(const std::string& meaning, const std::string& unit) {
-  return unit == "1" ? meaning : meaning + " [" + unit + ']';
-}
-
-Result<double> read_number(const std::string& flag,
-                           const std::string& text,
-                           const NumberRange& range) {
-  const auto number = parse_number(text);
-  const std::string limits = range_text(range.min, range.max, range.unit);
-  if (!number) {
-    return fail(flag + " = " + printable(text) + " is not a number: " + limits);
-  }
-  if (*number < range.min || *number > range.max) {
-    return fail(flag + " = " + printable(text) + " is out of range: " + limits);
-  }
-  return *number;
-}
-
-Result<std::uint64_t> read_whole(const std::string& flag,
-                                 const std::string& text,
-                                 const WholeRange& range) {
-  const auto number = parse_whole(text);
-  if (number && *number >= range.min && *number <= range.max) {
-    return *number;
-  }
-  return fail(flag + " = " + printable(text) +
-              (number ? " is out of range: " : " is not a whole number: ") +
-              std::to_string(range.min) + " to " + std::to_string(range.max) +
-              (range.unit == "1" ? "" : ' ' + range.unit));
+/// The last step of reading a value.
+template <class Variable>
+auto store_in(Variable& variable) {
+  return [&variable](const auto& value) { variable = value; };
 }
 
 /// What was declared of one flag or argument.
@@ -183,22 +159,21 @@ std::optional<Ending> CommandLine::Parts::take_all() {
 }
 
 std::optional<Ending> CommandLine::Parts::unexpected_word() const {
-  std::string names;
-  bool chosen = false;
+  Values names;
   for (const auto& verb : verbs) {
-    names += (names.empty() ? "" : ", ") + verb->parts_->app->get_name();
-    chosen = chosen || verb->parts_->app->parsed();
+    names.push_back(verb->parts_->app->get_name());
   }
+  const bool chosen = !app->get_subcommands().empty();
   const auto left = app->remaining(true);
   if (!left.empty()) {
     const std::string word = '"' + printable(left.front()) + '"';
     if (!chosen && !names.empty() && left.front().front() != '-') {
-      return bad_input(word + " is no verb of " + program + ", there are: " + names);
+      return bad_input(word + " is no verb of " + program + ", there are: " + list_text(names));
     }
     return bad_input(word + " is not expected here; see --help");
   }
   if (!chosen && !names.empty() && verb_needed) {
-    return bad_input("a verb is missing, one of: " + names);
+    return bad_input("a verb is missing, one of: " + list_text(names));
   }
   return std::nullopt;
 }
@@ -249,78 +224,51 @@ void CommandLine::choice(const std::string& flag,
                          std::string& value,
                          const std::vector<std::string>& choices,
                          const std::string& meaning) {
-  std::string names;
-  for (const std::string& name : choices) {
-    names += (names.empty() ? "" : ", ") + name;
-  }
   const std::string preset = value.empty() ? "" : ", default " + value;
-  parts_->declare(
-      flag,
-      "NAME",
-      meaning + ": " + names + preset,
-      true,
-      [flag, &value, choices, names](const Values& given) -> Result<void> {
-        if (std::find(choices.begin(), choices.end(), given.front()) == choices.end()) {
-          return fail(flag + " = " + printable(given.front()) + " is not one of: " + names);
-        }
-        value = given.front();
-        return {};
-      });
+  const std::string said = meaning + ": " + list_text(choices) + preset;
+  parts_->declare(flag, "NAME", said, true, [flag, &value, choices](const Values& given) {
+    return read_choice(flag, given.front(), choices).map(store_in(value));
+  });
 }
 
 void CommandLine::number(const std::string& flag,
                          double& value,
                          const NumberRange& range,
                          const std::string& meaning) {
-  parts_->declare(flag,
-                  "X",
-                  with_unit(meaning, range.unit) + ", " + range_text(range.min, range.max, "") +
-                      ", default " + number_text(value),
-                  true,
-                  [flag, &value, range](const Values& given) {
-                    return read_number(flag, given.front(), range).map([&value](double number) {
-                      value = number;
-                    });
-                  });
+  const std::string said = describe(meaning, range) + ", default " + number_text(value);
+  parts_->declare(flag, "X", said, true, [flag, &value, range](const Values& given) {
+    return read_number(flag, given.front(), range).map(store_in(value));
+  });
 }
 
 void CommandLine::number(const std::string& flag,
                          std::optional<double>& value,
                          const NumberRange& range,
                          const std::string& meaning) {
-  parts_->declare(flag,
-                  "X",
-                  with_unit(meaning, range.unit) + ", " + range_text(range.min, range.max, ""),
-                  true,
-                  [flag, &value, range](const Values& given) {
-                    return read_number(flag, given.front(), range).map([&value](double number) {
-                      value = number;
-                    });
-                  });
+  const std::string said = describe(meaning, range);
+  parts_->declare(flag, "X", said, true, [flag, &value, range](const Values& given) {
+    return read_number(flag, given.front(), range).map(store_in(value));
+  });
 }
 
 void CommandLine::whole(const std::string& flag,
                         std::uint64_t& value,
                         const WholeRange& range,
                         const std::string& meaning) {
-  parts_->declare(
-      flag,
-      "N",
-      with_unit(meaning, range.unit) + ", default " + std::to_string(value),
-      true,
-      [flag, &value, range](const Values& given) {
-        return read_whole(flag, given.front(), range).map([&value](std::uint64_t n) { value = n; });
-      });
+  const std::string said = describe(meaning, range) + ", default " + std::to_string(value);
+  parts_->declare(flag, "N", said, true, [flag, &value, range](const Values& given) {
+    return read_whole(flag, given.front(), range).map(store_in(value));
+  });
 }
 
 void CommandLine::whole(const std::string& flag,
                         std::optional<std::uint64_t>& value,
                         const WholeRange& range,
                         const std::string& meaning) {
-  parts_->declare(
-      flag, "N", with_unit(meaning, range.unit), true, [flag, &value, range](const Values& given) {
-        return read_whole(flag, given.front(), range).map([&value](std::uint64_t n) { value = n; });
-      });
+  const std::string said = describe(meaning, range);
+  parts_->declare(flag, "N", said, true, [flag, &value, range](const Values& given) {
+    return read_whole(flag, given.front(), range).map(store_in(value));
+  });
 }
 
 void CommandLine::endpoint(const std::string& flag,
@@ -329,7 +277,7 @@ void CommandLine::endpoint(const std::string& flag,
                            const std::string& meaning) {
   parts_->declare(flag, "HOST:PORT", meaning, true, [flag, &value, port_min](const Values& given) {
     return parse_endpoint(given.front(), port_min)
-        .map([&value](const Endpoint& there) { value = there; })
+        .map(store_in(value))
         .map_error([&flag](const Error& error) { return Error{flag + ": " + error.text}; });
   });
 }

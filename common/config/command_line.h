@@ -10,20 +10,9 @@
 #include "common/config/document.h"
 #include "common/config/endpoint.h"
 #include "common/config/exit_code.h"
+#include "common/config/flag_value.h"
 
 namespace palp::config {
-
-/// Inclusive range of a flag and its unit ("1": none).
-struct NumberRange {
-  double min{};
-  double max{};
-  std::string unit{"1"};
-};
-struct WholeRange {
-  std::uint64_t min{};
-  std::uint64_t max{};
-  std::string unit{"1"};
-};
 
 /// Why a program ends before it began, and what it says.
 struct Ending {

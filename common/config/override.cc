@@ -114,7 +114,7 @@ Result<void> apply_value(std::string_view path,
 
 Result<void> apply_override(std::string_view assignment, Message& settings) {
   const auto equals = assignment.find('=');
-  if (equals == std::string_view::npos || equals == 0) {
+  if (equals == std::string_view::npos) {
     return fail('"' + printable(assignment) + "\" is not PATH=VALUE");
   }
   const auto path = assignment.substr(0, equals);

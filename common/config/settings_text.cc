@@ -27,7 +27,6 @@ using google::protobuf::Message;
 using google::protobuf::TextFormat;
 
 constexpr std::size_t kFileMax = std::size_t{1} << 20;  ///< [bytes]; people write a few thousand
-constexpr int kDepthMax = 20;                           ///< of groups in groups; the schema has 3
 
 /// Counted from 0; -1: not known.
 struct Place {
@@ -203,7 +202,6 @@ Result<void> merge_text(std::string_view text, std::string_view name, Message& s
   TextFormat::Parser parser;
   parser.RecordErrorsTo(&complaint);
   parser.WriteLocationsTo(&places);
-  parser.SetRecursionLimit(kDepthMax);
   if (!parser.ParseFromString(std::string{text}, parsed.get())) {
     return fail(sentence_at(name, complaint.place(), plain_words(complaint.text(), settings)));
   }

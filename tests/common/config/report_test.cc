@@ -77,7 +77,8 @@ TEST_F(ReportTest, SaysWhyItCannotWrite) {
                 (path("none/a.json").size() > 80 ? "..." : "") + ": No such file or directory");
   std::filesystem::create_directory(path("folder"));
   EXPECT_FALSE(write_whole_file(path("folder"), "x"));
-  EXPECT_FALSE(write_whole_file("", "x"));
+  EXPECT_FALSE(write_whole_file("", "x"));  // fails in renaming
+  EXPECT_FALSE(std::filesystem::exists(".partial." + std::to_string(::getpid())));
   EXPECT_EQ(file_count(), 1U);  // the folder: no partial file stays
 }
 

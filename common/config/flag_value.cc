@@ -1,0 +1,74 @@
+#include "common/config/flag_value.h"
+
+#include <algorithm>
+
+#include "common/config/number.h"
+
+namespace palp::config {
+namespace {
+
+std::string describe(const std::string& meaning,
+                     const std::string& unit,
+                     const std::string& range) {
+  return meaning + (unit == "1" ? "" : " [" + unit + ']') + ", " + range;
+}
+
+std::string range_of(const WholeRange& range) {
+  return std::to_string(range.min) + " to " + std::to_string(range.max);
+}
+
+}  // namespace
+
+Result<double> read_number(const std::string& flag,
+                           const std::string& text,
+                           const NumberRange& range) {
+  const auto number = parse_number(text);
+  const std::string limits = range_text(range.min, range.max, range.unit);
+  if (!number) {
+    return fail(flag + " = " + printable(text) + " is not a number: " + limits);
+  }
+  if (*number < range.min || *number > range.max) {
+    return fail(flag + " = " + printable(text) + " is out of range: " + limits);
+  }
+  return *number;
+}
+
+Result<std::uint64_t> read_whole(const std::string& flag,
+                                 const std::string& text,
+                                 const WholeRange& range) {
+  const auto number = parse_whole(text);
+  if (number && *number >= range.min && *number <= range.max) {
+    return *number;
+  }
+  return fail(flag + " = " + printable(text) +
+              (number ? " is out of range: " : " is not a whole number: ") +
+              std::to_string(range.min) + " to " + std::to_string(range.max) +
+              (range.unit == "1" ? "" : ' ' + range.unit));
+}
+
+Result<std::string> read_choice(const std::string& flag,
+                                const std::string& text,
+                                const std::vector<std::string>& choices) {
+  if (std::find(choices.begin(), choices.end(), text) == choices.end()) {
+    return fail(flag + " = " + printable(text) + " is not one of: " + list_text(choices));
+  }
+  return text;
+}
+
+std::string describe(const std::string& meaning, const NumberRange& range) {
+  return describe(meaning, range.unit, range_text(range.min, range.max, ""));
+}
+
+std::string describe(const std::string& meaning, const WholeRange& range) {
+  return describe(meaning, range.unit, range_of(range));
+}
+
+std::string list_text(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
+}
+
+}  // namespace palp::config
