@@ -16,10 +16,10 @@
 namespace palp::netem {
 
 struct RelayConfig {
-  Endpoint listen;   ///< the surgeon's side
-  Endpoint forward;  ///< the patient's
-  Impairment up;     ///< surgeon to patient
-  Impairment down;   ///< patient to surgeon
+  Endpoint listen{};   ///< the surgeon's side
+  Endpoint forward{};  ///< the patient's
+  Impairment up{};     ///< surgeon to patient
+  Impairment down{};   ///< patient to surgeon
   std::uint64_t seed{1};
   std::size_t in_flight_max{16384};  ///< datagrams each way: 2 s of delay at 8 kHz
   int priority{};                    ///< SCHED_FIFO 1..99 if permitted; 0: leave it as it is
@@ -49,6 +49,8 @@ class Relay {
   bool serve(Duration span);
 
   [[nodiscard]] Endpoint listening_on() const { return client_side_.local(); }
+  /// Where the patient sees us.
+  [[nodiscard]] Endpoint forwarding_from() const { return server_side_.local(); }
   [[nodiscard]] const std::optional<Endpoint>& client() const noexcept { return client_; }
   [[nodiscard]] bool real_time() const noexcept { return real_time_; }
   [[nodiscard]] const Channel& channel(Direction direction) const noexcept {

@@ -1,0 +1,358 @@
+#include "netem/fate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "common/core/random.h"
+#include "tests/netem/impairment_builders.h"
+
+namespace palp::netem {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::size_t kRoom = 1'000'000;
+
+/// The fates of `count` datagrams, one each `period`.
+std::vector<Fate> fates_of(const Impairment& impairment,
+                           std::size_t count,
+                           Duration period = milliseconds{1},
+                           std::uint64_t seed = 1,
+                           Direction direction = Direction::Up) {
+  FateSequence sequence{impairment, seed, direction, TimePoint{}};
+  std::vector<Fate> fates;
+  fates.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const TimePoint at{period * static_cast<std::int64_t>(i)};
+    fates.push_back(sequence.next({.at = at, .length = 200, .room = kRoom}));
+  }
+  return fates;
+}
+
+bool lost(const Fate& fate) { return fate.copies[0].verdict == Verdict::Lost; }
+
+double loss_share(const std::vector<Fate>& fates) {
+  const auto count = std::count_if(fates.begin(), fates.end(), lost);
+  return static_cast<double>(count) / static_cast<double>(fates.size());
+}
+
+struct Moments {
+  double mean{};    ///< [ms]
+  double stddev{};  ///< [ms]
+  double lag1{};    ///< [1]
+};
+
+Moments delay_moments(const std::vector<Fate>& fates) {
+  const auto n = static_cast<double>(fates.size());
+  const auto delay = [&](std::size_t i) { return seconds(fates[i].copies[0].delay) * 1e3; };
+  Moments moments;
+  for (std::size_t i = 0; i < fates.size(); ++i) moments.mean += delay(i) / n;
+  double variance = 0;
+  double product = 0;
+  for (std::size_t i = 0; i < fates.size(); ++i) {
+    const double off = delay(i) - moments.mean;
+    variance += off * off / n;
+    if (i > 0) product += off * (delay(i - 1) - moments.mean) / n;
+  }
+  moments.stddev = std::sqrt(variance);
+  moments.lag1 = product / variance;
+  return moments;
+}
+
+bool same(const Fate& left, const Fate& right) {
+  bool equal = left.index == right.index && left.count == right.count;
+  for (std::size_t copy = 0; copy < left.count && equal; ++copy) {
+    equal = left.copies[copy].verdict == right.copies[copy].verdict &&
+            left.copies[copy].delay == right.copies[copy].delay &&
+            left.copies[copy].release == right.copies[copy].release;
+  }
+  return equal;
+}
+
+// ---- repeatability
+
+constexpr const char* kEverything =
+    "delay 20ms 6ms distribution normal correlation-time 10ms loss 3% loss burst 2/s 20ms "
+    "loss gilbert-time 300ms 15ms 80% 1% duplicate 10% blackout 200ms 50ms order free";
+
+TEST(FateTest, SameSeedGivesTheSameFates) {
+  const auto once = fates_of(impaired(kEverything), 5000);
+  const auto again = fates_of(impaired(kEverything), 5000);
+  EXPECT_TRUE(std::equal(once.begin(), once.end(), again.begin(), same));
+}
+
+TEST(FateTest, AnotherSeedOrDirectionGivesOthers) {
+  const auto share_of_same = [](const std::vector<Fate>& left, const std::vector<Fate>& right) {
+    double equal = 0;
+    for (std::size_t i = 0; i < left.size(); ++i) equal += same(left[i], right[i]) ? 1 : 0;
+    return equal / static_cast<double>(left.size());
+  };
+  const auto words = impaired("delay 20ms 6ms loss 5% order free");
+  const auto up = fates_of(words, 2000);
+  EXPECT_LT(share_of_same(up, fates_of(words, 2000, milliseconds{1}, 2)), 0.02);
+  EXPECT_LT(share_of_same(up, fates_of(words, 2000, milliseconds{1}, 1, Direction::Down)), 0.02);
+}
+
+/// One stage of an impairment put back to nothing.
+Impairment without(const Impairment& impairment, int stage) {
+  Impairment less = impairment;
+  if (stage == 0) less.delay = {};
+  if (stage == 1) less.loss = 0;
+  if (stage == 2) less.burst = {};
+  if (stage == 3) less.gilbert = {};
+  if (stage == 4) less.duplicate = 0;
+  if (stage == 5) less.blackouts.clear();
+  return less;
+}
+
+RC_GTEST_PROP(FateTest, SwitchingAStageOffLeavesTheOtherDrawsAlone, ()) {
+  Impairment all = *any_impairment(milliseconds{200});
+  all.order = Order::Free;
+  const int off = *rc::gen::inRange(0, 6);
+  const std::uint64_t seed = *rc::gen::arbitrary<std::uint64_t>();
+  const auto with = fates_of(all, 300, milliseconds{1}, seed);
+  const auto less = fates_of(without(all, off), 300, milliseconds{1}, seed);
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    if (off != 4) RC_ASSERT(with[i].count == less[i].count);
+    for (std::size_t copy = 0; copy < std::min(with[i].count, less[i].count); ++copy) {
+      const CopyFate& before = with[i].copies[copy];
+      const CopyFate& after = less[i].copies[copy];
+      const bool both = before.verdict == Verdict::Delivered && after.verdict == Verdict::Delivered;
+      // What got through still does; with the stage a loss can only be added.
+      if (before.verdict == Verdict::Delivered) RC_ASSERT(both);
+      if (off != 0 && both) RC_ASSERT(before.delay == after.delay);
+      if (off == 0 || off == 4) RC_ASSERT(before.verdict == after.verdict);
+    }
+  }
+}
+
+// ---- loss
+
+class FateLossTest : public ::testing::TestWithParam<std::tuple<double, std::uint64_t>> {};
+
+TEST_P(FateLossTest, LosesTheShareThatWasAsked) {
+  const auto [p, seed] = GetParam();
+  Impairment impairment;
+  impairment.loss = p;
+  constexpr std::size_t kCount = 40'000;
+  const double se = std::sqrt(p * (1 - p) / kCount);
+  EXPECT_NEAR(loss_share(fates_of(impairment, kCount, milliseconds{1}, seed)), p, 4 * se);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shares,
+                         FateLossTest,
+                         ::testing::Combine(::testing::Values(0.0, 0.001, 0.05, 0.3, 0.9, 1.0),
+                                            ::testing::Values(1, 2, 77)));
+
+/// Lengths of the runs of losses [ms]; a run that touches an end does not count.
+std::vector<double> loss_runs_ms(const std::vector<Fate>& fates, Duration period) {
+  std::vector<double> runs;
+  std::size_t length = 0;
+  for (const Fate& fate : fates) {
+    if (lost(fate)) {
+      ++length;
+    } else {
+      if (length > 0) runs.push_back(static_cast<double>(length) * seconds(period) * 1e3);
+      length = 0;
+    }
+  }
+  return runs;
+}
+
+TEST(FateTest, BurstsLastEquallyLongAtAnySendingRate) {
+  const auto words = impaired("loss burst 2/s 40ms");
+  for (const Duration period : {Duration{4'000'000}, Duration{1'000'000}, Duration{250'000}}) {
+    const auto fates =
+        fates_of(words, static_cast<std::size_t>(std::chrono::minutes{2} / period), period);
+    const auto runs = loss_runs_ms(fates, period);
+    // A minute has 2/s * 60 s less what the bursts themselves take: 120 / (1 + 2 * 0.04).
+    EXPECT_NEAR(static_cast<double>(runs.size()), 222, 4 * std::sqrt(222.0));
+    for (const double run : runs) {
+      // Two bursts may touch, with nothing delivered between them.
+      EXPECT_NEAR(std::remainder(run, 40), 0, 1e-9) << "period " << seconds(period);
+    }
+  }
+}
+
+TEST(FateTest, BurstStartsMoreSeldomInAGapThanTheGapIsLong) {
+  // After one second of silence rate * dt would be 2: it saturates as a Poisson process does.
+  const auto fates = fates_of(impaired("loss burst 2/s 1us"), 20'000, std::chrono::seconds{1});
+  const double expected = 1 - std::exp(-2.0);
+  EXPECT_NEAR(loss_share(fates), expected, 4 * std::sqrt(expected * (1 - expected) / 20'000));
+}
+
+TEST(FateTest, GilbertStaysLastEquallyLongAtAnySendingRate) {
+  const auto words = impaired("loss gilbert-time 180ms 20ms");
+  for (const Duration period : {Duration{4'000'000}, Duration{250'000}}) {
+    const auto count = static_cast<std::size_t>(std::chrono::minutes{4} / period);
+    const auto fates = fates_of(words, count, period);
+    // Cycles of 200 ms: 1200 of them; the bad share of each has a relative spread of about
+    // sqrt(2) * 0.9, so its mean one of 0.9 * sqrt(2 / 1200).
+    EXPECT_NEAR(loss_share(fates), 0.1, 4 * 0.1 * 0.9 * std::sqrt(2.0 / 1200));
+    const auto runs = loss_runs_ms(fates, period);
+    double mean = 0;
+    for (const double run : runs) mean += run / static_cast<double>(runs.size());
+    // Seen through samples a run of exponential length is a geometric number of periods:
+    // T / (1 - exp(-T / 20 ms)), joined over good stays that no sample saw.
+    const double step = seconds(period) * 1e3;
+    EXPECT_NEAR(
+        mean, step / (1 - std::exp(-step / 20)), 4 * 20 / std::sqrt(runs.size()) + 0.04 * step);
+  }
+}
+
+TEST(FateTest, GilbertLosesInBothStatesWithTheirOwnShares) {
+  const auto fates = fates_of(impaired("loss gilbert-time 20ms 20ms 60% 10%"), 200'000);
+  // 5000 cycles of 40 ms; the state's share has an error of 0.25 * sqrt(2 * 2 / 5000) at most.
+  EXPECT_NEAR(loss_share(fates), 0.35, 4 * 0.5 * 0.25 * std::sqrt(4.0 / 5000));
+}
+
+TEST(FateTest, GilbertStaysOfTheSameIndexAreTheSameAtAnySendingRate) {
+  const auto words = impaired("loss gilbert-time 50ms 50ms");
+  const auto coarse = fates_of(words, 10'000, milliseconds{1});
+  const auto fine = fates_of(words, 40'000, Duration{250'000});
+  for (std::size_t i = 0; i < coarse.size(); ++i) {
+    ASSERT_EQ(lost(coarse[i]), lost(fine[4 * i])) << i;
+  }
+}
+
+TEST(FateTest, GilbertIsJudgedAfterAnyGapWithBoundedWork) {
+  FateSequence sequence{impaired("loss gilbert-time 100us 100us"), 3, Direction::Up, TimePoint{}};
+  int losses = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const TimePoint at{std::chrono::hours{i}};
+    losses += lost(sequence.next({.at = at, .length = 1, .room = 1})) ? 1 : 0;
+  }
+  EXPECT_NEAR(losses, 1000, 4 * std::sqrt(500.0));
+}
+
+TEST(FateTest, BlackoutTakesExactlyItsWindow) {
+  const auto fates = fates_of(impaired("blackout 12ms 3ms duplicate 100%"), 20);
+  for (std::size_t i = 0; i < fates.size(); ++i) {
+    const Verdict expected = i >= 12 && i < 15 ? Verdict::Blackout : Verdict::Delivered;
+    EXPECT_EQ(fates[i].copies[0].verdict, expected) << i;
+    EXPECT_EQ(fates[i].copies[1].verdict, expected) << i;
+  }
+}
+
+TEST(FateTest, DuplicatesTheAskedShareWithDelaysOfTheirOwn) {
+  const auto fates = fates_of(impaired("delay 20ms 5ms duplicate 20% order free"), 20'000);
+  double copies = 0;
+  double equal = 0;
+  for (const Fate& fate : fates) {
+    if (fate.count == 1) continue;
+    copies += 1;
+    if (fate.copies[0].delay == fate.copies[1].delay) equal += 1;
+  }
+  EXPECT_NEAR(copies, 4000, 4 * std::sqrt(20'000 * 0.2 * 0.8));
+  EXPECT_EQ(equal, 0);
+}
+
+TEST(FateTest, RefusesWhatFindsNoRoomOrIsTooLong) {
+  FateSequence sequence{impaired("duplicate 100%"), 1, Direction::Up, TimePoint{}};
+  const auto verdicts = [&](std::size_t length, std::size_t room) {
+    const Fate fate = sequence.next({.at = TimePoint{}, .length = length, .room = room});
+    return std::pair{fate.copies[0].verdict, fate.copies[1].verdict};
+  };
+  EXPECT_EQ(verdicts(1200, 2), (std::pair{Verdict::Delivered, Verdict::Delivered}));
+  EXPECT_EQ(verdicts(1200, 1), (std::pair{Verdict::Delivered, Verdict::OverLimit}));
+  EXPECT_EQ(verdicts(1200, 0), (std::pair{Verdict::OverLimit, Verdict::OverLimit}));
+  EXPECT_EQ(verdicts(1201, 9), (std::pair{Verdict::OverLimit, Verdict::OverLimit}));
+}
+
+// ---- delay
+
+TEST(FateTest, ConstantDelayIsExact) {
+  for (const Fate& fate : fates_of(impaired("delay 12.345678ms"), 100)) {
+    EXPECT_EQ(fate.copies[0].delay, Duration{12'345'678});
+  }
+}
+
+TEST(FateTest, DelaysHaveTheAskedMeanAndSpread) {
+  constexpr double kCount = 100'000;
+  // Standard errors of the mean, sd / sqrt(n), and of the spread, sd * sqrt((k - 1) / 4n) with the
+  // kurtosis k = 3 (normal) or 1.8 (uniform).
+  const auto normal =
+      delay_moments(fates_of(impaired("delay 50ms 10ms distribution normal"), 100'000));
+  EXPECT_NEAR(normal.mean, 50, 4 * 10 / std::sqrt(kCount));
+  EXPECT_NEAR(normal.stddev, 10, 4 * 10 * std::sqrt(2 / (4 * kCount)));
+  EXPECT_NEAR(normal.lag1, 0, 4 / std::sqrt(kCount));
+  const auto uniform = delay_moments(fates_of(impaired("delay 50ms 10ms"), 100'000));
+  const double spread = 10 / std::sqrt(3.0);
+  EXPECT_NEAR(uniform.mean, 50, 4 * spread / std::sqrt(kCount));
+  EXPECT_NEAR(uniform.stddev, spread, 4 * spread * std::sqrt(0.8 / (4 * kCount)));
+  EXPECT_NEAR(uniform.lag1, 0, 4 / std::sqrt(kCount));
+}
+
+TEST(FateTest, UniformDelaysStayInsideTheirInterval) {
+  for (const char* words : {"delay 50ms 10ms", "delay 50ms 10ms 90%"}) {
+    for (const Fate& fate : fates_of(impaired(words), 20'000)) {
+      EXPECT_GE(fate.copies[0].delay, milliseconds{40});
+      EXPECT_LE(fate.copies[0].delay, milliseconds{60});
+    }
+  }
+}
+
+TEST(FateTest, SuccessiveDelaysCorrelateAsAsked) {
+  for (const char* shape : {"uniform", "normal"}) {
+    for (const int percent : {0, 25, 50, 90}) {
+      const std::string words =
+          "delay 50ms 5ms " + std::to_string(percent) + "% distribution " + shape;
+      const auto moments = delay_moments(fates_of(impaired(words), 200'000));
+      EXPECT_NEAR(moments.lag1, percent / 100.0, 0.02) << words;
+      EXPECT_NEAR(moments.mean, 50, 0.3) << words;
+    }
+  }
+}
+
+TEST(FateTest, CorrelationInTimeIsTheSameAtAnySendingRate) {
+  const auto words = impaired("delay 50ms 5ms distribution normal correlation-time 40ms");
+  for (const Duration period : {Duration{4'000'000}, Duration{250'000}}) {
+    const auto moments = delay_moments(fates_of(words, 400'000, period));
+    EXPECT_NEAR(moments.lag1, std::exp(-seconds(period) / 0.04), 0.02);
+  }
+}
+
+TEST(FateTest, DelaysAreLiftedToTheFloorAndNeverNegative) {
+  // 0.2 T at sigma = 0.8 T: one standard deviation below the mean, 15.87 % of all.
+  const auto fates = fates_of(impaired("delay 10ms 8ms distribution normal floor 20%"), 50'000);
+  double floored = 0;
+  for (const Fate& fate : fates) {
+    EXPECT_GE(fate.copies[0].delay, milliseconds{2});
+    if (fate.copies[0].floored) {
+      EXPECT_EQ(fate.copies[0].delay, milliseconds{2});
+      floored += 1;
+    }
+  }
+  const double expected = normal_cdf(-1);
+  EXPECT_NEAR(floored / 50'000, expected, 4 * std::sqrt(expected * (1 - expected) / 50'000));
+  for (const Fate& fate : fates_of(impaired("delay 1ms 8ms order free"), 5000)) {
+    EXPECT_GE(fate.copies[0].delay, Duration{});
+  }
+}
+
+TEST(FateTest, KeptOrderReleasesNothingBeforeItsPredecessor) {
+  TimePoint last{};
+  for (const Fate& fate : fates_of(impaired("delay 50ms 20ms duplicate 10% loss 5%"), 20'000)) {
+    for (std::size_t copy = 0; copy < fate.count; ++copy) {
+      if (fate.copies[copy].verdict != Verdict::Delivered) continue;
+      EXPECT_GE(fate.copies[copy].release, last);
+      last = fate.copies[copy].release;
+    }
+  }
+}
+
+TEST(FateTest, ArrivalsThatGoBackInTimeCountAsTheNewest) {
+  FateSequence sequence{impaired("delay 10ms"), 1, Direction::Up, TimePoint{}};
+  const TimePoint start{milliseconds{100}};
+  (void)sequence.next({.at = start, .length = 1, .room = 9});
+  const Fate fate = sequence.next({.at = start - milliseconds{1}, .length = 1, .room = 9});
+  EXPECT_EQ(fate.copies[0].release, start + milliseconds{10});
+}
+
+}  // namespace
+}  // namespace palp::netem
