@@ -11,6 +11,7 @@
 
 #include "common/link/transport.h"
 #include "tests/netem/impairment_builders.h"
+#include "tests/netem/impairment_generators.h"
 
 namespace palp::netem {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "common/core/random.h"
 #include "tests/netem/impairment_builders.h"
+#include "tests/netem/impairment_generators.h"
 
 namespace palp::netem {
 namespace {

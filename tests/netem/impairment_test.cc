@@ -10,6 +10,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "tests/netem/impairment_builders.h"
+#include "tests/netem/impairment_generators.h"
 
 namespace palp::netem {
 namespace {
