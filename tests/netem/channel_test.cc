@@ -136,6 +136,35 @@ TEST(ChannelTest, HoldsExactlyItsLimit) {
   EXPECT_EQ(channel.in_flight(), 6U);
 }
 
+TEST(ChannelTest, LimitCountsWhatWasCollectedBeforeTheClockOfArrivalsGotThere) {
+  // A relay learns of an arrival late, by its stamp: by then it may have sent what was still on
+  // its way at that instant.
+  Channel channel{impaired("delay 10ms"), 1, Direction::Up, 1};
+  Buffer buffer{};
+  channel.push(numbered(0), at_ms(0));
+  EXPECT_TRUE(channel.pop(buffer, at_ms(12)));
+  channel.push(numbered(1), at_ms(9));
+  EXPECT_EQ(channel.counters().over_limit, 1U);
+  channel.push(numbered(2), at_ms(10));
+  EXPECT_EQ(channel.counters().over_limit, 1U);
+}
+
+TEST(ChannelTest, WhatIsDueTogetherLeavesAsItCame) {
+  // The floor makes half of the delays equal.
+  Channel channel{
+      impaired("delay 10ms 5ms distribution normal floor 100% order free"), 1, Direction::Up, 999};
+  Buffer buffer{};
+  for (std::uint64_t i = 0; i < 500; ++i) channel.push(numbered(i), at_ms(0));
+  std::uint64_t last = 0;
+  int together = 0;
+  while (const auto released = channel.pop(buffer, at_ms(10))) {
+    EXPECT_GE(released->index, last);
+    last = released->index;
+    ++together;
+  }
+  EXPECT_GT(together, 200);
+}
+
 TEST(ChannelTest, DropsWhatNobodyCollectsAndStaysWhole) {
   Channel channel{impaired("none"), 1, Direction::Up, 1};
   for (std::uint64_t i = 0; i < 10'000; ++i) channel.push(numbered(i), at_ms(0));
@@ -169,6 +198,17 @@ TEST(ChannelTest, ReleasesAtTheInstantAndNotBefore) {
   ASSERT_TRUE(released);
   EXPECT_EQ(released->arrived_at, at_ms(5));
   EXPECT_EQ(released->released_at, at_ms(55));
+}
+
+TEST(ChannelTest, AnArrivalBeforeTheNewestCountsAsThat) {
+  Channel channel{impaired("delay 50ms order free"), 1, Direction::Up, 16};
+  Buffer buffer{};
+  channel.push(numbered(0), at_ms(5));
+  channel.push(numbered(1), at_ms(3));
+  EXPECT_TRUE(channel.pop(buffer, at_ms(55)));
+  const auto released = channel.pop(buffer, at_ms(55));
+  ASSERT_TRUE(released);
+  EXPECT_EQ(released->arrived_at, at_ms(5));
 }
 
 TEST(ChannelTest, KeepsOrderWhenToldAndCountsOvertakingWhenNot) {

@@ -75,8 +75,6 @@ bool same(const Fate& left, const Fate& right) {
   return equal;
 }
 
-// ---- repeatability
-
 constexpr const char* kEverything =
     "delay 20ms 6ms distribution normal correlation-time 10ms loss 3% loss burst 2/s 20ms "
     "loss gilbert-time 300ms 15ms 80% 1% duplicate 10% blackout 200ms 50ms order free";
@@ -132,7 +130,20 @@ RC_GTEST_PROP(FateTest, SwitchingAStageOffLeavesTheOtherDrawsAlone, ()) {
   }
 }
 
-// ---- loss
+TEST(FateTest, StagesDrawIndependently) {
+  double both = 0;
+  double delay = 0;  // [ms], of what is neither lost nor duplicated
+  double count = 0;
+  for (const Fate& fate : fates_of(impaired("delay 50ms 10ms loss 50% duplicate 50%"), 40'000)) {
+    if (fate.count == 2 && lost(fate)) both += 1;
+    if (fate.count == 1 && !lost(fate)) {
+      delay += seconds(fate.copies[0].delay) * 1e3;
+      count += 1;
+    }
+  }
+  EXPECT_NEAR(both / 40'000, 0.25, 4 * std::sqrt(0.25 * 0.75 / 40'000));
+  EXPECT_NEAR(delay / count, 50, 4 * 10 / std::sqrt(3 * count));
+}
 
 class FateLossTest : public ::testing::TestWithParam<std::tuple<double, std::uint64_t>> {};
 
@@ -185,6 +196,14 @@ TEST(FateTest, BurstStartsMoreSeldomInAGapThanTheGapIsLong) {
   const auto fates = fates_of(impaired("loss burst 2/s 1us"), 20'000, std::chrono::seconds{1});
   const double expected = 1 - std::exp(-2.0);
   EXPECT_NEAR(loss_share(fates), expected, 4 * std::sqrt(expected * (1 - expected) / 20'000));
+}
+
+TEST(FateTest, NoBurstStartsInTheTimeThatABurstTook) {
+  // Packets 1 s apart. A burst takes its first one and the next; 0.5 s of the gap to the third are
+  // free of it, so that one starts another with 1 - exp(-0.25), later ones with 1 - exp(-0.5).
+  const auto fates = fates_of(impaired("loss burst 0.5/s 1500ms"), 40'000, std::chrono::seconds{1});
+  const double delivered = std::exp(-0.25) / (1 - std::exp(-0.5));  // per burst
+  EXPECT_NEAR(loss_share(fates), 2 / (2 + delivered), 0.012);       // 4 SE of 10,000 cycles
 }
 
 TEST(FateTest, GilbertStaysLastEquallyLongAtAnySendingRate) {
@@ -264,8 +283,6 @@ TEST(FateTest, RefusesWhatFindsNoRoomOrIsTooLong) {
   EXPECT_EQ(verdicts(1200, 0), (std::pair{Verdict::OverLimit, Verdict::OverLimit}));
   EXPECT_EQ(verdicts(1201, 9), (std::pair{Verdict::OverLimit, Verdict::OverLimit}));
 }
-
-// ---- delay
 
 TEST(FateTest, ConstantDelayIsExact) {
   for (const Fate& fate : fates_of(impaired("delay 12.345678ms"), 100)) {
@@ -348,7 +365,7 @@ TEST(FateTest, KeptOrderReleasesNothingBeforeItsPredecessor) {
 }
 
 TEST(FateTest, ArrivalsThatGoBackInTimeCountAsTheNewest) {
-  FateSequence sequence{impaired("delay 10ms"), 1, Direction::Up, TimePoint{}};
+  FateSequence sequence{impaired("delay 10ms order free"), 1, Direction::Up, TimePoint{}};
   const TimePoint start{milliseconds{100}};
   (void)sequence.next({.at = start, .length = 1, .room = 9});
   const Fate fate = sequence.next({.at = start - milliseconds{1}, .length = 1, .room = 9});
