@@ -147,6 +147,7 @@ TEST_F(RelayTest, RepliesBeforeAnyClientAreCountedNotSent) {
   }
   EXPECT_EQ(relay.traffic(Direction::Down).unsent, 1U);
   EXPECT_EQ(relay.traffic(Direction::Down).forwarded, 0U);
+  EXPECT_EQ(relay.traffic(Direction::Down).socket_errors, 0U);
   EXPECT_FALSE(relay.client());
 }
 
@@ -187,6 +188,19 @@ TEST_F(RelayTest, StopsWhenItsDescriptorBecomesReadable) {
 
 TEST_F(RelayTest, AnAddressInUseIsAnException) {
   EXPECT_THROW(DatagramSocket::bound(server_.local()), std::system_error);
+}
+
+TEST(DatagramSocketTest, AnEarlierRefusalDoesNotCostTheDatagramAtHand) {
+  Endpoint address;
+  {
+    const DatagramSocket gone = DatagramSocket::bound(kAnyPort);
+    address = gone.local();
+  }
+  DatagramSocket socket = DatagramSocket::connected(address);
+  EXPECT_TRUE(socket.send(saying(1), std::nullopt));
+  // On loopback the refusal is there before the call returns; the next call hears of it.
+  EXPECT_TRUE(socket.send(saying(2), std::nullopt));
+  EXPECT_EQ(socket.errors(), 1U);
 }
 
 TEST(EndpointTest, ReadsAddressesAndRefusesTheRest) {
