@@ -100,7 +100,9 @@ void Relay::release(Direction direction, Channel& channel, TimePoint now) noexce
     if (sent) {
       ++traffic.forwarded;
       traffic.delay.record(after - released->arrived_at);
-      if (after - released->released_at > kLate) ++traffic.late_releases;
+      const Duration late = after - released->released_at;
+      traffic.release_error.record(late < Duration{} ? -late : late);
+      if (late > kLate) ++traffic.late_releases;
       // A step up or down at each call ends where half of the calls take longer.
       lead_ += after - before > lead_ ? kLeadStep : -kLeadStep;
       lead_ = std::clamp(lead_, Duration{}, kLeadMax);

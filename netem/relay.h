@@ -33,6 +33,7 @@ struct RelayTraffic {
   std::uint64_t late_releases{};  ///< sent more than 60 us after their time
   std::uint64_t socket_errors{};  ///< of the socket that this direction leaves by
   Histogram delay;                ///< from the kernel's arrival stamp to the end of the send call
+  Histogram release_error;        ///< distance of the end of the send call from the time decided
 };
 
 /// The impaired path as a process: two UDP ports with a Channel for each direction between them.

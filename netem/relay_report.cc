@@ -21,6 +21,11 @@ ordered_json quantile_ms(const Histogram& histogram, double share) {
   return milliseconds(histogram.quantile(share));
 }
 
+ordered_json quantile_us(const Histogram& histogram, double share) {
+  if (histogram.count() == 0) return nullptr;
+  return milliseconds(histogram.quantile(share)) * 1e3;
+}
+
 ordered_json mean_ms(const Histogram& histogram) {
   if (histogram.count() == 0) return nullptr;
   return milliseconds(histogram.mean());
@@ -51,6 +56,8 @@ ordered_json direction_report(const Relay& relay, Direction direction, const Imp
   report["delay_p99_ms"] = quantile_ms(traffic.delay, 0.99);
   report["intended_delay_p50_ms"] = quantile_ms(channel.intended_delay(), 0.5);
   report["intended_delay_p99_ms"] = quantile_ms(channel.intended_delay(), 0.99);
+  report["release_error_p50_us"] = quantile_us(traffic.release_error, 0.5);
+  report["release_error_p99_us"] = quantile_us(traffic.release_error, 0.99);
   report["late_releases"] = traffic.late_releases;
   report["socket_errors"] = traffic.socket_errors;
   return report;
