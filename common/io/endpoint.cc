@@ -1,0 +1,148 @@
+#include "common/io/endpoint.h"
+
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <memory>
+
+#include <arpa/inet.h>
+#include <netdb.h>
+
+namespace palp::io {
+namespace {
+
+struct HostAndPort {
+  std::string host;
+  std::string port;
+};
+
+Result<HostAndPort> split(std::string_view text) {
+  const std::string quoted = "address \"" + std::string{text} + "\"";
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string_view::npos) {
+    return fail(quoted + " has no port; expected HOST:PORT, for example 127.0.0.1:9000");
+  }
+  std::string_view host = text.substr(0, colon);
+  const std::string_view port = text.substr(colon + 1);
+  if (host.size() >= 2 && host.front() == '[' && host.back() == ']') {
+    host = host.substr(1, host.size() - 2);
+  } else if (host.find(':') != std::string_view::npos) {
+    return fail(quoted + " needs brackets around an IPv6 address, for example [::1]:9000");
+  }
+  if (host.empty()) {
+    return fail(quoted + " has no host; expected HOST:PORT, for example 127.0.0.1:9000");
+  }
+  std::uint16_t number = 0;
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+  if (error != std::errc{} || end != port.data() + port.size()) {
+    return fail(quoted + " has the port \"" + std::string{port} + "\"; expected 0 to 65535");
+  }
+  return HostAndPort{std::string{host}, std::to_string(number)};
+}
+
+struct FreeAddresses {
+  void operator()(addrinfo* list) const noexcept { freeaddrinfo(list); }
+};
+
+}  // namespace
+
+Endpoint::Endpoint(const void* address, std::size_t size) noexcept {
+  sa_family_t family = AF_UNSPEC;
+  if (size < sizeof family || size > sizeof storage_) {
+    return;
+  }
+  std::memcpy(&family, address, sizeof family);
+  const std::size_t needed = family == AF_INET    ? sizeof(sockaddr_in)
+                             : family == AF_INET6 ? sizeof(sockaddr_in6)
+                                                  : 0;
+  if (needed == 0 || size < needed) {
+    return;
+  }
+  std::memcpy(&storage_, address, needed);
+  size_ = static_cast<socklen_t>(needed);
+}
+
+const sockaddr* Endpoint::address() const noexcept {
+  return reinterpret_cast<const sockaddr*>(&storage_);
+}
+
+std::uint16_t Endpoint::port() const noexcept {
+  if (family() == AF_INET) {
+    return ntohs(reinterpret_cast<const sockaddr_in*>(&storage_)->sin_port);
+  }
+  if (family() == AF_INET6) {
+    return ntohs(reinterpret_cast<const sockaddr_in6*>(&storage_)->sin6_port);
+  }
+  return 0;
+}
+
+std::string Endpoint::to_string() const {
+  if (!valid()) {
+    return "no address";
+  }
+  std::array<char, NI_MAXHOST> host{};
+  if (getnameinfo(address(), size_, host.data(), host.size(), nullptr, 0, NI_NUMERICHOST) != 0) {
+    return "unprintable address";
+  }
+  const std::string name = host.data();
+  const std::string bracketed = family() == AF_INET6 ? "[" + name + "]" : name;
+  return bracketed + ":" + std::to_string(port());
+}
+
+bool Endpoint::operator==(const Endpoint& other) const noexcept {
+  if (!valid() || !other.valid() || family() != other.family() || port() != other.port()) {
+    return false;
+  }
+  if (family() == AF_INET) {
+    const auto& a = reinterpret_cast<const sockaddr_in&>(storage_);
+    const auto& b = reinterpret_cast<const sockaddr_in&>(other.storage_);
+    return a.sin_addr.s_addr == b.sin_addr.s_addr;
+  }
+  const auto& a = reinterpret_cast<const sockaddr_in6&>(storage_);
+  const auto& b = reinterpret_cast<const sockaddr_in6&>(other.storage_);
+  return a.sin6_scope_id == b.sin6_scope_id &&
+         std::memcmp(&a.sin6_addr, &b.sin6_addr, sizeof a.sin6_addr) == 0;
+}
+
+Endpoint Endpoint::any_of_family() const noexcept {
+  if (family() == AF_INET6) {
+    sockaddr_in6 any{};
+    any.sin6_family = AF_INET6;
+    any.sin6_addr = in6addr_any;
+    return {&any, sizeof any};
+  }
+  sockaddr_in any{};
+  any.sin_family = AF_INET;
+  return {&any, sizeof any};
+}
+
+Result<Endpoint> resolve_endpoint(std::string_view text) {
+  const Result<HostAndPort> parts = split(text);
+  if (!parts) {
+    return fail(parts.error().text);
+  }
+  addrinfo hints{};
+  hints.ai_family = AF_UNSPEC;
+  hints.ai_socktype = SOCK_DGRAM;
+  hints.ai_flags = AI_NUMERICSERV;
+  addrinfo* list = nullptr;
+  const int refusal = getaddrinfo(parts->host.c_str(), parts->port.c_str(), &hints, &list);
+  const std::unique_ptr<addrinfo, FreeAddresses> owner{list};
+  if (refusal != 0) {
+    return fail("cannot find host \"" + parts->host + "\": " + gai_strerror(refusal));
+  }
+  const addrinfo* chosen = list;
+  for (const addrinfo* one = list; one != nullptr; one = one->ai_next) {
+    if (one->ai_family == AF_INET) {
+      chosen = one;
+      break;
+    }
+  }
+  const Endpoint endpoint{chosen->ai_addr, chosen->ai_addrlen};
+  if (!endpoint.valid()) {
+    return fail("host \"" + parts->host + "\" has no IPv4 or IPv6 address");
+  }
+  return endpoint;
+}
+
+}  // namespace palp::io

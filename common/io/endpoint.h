@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include "common/core/result.h"
+
+namespace palp::io {
+
+/// An address and a UDP port of IPv4 or IPv6. A value.
+class Endpoint {
+ public:
+  /// None: equal to nothing a datagram can come from.
+  Endpoint() noexcept = default;
+  /// `size` bytes of an address as the kernel gives it; a foreign family gives None.
+  Endpoint(const void* address, std::size_t size) noexcept;
+
+  [[nodiscard]] const sockaddr* address() const noexcept;
+  [[nodiscard]] socklen_t size() const noexcept { return size_; }
+  [[nodiscard]] int family() const noexcept { return address()->sa_family; }
+  [[nodiscard]] std::uint16_t port() const noexcept;
+  [[nodiscard]] bool valid() const noexcept { return size_ != 0; }
+  /// `127.0.0.1:9000`, `[::1]:9000`.
+  [[nodiscard]] std::string to_string() const;
+  /// The same address and port; flow labels do not count.
+  [[nodiscard]] bool operator==(const Endpoint& other) const noexcept;
+  /// The address of the same family that means "any", with port 0.
+  [[nodiscard]] Endpoint any_of_family() const noexcept;
+
+ private:
+  sockaddr_storage storage_{};
+  socklen_t size_{};
+};
+
+/// `HOST:PORT`, `ADDRESS:PORT`, `[IPV6]:PORT`, port 0 to 65535. Asks the resolver, so it may take
+/// seconds for a host name; IPv4 is preferred.
+[[nodiscard]] Result<Endpoint> resolve_endpoint(std::string_view text);
+
+}  // namespace palp::io

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include "common/core/mailbox.h"
+#include "common/core/spsc_queue.h"
+#include "common/core/time.h"
+#include "common/link/transport.h"
+
+namespace palp::io {
+
+/// A datagram that is not for the control thread: a Hello, a Bye, or anybody's noise.
+struct SideDatagram {
+  SideDatagram() = default;
+  SideDatagram(std::span<const std::byte> datagram, TimePoint arrival) noexcept
+      : size{datagram.size()}, arrived_at{arrival} {
+    std::memcpy(bytes.data(), datagram.data(), datagram.size());
+  }
+  [[nodiscard]] std::span<const std::byte> datagram() const noexcept {
+    return {bytes.data(), size};
+  }
+
+  std::size_t size{};  ///< [bytes]
+  TimePoint arrived_at{};
+  std::array<std::byte, link::kDatagramSizeMax> bytes;  // NOLINT: `size` of them are set
+};
+
+/// What the connected sockets of a site have seen; never falls, also when a socket is replaced.
+struct SocketCounts {
+  std::uint64_t sent{};
+  std::uint64_t unsent{};         ///< refused by the kernel
+  std::uint64_t received{};       ///< all that was taken from the kernel
+  std::uint64_t set_aside{};      ///< not data: left to io
+  std::uint64_t dropped{};        ///< not data, and the inbox was full or it was empty or too long
+  std::uint64_t path_errors{};    ///< ICMP and the like, as the kernel reports them
+  std::uint64_t without_stamp{};  ///< no receive stamp, or a senseless one: the drain's time counts
+};
+
+/// Where rt leaves to io what it received but must not look into. Outlives the sockets that fill
+/// it. Writer: the rt thread, reader: io.
+struct SideInbox {
+  static constexpr std::size_t kCapacity = 64;
+
+  SpscQueue<SideDatagram> datagrams{kCapacity};
+  SocketCounts counting;         ///< rt's own
+  Mailbox<SocketCounts> counts;  ///< its copy for io
+};
+
+}  // namespace palp::io

@@ -1,0 +1,97 @@
+#include "common/io/terminal.h"
+
+#include <array>
+#include <csignal>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+#include <poll.h>
+#include <pthread.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+namespace palp::io {
+namespace {
+
+sigset_t stop_signals() noexcept {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  return set;
+}
+
+}  // namespace
+
+Terminal::Terminal() {
+  const sigset_t set = stop_signals();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  signals_ = Descriptor{signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC)};
+  if (!signals_.valid()) {
+    throw std::runtime_error{std::string{"cannot watch for signals: "} + std::strerror(errno)};
+  }
+  // A background job that touched the terminal would be stopped by it.
+  if (isatty(STDIN_FILENO) == 1 && tcgetpgrp(STDIN_FILENO) == getpgrp()) {
+    read_keys_raw();
+  }
+}
+
+Terminal::~Terminal() { restore(); }
+
+void Terminal::read_keys_raw() {
+  if (tcgetattr(STDIN_FILENO, &before_) != 0) {
+    return;
+  }
+  termios raw = before_;
+  raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+  raw.c_cc[VMIN] = 0;
+  raw.c_cc[VTIME] = 0;
+  keys_ = tcsetattr(STDIN_FILENO, TCSANOW, &raw) == 0;
+}
+
+void Terminal::restore() noexcept {
+  if (restored_) {
+    return;
+  }
+  restored_ = true;
+  if (keys_) {
+    tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+    keys_ = false;
+  }
+  const sigset_t set = stop_signals();
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
+std::optional<StopCause> Terminal::wait_for_stop(Duration span) {
+  if (cause_) {
+    return cause_;
+  }
+  std::array<pollfd, 2> watched{
+      {{.fd = signals_.number(), .events = POLLIN, .revents = 0},
+       {.fd = keys_ ? STDIN_FILENO : -1, .events = POLLIN, .revents = 0}}};
+  const auto timeout = std::chrono::ceil<std::chrono::milliseconds>(span).count();
+  if (::poll(watched.data(), watched.size(), static_cast<int>(timeout)) <= 0) {
+    return std::nullopt;
+  }
+  signalfd_siginfo signal{};
+  if (watched[0].revents != 0 && read(signals_.number(), &signal, sizeof signal) > 0) {
+    cause_ = StopCause::Signal;
+  }
+  std::array<char, 64> typed{};
+  if (!cause_ && watched[1].revents != 0) {
+    if (read(STDIN_FILENO, typed.data(), typed.size()) > 0) {
+      cause_ = StopCause::Key;
+    } else {
+      keys_ = false;  // the terminal went away
+    }
+  }
+  if (cause_) {
+    restore();
+  }
+  return cause_;
+}
+
+bool Terminal::output_is_terminal() noexcept { return isatty(STDOUT_FILENO) == 1; }
+
+}  // namespace palp::io

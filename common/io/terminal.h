@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <termios.h>
+
+#include "common/core/time.h"
+#include "common/io/descriptor.h"
+
+namespace palp::io {
+
+enum class StopCause : std::uint8_t { Key, Signal };
+
+/// The person at the terminal: any key, ^C or SIGTERM asks the program to stop; a second signal
+/// ends it hard. Make it first in main, before any thread: threads inherit that the signals wait.
+/// Keys are read one by one and without echo while standard input is a terminal and the program in
+/// its foreground. One to a process. Thread: main.
+class Terminal {
+ public:
+  Terminal();
+  /// Puts everything back.
+  ~Terminal();
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  /// Waits up to `span` for a key or a signal. Once there was one it answers at once, and a
+  /// further signal has its usual effect.
+  [[nodiscard]] std::optional<StopCause> wait_for_stop(Duration span);
+  /// Whether standard output is one (and a line may be written over).
+  [[nodiscard]] static bool output_is_terminal() noexcept;
+  [[nodiscard]] bool reads_keys() const noexcept { return keys_; }
+
+ private:
+  void read_keys_raw();
+  void restore() noexcept;
+
+  Descriptor signals_;
+  termios before_{};
+  bool keys_{};
+  bool restored_{};
+  std::optional<StopCause> cause_;
+};
+
+}  // namespace palp::io
