@@ -4,7 +4,6 @@
 #include <array>
 #include <cerrno>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 
 #include <pthread.h>
@@ -12,6 +11,8 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+
+#include "common/io/system_text.h"
 
 namespace palp::io {
 namespace {
@@ -60,7 +61,7 @@ void request_priority(int priority, const RealtimeLimits& limits, RealtimeGrant&
   parameter.sched_priority = possible;
   const int refusal = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
   if (refusal != 0) {
-    grant.scheduling = wish + " not granted: " + std::strerror(refusal);
+    grant.scheduling = wish + " not granted: " + system_text(refusal);
     return;
   }
   grant.priority = possible;
@@ -78,7 +79,7 @@ void request_memory_lock(const RealtimeLimits& limits, RealtimeGrant& grant) {
     return;
   }
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
-    grant.memory = std::string{"memory not locked: "} + std::strerror(errno);
+    grant.memory = "memory not locked: " + system_text(errno);
     return;
   }
   // A capability of a user namespace does not count in the kernel's check: ask for more address

@@ -9,6 +9,7 @@
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
 #include "common/core/time.h"
+#include "common/io/endpoint.h"
 #include "common/link/transport.h"
 
 namespace palp::io {
@@ -16,14 +17,18 @@ namespace palp::io {
 /// A datagram that is not for the control thread: a Hello, a Bye, or anybody's noise.
 struct SideDatagram {
   SideDatagram() = default;
-  SideDatagram(std::span<const std::byte> datagram, TimePoint arrival) noexcept
-      : size{datagram.size()}, arrived_at{arrival} {
+  /// At most kDatagramSizeMax bytes.
+  SideDatagram(std::span<const std::byte> datagram,
+               const Endpoint& sender,
+               TimePoint arrival) noexcept
+      : from{sender}, size{datagram.size()}, arrived_at{arrival} {
     std::memcpy(bytes.data(), datagram.data(), datagram.size());
   }
   [[nodiscard]] std::span<const std::byte> datagram() const noexcept {
     return {bytes.data(), size};
   }
 
+  Endpoint from;
   std::size_t size{};  ///< [bytes]
   TimePoint arrived_at{};
   std::array<std::byte, link::kDatagramSizeMax> bytes;  // NOLINT: `size` of them are set

@@ -1,15 +1,16 @@
 #include "common/io/terminal.h"
 
 #include <array>
+#include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <stdexcept>
-#include <string>
 
 #include <poll.h>
 #include <pthread.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
+
+#include "common/io/system_text.h"
 
 namespace palp::io {
 namespace {
@@ -29,7 +30,7 @@ Terminal::Terminal() {
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   signals_ = Descriptor{signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC)};
   if (!signals_.valid()) {
-    throw std::runtime_error{std::string{"cannot watch for signals: "} + std::strerror(errno)};
+    throw std::runtime_error{"cannot watch for signals: " + system_text(errno)};
   }
   // A background job that touched the terminal would be stopped by it.
   if (isatty(STDIN_FILENO) == 1 && tcgetpgrp(STDIN_FILENO) == getpgrp()) {

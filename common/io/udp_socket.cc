@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "common/io/steady_clock.h"
+#include "common/io/system_text.h"
 
 namespace palp::io {
 namespace {
@@ -105,16 +106,16 @@ Result<std::unique_ptr<UdpSocket>> UdpSocket::connect(const Endpoint& local,
   Descriptor socket{
       ::socket(peer.family(), SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, IPPROTO_UDP)};
   if (!socket.valid()) {
-    return fail(std::string{"cannot open a UDP socket: "} + std::strerror(errno));
+    return fail("cannot open a UDP socket: " + system_text(errno));
   }
   set_options(socket.number(), peer.family(), config);
   set_option(socket.number(), SOL_SOCKET, SO_REUSEADDR, 1);
   if (::bind(socket.number(), local.address(), local.size()) != 0) {
-    return fail("cannot use " + local.to_string() + ": " + std::strerror(errno));
+    return fail("cannot use " + local.to_string() + ": " + system_text(errno));
   }
   // At once: until it is connected this socket takes everybody's datagrams of its port.
   if (::connect(socket.number(), peer.address(), peer.size()) != 0) {
-    return fail("cannot connect to " + peer.to_string() + ": " + std::strerror(errno));
+    return fail("cannot connect to " + peer.to_string() + ": " + system_text(errno));
   }
   return std::unique_ptr<UdpSocket>{new UdpSocket{std::move(socket), peer, inbox}};
 }
@@ -200,7 +201,7 @@ std::optional<link::Datagram> UdpSocket::receive(
       return link::Datagram{.size = size, .arrived_at = arrived_at};
     }
     const bool fits = size > 0 && size <= link::kDatagramSizeMax;
-    if (fits && inbox_.datagrams.try_emplace(bytes, arrived_at)) {
+    if (fits && inbox_.datagrams.try_emplace(bytes, peer_, arrived_at)) {
       ++counting.set_aside;
     } else {
       ++counting.dropped;

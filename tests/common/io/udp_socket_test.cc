@@ -217,7 +217,7 @@ TEST(UdpSocketConnectTest, SaysInASentenceWhyItCannot) {
   const auto made = UdpSocket::connect(taken.local(), taken.local(), inbox, {});
   ASSERT_FALSE(made.has_value());
   EXPECT_EQ(made.error().text,
-            "cannot use " + taken.local().to_string() + ": Address already in use");
+            "cannot use " + taken.local().to_string() + ": address already in use");
 }
 
 }  // namespace

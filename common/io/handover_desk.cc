@@ -1,0 +1,28 @@
+#include "common/io/handover_desk.h"
+
+#include <utility>
+
+namespace palp::io {
+
+bool HandoverDesk::offer(link::Handover&& next) { return offered_.try_enqueue(std::move(next)); }
+
+void HandoverDesk::serve(link::Link& link, TimePoint now) noexcept {
+  // As long as io has not cleared the way back, nothing new is taken: rt must never free. Seen from
+  // its writer, a queue is never longer than it tells.
+  link::Handover next;
+  if (retired_.size_approx() < kWaitingMax && offered_.try_dequeue(next)) {
+    link::Handover retired = link.adopt(std::move(next), now);
+    if (retired.transport != nullptr || retired.protection != nullptr) {
+      (void)retired_.try_enqueue(std::move(retired));
+    }
+  }
+  state_.put(link.health(now).state);
+}
+
+void HandoverDesk::destroy_retired() {
+  for (link::Handover retired; retired_.try_dequeue(retired);) {
+    retired = {};
+  }
+}
+
+}  // namespace palp::io

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+
+#include "common/core/mailbox.h"
+#include "common/core/site_state.h"
+#include "common/core/spsc_queue.h"
+#include "common/core/time.h"
+#include "common/io/side_inbox.h"
+#include "common/link/handover.h"
+#include "common/link/link.h"
+
+namespace palp::io {
+
+/// Where io and rt meet: sessions go to rt, what they replaced comes back to be freed, and both
+/// learn what they must of each other. Outlives the server and the sockets it makes; rt has
+/// stopped before it is destroyed.
+class HandoverDesk {
+ public:
+  /// io. @returns false: rt has not taken the earlier ones yet; `next` is left as it was.
+  [[nodiscard]] bool offer(link::Handover&& next);
+  /// rt, first thing in a tick: gives the link at most one Handover and tells io the link's state.
+  /// Frees nothing.
+  void serve(link::Link& link, TimePoint now) noexcept;
+  /// io.
+  void destroy_retired();
+  /// io: the link's state in the newest tick.
+  [[nodiscard]] LinkState link_state() noexcept { return state_.get(); }
+
+  /// Filled by rt's sockets, emptied by io.
+  [[nodiscard]] SideInbox& inbox() noexcept { return inbox_; }
+
+ private:
+  static constexpr std::size_t kWaitingMax = 8;
+
+  SpscQueue<link::Handover> offered_{kWaitingMax};  ///< writer: io, reader: rt
+  SpscQueue<link::Handover> retired_{kWaitingMax};  ///< writer: rt, reader: io
+  Mailbox<LinkState> state_;                        ///< writer: rt, reader: io
+  SideInbox inbox_;
+};
+
+}  // namespace palp::io
