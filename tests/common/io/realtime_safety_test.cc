@@ -1,0 +1,49 @@
+// Goal: what rt calls of this room allocates, locks, waits and throws nothing.
+// Method: RealtimeGuard around ticks under traffic, with noise, a full inbox and path errors.
+#include <gtest/gtest.h>
+
+#include "common/io/udp_socket.h"
+#include "tests/common/io/loopback.h"
+#include "tests/support/realtime_guard.h"
+
+namespace palp::io {
+namespace {
+
+using palp::test::RealtimeGuard;
+using test::bytes_of;
+
+TEST(RealtimeSafetyTest, SocketIsCleanUnderTrafficNoiseAndPathErrors) {
+  const SteadyClock clock;
+  SideInbox inbox;
+  test::PlainSocket peer;
+  const auto socket =
+      *UdpSocket::connect(*resolve_endpoint("127.0.0.1:0"), peer.local(), inbox, {});
+  std::array<std::byte, link::kDatagramSizeMax> buffer{};
+  const auto telegram = bytes_of(0x80, 177);
+
+  RealtimeGuard guard;
+  for (int tick = 0; tick < 200; ++tick) {
+    {
+      const RealtimeGuard::Pause pause;
+      if (tick == 150) {
+        peer.close();
+      } else if (tick < 150) {
+        peer.send_to(socket->local(), telegram);
+        peer.send_to(socket->local(), bytes_of(0x81, 60));
+        peer.send_to(socket->local(), bytes_of(0x80, 1300));
+      }
+    }
+    const TimePoint now = clock.now();
+    while (socket->receive(buffer, now)) {
+    }
+    (void)socket->send(telegram, now);
+  }
+  guard.release();
+  EXPECT_TRUE(guard.clean()) << guard.first_violation();
+  EXPECT_EQ(inbox.counting.received, 450U);
+  EXPECT_GT(inbox.counting.dropped, 0U);
+  EXPECT_GT(inbox.counting.path_errors, 0U);
+}
+
+}  // namespace
+}  // namespace palp::io
