@@ -11,35 +11,6 @@
 namespace palp::io {
 namespace {
 
-struct HostAndPort {
-  std::string host;
-  std::string port;
-};
-
-Result<HostAndPort> split(std::string_view text) {
-  const std::string quoted = "address \"" + std::string{text} + "\"";
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string_view::npos) {
-    return fail(quoted + " has no port; expected HOST:PORT, for example 127.0.0.1:9000");
-  }
-  std::string_view host = text.substr(0, colon);
-  const std::string_view port = text.substr(colon + 1);
-  if (host.size() >= 2 && host.front() == '[' && host.back() == ']') {
-    host = host.substr(1, host.size() - 2);
-  } else if (host.find(':') != std::string_view::npos) {
-    return fail(quoted + " needs brackets around an IPv6 address, for example [::1]:9000");
-  }
-  if (host.empty()) {
-    return fail(quoted + " has no host; expected HOST:PORT, for example 127.0.0.1:9000");
-  }
-  std::uint16_t number = 0;
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
-  if (error != std::errc{} || end != port.data() + port.size()) {
-    return fail(quoted + " has the port \"" + std::string{port} + "\"; expected 0 to 65535");
-  }
-  return HostAndPort{std::string{host}, std::to_string(number)};
-}
-
 struct FreeAddresses {
   void operator()(addrinfo* list) const noexcept { freeaddrinfo(list); }
 };
@@ -116,20 +87,46 @@ Endpoint Endpoint::any_of_family() const noexcept {
   return {&any, sizeof any};
 }
 
-Result<Endpoint> resolve_endpoint(std::string_view text) {
-  const Result<HostAndPort> parts = split(text);
-  if (!parts) {
-    return fail(parts.error().text);
+std::string HostAndPort::to_string() const {
+  const bool brackets = host.find(':') != std::string::npos;
+  return (brackets ? "[" + host + "]" : host) + ":" + std::to_string(port);
+}
+
+Result<HostAndPort> parse_host_and_port(std::string_view text) {
+  const std::string quoted = "address \"" + std::string{text} + "\"";
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string_view::npos) {
+    return fail(quoted + " has no port; expected HOST:PORT, for example 127.0.0.1:9000");
   }
+  std::string_view host = text.substr(0, colon);
+  const std::string_view port = text.substr(colon + 1);
+  if (host.size() >= 2 && host.front() == '[' && host.back() == ']') {
+    host = host.substr(1, host.size() - 2);
+  } else if (host.find(':') != std::string_view::npos) {
+    return fail(quoted + " needs brackets around an IPv6 address, for example [::1]:9000");
+  }
+  if (host.empty()) {
+    return fail(quoted + " has no host; expected HOST:PORT, for example 127.0.0.1:9000");
+  }
+  std::uint16_t number = 0;
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+  if (error != std::errc{} || end != port.data() + port.size()) {
+    return fail(quoted + " has the port \"" + std::string{port} + "\"; expected 0 to 65535");
+  }
+  return HostAndPort{.host = std::string{host}, .port = number};
+}
+
+Result<Endpoint> resolve(const HostAndPort& place) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_DGRAM;
   hints.ai_flags = AI_NUMERICSERV;
+  const std::string port = std::to_string(place.port);
   addrinfo* list = nullptr;
-  const int refusal = getaddrinfo(parts->host.c_str(), parts->port.c_str(), &hints, &list);
+  const int refusal = getaddrinfo(place.host.c_str(), port.c_str(), &hints, &list);
   const std::unique_ptr<addrinfo, FreeAddresses> owner{list};
   if (refusal != 0) {
-    return fail("cannot find host \"" + parts->host + "\": " + gai_strerror(refusal));
+    return fail("cannot find host \"" + place.host + "\": " + gai_strerror(refusal));
   }
   const addrinfo* chosen = list;
   for (const addrinfo* one = list; one != nullptr; one = one->ai_next) {
@@ -140,9 +137,13 @@ Result<Endpoint> resolve_endpoint(std::string_view text) {
   }
   const Endpoint endpoint{chosen->ai_addr, chosen->ai_addrlen};
   if (!endpoint.valid()) {
-    return fail("host \"" + parts->host + "\" has no IPv4 or IPv6 address");
+    return fail("host \"" + place.host + "\" has no IPv4 or IPv6 address");
   }
   return endpoint;
+}
+
+Result<Endpoint> resolve_endpoint(std::string_view text) {
+  return parse_host_and_port(text).and_then(resolve);
 }
 
 }  // namespace palp::io

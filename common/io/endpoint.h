@@ -36,8 +36,21 @@ class Endpoint {
   socklen_t size_{};
 };
 
-/// `HOST:PORT`, `ADDRESS:PORT`, `[IPV6]:PORT`, port 0 to 65535. Asks the resolver, so it may take
-/// seconds for a host name; IPv4 is preferred.
+/// Where to listen or whom to call, as people write it.
+struct HostAndPort {
+  std::string host;  ///< name or address, IPv6 without brackets
+  std::uint16_t port{};
+  /// As it was written.
+  [[nodiscard]] std::string to_string() const;
+};
+
+/// `HOST:PORT`, `ADDRESS:PORT`, `[IPV6]:PORT`, port 0 to 65535. Asks nobody.
+[[nodiscard]] Result<HostAndPort> parse_host_and_port(std::string_view text);
+
+/// Asks the resolver, so it may take seconds for a host name; IPv4 is preferred.
+[[nodiscard]] Result<Endpoint> resolve(const HostAndPort& place);
+
+/// Both in one.
 [[nodiscard]] Result<Endpoint> resolve_endpoint(std::string_view text);
 
 }  // namespace palp::io

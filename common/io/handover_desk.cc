@@ -16,7 +16,8 @@ void HandoverDesk::serve(link::Link& link, TimePoint now) noexcept {
       (void)retired_.try_enqueue(std::move(retired));
     }
   }
-  state_.put(link.health(now).state);
+  const link::LinkHealth health = link.health(now);
+  glance_.put({.state = health.state, .session_id = health.session_id});
 }
 
 void HandoverDesk::destroy_retired() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "common/core/mailbox.h"
 #include "common/core/site_state.h"
@@ -11,6 +12,12 @@
 #include "common/link/link.h"
 
 namespace palp::io {
+
+/// What io must know of the link on rt.
+struct LinkGlance {
+  LinkState state{};
+  std::uint64_t session_id{};  ///< which session that is of; 0: none
+};
 
 /// Where io and rt meet: sessions go to rt, what they replaced comes back to be freed, and both
 /// learn what they must of each other. Outlives the server and the sockets it makes; rt has
@@ -24,8 +31,8 @@ class HandoverDesk {
   void serve(link::Link& link, TimePoint now) noexcept;
   /// io.
   void destroy_retired();
-  /// io: the link's state in the newest tick.
-  [[nodiscard]] LinkState link_state() noexcept { return state_.get(); }
+  /// io: the link in the newest tick.
+  [[nodiscard]] LinkGlance link() noexcept { return glance_.get(); }
 
   /// Filled by rt's sockets, emptied by io.
   [[nodiscard]] SideInbox& inbox() noexcept { return inbox_; }
@@ -35,7 +42,7 @@ class HandoverDesk {
 
   SpscQueue<link::Handover> offered_{kWaitingMax};  ///< writer: io, reader: rt
   SpscQueue<link::Handover> retired_{kWaitingMax};  ///< writer: rt, reader: io
-  Mailbox<LinkState> state_;                        ///< writer: rt, reader: io
+  Mailbox<LinkGlance> glance_;                      ///< writer: rt, reader: io
   SideInbox inbox_;
 };
 

@@ -78,6 +78,27 @@ class PlainSocket {
     bytes.resize(static_cast<std::size_t>(got));
     return bytes;
   }
+  struct Taken {
+    Endpoint from;
+    Bytes bytes;
+  };
+  /// nullopt: none waits.
+  std::optional<Taken> take() {
+    Bytes bytes(2000);
+    sockaddr_storage from{};
+    socklen_t length = sizeof from;
+    const ssize_t got = ::recvfrom(socket_.number(),
+                                   bytes.data(),
+                                   bytes.size(),
+                                   MSG_DONTWAIT,
+                                   reinterpret_cast<sockaddr*>(&from),
+                                   &length);
+    if (got < 0) {
+      return std::nullopt;
+    }
+    bytes.resize(static_cast<std::size_t>(got));
+    return Taken{.from = {&from, length}, .bytes = std::move(bytes)};
+  }
   void close() { socket_.close(); }
 
  private:

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/core/time.h"
+#include "common/io/endpoint.h"
+#include "common/io/handover_desk.h"
+#include "common/io/udp_socket.h"
+#include "common/link/session.h"
+
+namespace palp::io {
+
+struct SessionServerConfig {
+  link::SessionConfig session;
+  HostAndPort address;  ///< patient: where to listen, port 0: any; surgeon: the patient site
+  UdpSocketConfig socket;
+  int priority{};  ///< SCHED_FIFO of the io thread, below rt's; 0: leave as it is
+};
+
+/// What people are told of sessions.
+struct SessionNews {
+  enum class Kind : std::uint8_t { Established, Refused, Closed };
+  Kind kind{};
+  bool final{};  ///< refused, and there will never be a session with these settings
+  TimePoint at{};
+  Endpoint peer;
+  std::string sentence;
+};
+
+/// Finds the peer and makes sessions, on a thread of its own (io): owns the listening socket,
+/// drives link::Session, reads what rt set aside, and gives rt a connected socket and its
+/// protection over the desk for each new session. Plain datagrams for now. Thread: its maker's.
+class SessionServer {
+ public:
+  /// Starts to listen or to call. `desk` outlives the server.
+  /// @throws std::runtime_error with one sentence: `cannot listen on 127.0.0.1:9000: address
+  /// already in use`, or a host that cannot be found.
+  SessionServer(const SessionServerConfig& config, HandoverDesk& desk);
+  /// Closes.
+  ~SessionServer();
+  SessionServer(const SessionServer&) = delete;
+  SessionServer& operator=(const SessionServer&) = delete;
+
+  /// Address and port in use; the port is the kernel's choice where none was given.
+  [[nodiscard]] Endpoint local() const;
+  /// One at a time, in order; nullopt: none. Old ones are kept where nobody asks for long.
+  [[nodiscard]] std::optional<SessionNews> news();
+  /// What the connected sockets have seen, as of the last tick of rt.
+  [[nodiscard]] SocketCounts socket_counts() const;
+  /// What came to the listening port, or was set aside, and made no sense.
+  [[nodiscard]] link::SessionCounters noise() const;
+  /// Leaves the session, telling the peer why, and ends the io thread. Idempotent. rt keeps what
+  /// it has.
+  void close(const std::string& why);
+
+ private:
+  class Io;
+  std::unique_ptr<Io> io_;
+};
+
+}  // namespace palp::io

@@ -1,0 +1,253 @@
+// Goal: two sites find each other over real sockets, find each other again after a restart of
+// either, and strangers cannot keep them from it.
+// Method: two servers on loopback with real links; the test's thread is the rt of both.
+#include "common/io/session_server.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/link/codec_protobuf.h"
+#include "tests/common/io/loopback.h"
+
+namespace palp::io {
+namespace {
+
+using link::Role;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+SessionServerConfig config_of(Role role, std::uint16_t port, const std::string& coupling) {
+  SessionServerConfig config;
+  config.session.role = role;
+  config.session.coupling = coupling;
+  config.session.settings_hash = 42;
+  config.address = {.host = "127.0.0.1", .port = port};
+  return config;
+}
+
+/// One site: what main makes of it, without a node.
+class Site {
+ public:
+  Site(Role role, std::uint16_t port, const std::string& coupling = "direct")
+      : server{config_of(role, port, coupling), desk} {}
+
+  void tick(TimePoint now) {
+    desk.serve(link, now);
+    accepted += link.receive(now).accepted;
+    link.send({}, now);
+    while (auto one = server.news()) {
+      news.push_back(*one);
+    }
+    state = link.health(now).state;
+  }
+  [[nodiscard]] int count(SessionNews::Kind kind) const {
+    return static_cast<int>(std::count_if(
+        news.begin(), news.end(), [&](const SessionNews& one) { return one.kind == kind; }));
+  }
+  [[nodiscard]] bool live() const { return state == LinkState::Live; }
+
+  link::Link link{{}, std::make_unique<link::ProtobufCodec>()};
+  HandoverDesk desk;
+  SessionServer server;
+  std::vector<SessionNews> news;
+  std::uint64_t accepted{};
+  LinkState state{};
+};
+
+/// Between two sites, so that one can fall silent without a word and come back elsewhere.
+class Relay {
+ public:
+  explicit Relay(const Endpoint& patient) : patient_{patient} {}
+  [[nodiscard]] std::uint16_t port() const { return front_.local().port(); }
+  void lead_to(const Endpoint& patient) { patient_ = patient; }
+  void cut() { patient_ = {}; }
+  void pump() {
+    while (auto taken = front_.take()) {
+      surgeon_ = taken->from;
+      pass(back_, patient_, taken->bytes);
+    }
+    while (auto taken = back_.take()) {
+      if (taken->from == patient_) {
+        pass(front_, surgeon_, taken->bytes);
+      }
+    }
+  }
+
+ private:
+  static void pass(test::PlainSocket& way, const Endpoint& to, const test::Bytes& bytes) {
+    if (to.valid()) {
+      way.send_to(to, bytes);
+    }
+  }
+  test::PlainSocket front_;
+  test::PlainSocket back_;
+  Endpoint surgeon_;
+  Endpoint patient_;
+};
+
+/// Ticks all sites once a millisecond until `done`. @returns false: not within ten seconds.
+bool run_until(const std::vector<Site*>& sites, Relay* relay, const std::function<bool()>& done) {
+  const SteadyClock clock;
+  TimePoint next = clock.now();
+  return test::wait_until([&] {
+    if (relay != nullptr) {
+      relay->pump();
+    }
+    if (const TimePoint now = clock.now(); now >= next) {
+      next = now + milliseconds{1};
+      for (Site* site : sites) {
+        site->tick(now);
+      }
+    }
+    return done();
+  });
+}
+
+bool meet(Site& surgeon, Site& patient, Relay* relay = nullptr) {
+  return run_until({&surgeon, &patient}, relay, [&] { return surgeon.live() && patient.live(); });
+}
+
+TEST(SessionServerTest, SitesMeetAndTelegramsFlow) {
+  Site patient{Role::Patient, 0};
+  Site surgeon{Role::Surgeon, patient.server.local().port()};
+  ASSERT_TRUE(meet(surgeon, patient));
+  ASSERT_EQ(patient.news.size(), 1U);
+  EXPECT_EQ(patient.news[0].kind, SessionNews::Kind::Established);
+  EXPECT_THAT(patient.news[0].sentence,
+              HasSubstr("session with the surgeon site at 127.0.0.1:" +
+                        std::to_string(surgeon.server.local().port())));
+  EXPECT_THAT(surgeon.news.at(0).sentence,
+              HasSubstr("session with the patient site at " + patient.server.local().to_string()));
+  EXPECT_GT(patient.accepted, 0U);
+  EXPECT_GT(surgeon.accepted, 0U);
+}
+
+TEST(SessionServerTest, SurgeonMayComeFirst) {
+  std::uint16_t port = 0;
+  { port = test::PlainSocket{}.local().port(); }
+  Site surgeon{Role::Surgeon, port};
+  const SteadyClock clock;
+  const TimePoint later = clock.now() + milliseconds{30};
+  ASSERT_TRUE(run_until({&surgeon}, nullptr, [&] { return clock.now() > later; }));
+  Site patient{Role::Patient, port};
+  EXPECT_TRUE(meet(surgeon, patient));
+}
+
+TEST(SessionServerTest, OrderlyCloseIsToldAndEndsTheLink) {
+  Site patient{Role::Patient, 0};
+  auto surgeon = std::make_unique<Site>(Role::Surgeon, patient.server.local().port());
+  ASSERT_TRUE(meet(*surgeon, patient));
+  surgeon->server.close("the operator went home");
+  ASSERT_TRUE(run_until({&patient}, nullptr, [&] { return patient.state == LinkState::Down; }));
+  ASSERT_EQ(patient.count(SessionNews::Kind::Closed), 1);
+  EXPECT_THAT(patient.news.back().sentence, HasSubstr("the operator went home"));
+
+  surgeon = std::make_unique<Site>(Role::Surgeon, patient.server.local().port());
+  EXPECT_TRUE(meet(*surgeon, patient));
+  EXPECT_EQ(patient.count(SessionNews::Kind::Established), 2);
+}
+
+TEST(SessionServerTest, SilentlyRestartedPatientIsANewSession) {
+  auto patient = std::make_unique<Site>(Role::Patient, std::uint16_t{0});
+  Relay relay{patient->server.local()};
+  Site surgeon{Role::Surgeon, relay.port()};
+  ASSERT_TRUE(meet(surgeon, *patient, &relay));
+  const std::uint64_t first = surgeon.desk.link().session_id;
+
+  relay.cut();
+  patient = std::make_unique<Site>(Role::Patient, std::uint16_t{0});
+  ASSERT_TRUE(run_until({&surgeon}, &relay, [&] { return surgeon.state == LinkState::Lost; }));
+  relay.lead_to(patient->server.local());
+  ASSERT_TRUE(meet(surgeon, *patient, &relay));
+  EXPECT_NE(surgeon.link.health(SteadyClock{}.now()).session_id, first);
+  EXPECT_EQ(surgeon.count(SessionNews::Kind::Established), 2);
+}
+
+TEST(SessionServerTest, SilentlyRestartedSurgeonIsANewSession) {
+  Site patient{Role::Patient, 0};
+  Relay relay{patient.server.local()};
+  auto surgeon = std::make_unique<Site>(Role::Surgeon, relay.port());
+  ASSERT_TRUE(meet(*surgeon, patient, &relay));
+  const std::uint64_t first = patient.link.health(SteadyClock{}.now()).session_id;
+
+  relay.cut();
+  surgeon.reset();
+  ASSERT_TRUE(run_until({&patient}, &relay, [&] { return patient.state == LinkState::Lost; }));
+  relay.lead_to(patient.server.local());
+  surgeon = std::make_unique<Site>(Role::Surgeon, relay.port());
+  ASSERT_TRUE(meet(*surgeon, patient, &relay));
+  EXPECT_NE(patient.link.health(SteadyClock{}.now()).session_id, first);
+  EXPECT_EQ(patient.count(SessionNews::Kind::Established), 2);
+}
+
+TEST(SessionServerTest, FloodOfJunkBreaksNothing) {
+  Site patient{Role::Patient, 0};
+  test::PlainSocket stranger;
+  std::uint8_t first = 0;
+  const auto flood = [&] {
+    for (int i = 0; i < 20; ++i) {
+      stranger.send_to(patient.server.local(), test::bytes_of(first, 40U + first));
+      ++first;
+    }
+  };
+  Site surgeon{Role::Surgeon, patient.server.local().port()};
+  ASSERT_TRUE(run_until({&surgeon, &patient}, nullptr, [&] {
+    flood();
+    return surgeon.live() && patient.live();
+  }));
+  const std::uint64_t accepted = patient.accepted;
+  ASSERT_TRUE(run_until({&surgeon, &patient}, nullptr, [&] {
+    flood();
+    return patient.accepted > accepted + 100;
+  }));
+  EXPECT_GT(patient.server.noise().malformed, 0U);
+  EXPECT_EQ(patient.count(SessionNews::Kind::Established), 1);
+  EXPECT_EQ(surgeon.count(SessionNews::Kind::Established), 1);
+}
+
+TEST(SessionServerTest, DifferentSettingsAreRefusedForGood) {
+  Site patient{Role::Patient, 0, "direct"};
+  Site surgeon{Role::Surgeon, patient.server.local().port(), "wave"};
+  ASSERT_TRUE(run_until({&surgeon, &patient}, nullptr, [&] {
+    return surgeon.count(SessionNews::Kind::Refused) > 0;
+  }));
+  EXPECT_TRUE(surgeon.news.back().final);
+  EXPECT_THAT(surgeon.news.back().sentence, HasSubstr("surgeon wave, patient direct"));
+}
+
+/// What the constructor complains of.
+std::string complaint(const SessionServerConfig& config) {
+  HandoverDesk desk;
+  try {
+    const SessionServer server{config, desk};
+  } catch (const std::runtime_error& refusal) {
+    return refusal.what();
+  }
+  return "none";
+}
+
+TEST(SessionServerTest, AddressInUseIsOneSentence) {
+  test::PlainSocket owner;
+  EXPECT_EQ(complaint(config_of(Role::Patient, owner.local().port(), "direct")),
+            "cannot listen on " + owner.local().to_string() + ": address already in use");
+}
+
+TEST(SessionServerTest, SecondServerCannotTakeThePortOfOneInSession) {
+  Site patient{Role::Patient, 0};
+  Site surgeon{Role::Surgeon, patient.server.local().port()};
+  ASSERT_TRUE(meet(surgeon, patient));
+  EXPECT_THAT(complaint(config_of(Role::Patient, patient.server.local().port(), "direct")),
+              HasSubstr("address already in use"));
+}
+
+TEST(SessionServerTest, HostThatDoesNotExistAndPortZeroAreOneSentence) {
+  SessionServerConfig config = config_of(Role::Surgeon, 9000, "direct");
+  config.address.host = "no-such-host.invalid";
+  EXPECT_THAT(complaint(config), HasSubstr("cannot find host \"no-such-host.invalid\": "));
+  EXPECT_EQ(complaint(config_of(Role::Surgeon, 0, "direct")),
+            "cannot call 127.0.0.1:0: the port must be 1 to 65535");
+}
+
+}  // namespace
+}  // namespace palp::io
