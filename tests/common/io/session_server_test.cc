@@ -153,7 +153,7 @@ TEST(SessionServerTest, SilentlyRestartedPatientIsANewSession) {
   Relay relay{patient->server.local()};
   Site surgeon{Role::Surgeon, relay.port()};
   ASSERT_TRUE(meet(surgeon, *patient, &relay));
-  const std::uint64_t first = surgeon.desk.link().session_id;
+  const std::uint64_t first = surgeon.link.health(SteadyClock{}.now()).session_id;
 
   relay.cut();
   patient = std::make_unique<Site>(Role::Patient, std::uint16_t{0});
