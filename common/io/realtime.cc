@@ -36,10 +36,11 @@ std::uint64_t effective_capabilities() {
 bool has(std::uint64_t capabilities, unsigned bit) { return ((capabilities >> bit) & 1U) != 0; }
 
 /// Deeper than any tick of ours goes.
-constexpr std::size_t kStackTouched = 256 * 1024;  ///< [bytes]
+constexpr std::size_t kStackTouched = 256UL * 1024;  ///< [bytes]
 
 __attribute__((noinline)) void touch_stack() noexcept {
   constexpr std::size_t kPage = 4096;
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): touched page by page below
   std::array<volatile char, kStackTouched> stack;
   for (std::size_t at = 0; at < kStackTouched; at += kPage) {
     stack[at] = 0;

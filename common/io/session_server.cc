@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <deque>
+#include <exception>
 #include <span>
 #include <stdexcept>
 #include <thread>
@@ -71,13 +72,14 @@ std::string name_of_peer(link::Role role) {
 
 }  // namespace
 
-/// All that the io thread owns. start(), close(), local(), news(), noise() and counts() are the
-/// maker's; the rest is the thread's.
+/// All that the io thread owns. start(), close(), abandon(), local(), news(), noise() and counts()
+/// are the maker's; the rest is the thread's.
 class SessionServer::Io {
  public:
   Io(const SessionServerConfig& config, HandoverDesk& desk);
   void start();
   void close(const std::string& why);
+  void abandon() { context_.stop(); }
 
   [[nodiscard]] Endpoint local() const { return local_; }
   [[nodiscard]] std::optional<SessionNews> news();
@@ -328,7 +330,13 @@ SessionServer::SessionServer(const SessionServerConfig& config, HandoverDesk& de
   io_->start();
 }
 
-SessionServer::~SessionServer() { close("the program ends"); }
+SessionServer::~SessionServer() {
+  try {
+    close("the program ends");
+  } catch (const std::exception&) {
+    io_->abandon();  // out of memory: no farewell
+  }
+}
 
 Endpoint SessionServer::local() const { return io_->local(); }
 

@@ -31,7 +31,7 @@ struct SideDatagram {
   Endpoint from;
   std::size_t size{};  ///< [bytes]
   TimePoint arrived_at{};
-  std::array<std::byte, link::kDatagramSizeMax> bytes;  // NOLINT: `size` of them are set
+  std::array<std::byte, link::kDatagramSizeMax> bytes{};
 };
 
 /// What the connected sockets of a site have seen; never falls, also when a socket is replaced.

@@ -2,7 +2,9 @@
 // Method: RealtimeGuard around ticks under traffic, with noise, a full inbox and path errors.
 #include <gtest/gtest.h>
 
+#include "common/io/handover_desk.h"
 #include "common/io/udp_socket.h"
+#include "common/link/codec_protobuf.h"
 #include "tests/common/io/loopback.h"
 #include "tests/support/realtime_guard.h"
 
@@ -43,6 +45,37 @@ TEST(RealtimeSafetyTest, SocketIsCleanUnderTrafficNoiseAndPathErrors) {
   EXPECT_EQ(inbox.counting.received, 450U);
   EXPECT_GT(inbox.counting.dropped, 0U);
   EXPECT_GT(inbox.counting.path_errors, 0U);
+}
+
+TEST(RealtimeSafetyTest, DeskIsCleanWhileSessionsComeAndGo) {
+  const SteadyClock clock;
+  test::PlainSocket peer;
+  HandoverDesk desk;
+  link::Link link{{}, std::make_unique<link::ProtobufCodec>()};
+  const auto offer = [&](std::uint64_t id) {
+    const RealtimeGuard::Pause pause;
+    desk.destroy_retired();
+    EXPECT_TRUE(desk.offer({.transport = *UdpSocket::connect(
+                                *resolve_endpoint("127.0.0.1:0"), peer.local(), desk.inbox(), {}),
+                            .protection = std::make_unique<link::PlainProtection>(),
+                            .send_connection = 1,
+                            .receive_connection = 2,
+                            .session_id = id}));
+  };
+
+  RealtimeGuard guard;
+  for (std::uint64_t tick = 0; tick < 100; ++tick) {
+    if (tick % 10 == 0) {
+      offer(1 + tick);
+    }
+    const TimePoint now = clock.now();
+    desk.serve(link, now);
+    (void)link.receive(now);
+    link.send({}, now);
+  }
+  guard.release();
+  EXPECT_TRUE(guard.clean()) << guard.first_violation();
+  EXPECT_EQ(desk.inbox().counting.sent, 100U);
 }
 
 }  // namespace

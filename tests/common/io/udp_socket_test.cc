@@ -205,6 +205,18 @@ TEST_F(UdpSocketTest, HearsNobodyButItsPeer) {
   EXPECT_EQ(taken.front().size, 32U);
 }
 
+TEST_F(UdpSocketTest, WhatWasTakenEarlyNamesItsSender) {
+  ASSERT_TRUE(peer_.send_to(socket_->local(), bytes_of(0x81, 33)));
+  std::optional<UdpSocket::Stranger> early;
+  EXPECT_TRUE(wait_until([&] {
+    early = socket_->take_early(buffer_);
+    return early.has_value();
+  }));
+  EXPECT_EQ(early->from, peer_.local());
+  EXPECT_EQ(early->size, 33U);
+  EXPECT_FALSE(socket_->take_early(buffer_).has_value());
+}
+
 TEST(UdpSocketConnectTest, SaysInASentenceWhyItCannot) {
   SideInbox inbox;
   PlainSocket taken;
