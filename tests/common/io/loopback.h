@@ -45,13 +45,26 @@ inline bool wait_until(const std::function<bool()>& done) {
   return true;
 }
 
+/// A UDP socket bound to `place`, or an invalid one where that is refused.
+inline Descriptor bound_to(const Endpoint& place, bool shares) {
+  Descriptor socket{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+  const int on = shares ? 1 : 0;
+  (void)setsockopt(socket.number(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  if (::bind(socket.number(), place.address(), place.size()) != 0) {
+    socket.close();
+  }
+  return socket;
+}
+
+/// Whether a process that is ready to share could take datagrams of `place`.
+inline bool can_share(const Endpoint& place) { return bound_to(place, true).valid(); }
+
 /// A plain blocking socket on 127.0.0.1: the other end, a stranger, a flooder.
 class PlainSocket {
  public:
-  explicit PlainSocket(std::uint16_t port = 0)
-      : socket_{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)} {
-    const Endpoint wish = *resolve_endpoint("127.0.0.1:" + std::to_string(port));
-    EXPECT_EQ(::bind(socket_.number(), wish.address(), wish.size()), 0);
+  explicit PlainSocket(std::uint16_t port = 0, bool shares = false)
+      : socket_{bound_to(*resolve_endpoint("127.0.0.1:" + std::to_string(port)), shares)} {
+    EXPECT_TRUE(socket_.valid());
   }
   [[nodiscard]] Endpoint local() const {
     sockaddr_storage name{};

@@ -121,6 +121,8 @@ TEST(SessionServerTest, SitesMeetAndTelegramsFlow) {
               HasSubstr("session with the patient site at " + patient.server.local().to_string()));
   EXPECT_GT(patient.accepted, 0U);
   EXPECT_GT(surgeon.accepted, 0U);
+  EXPECT_GT(patient.server.socket_counts().received, 0U);
+  EXPECT_GT(patient.server.socket_counts().sent, 0U);
 }
 
 TEST(SessionServerTest, SurgeonMayComeFirst) {
@@ -146,6 +148,16 @@ TEST(SessionServerTest, OrderlyCloseIsToldAndEndsTheLink) {
   surgeon = std::make_unique<Site>(Role::Surgeon, patient.server.local().port());
   EXPECT_TRUE(meet(*surgeon, patient));
   EXPECT_EQ(patient.count(SessionNews::Kind::Established), 2);
+}
+
+TEST(SessionServerTest, ManySessionsInARowUseUpNothing) {
+  Site patient{Role::Patient, 0};
+  for (int session = 1; session <= 12; ++session) {
+    Site surgeon{Role::Surgeon, patient.server.local().port()};
+    ASSERT_TRUE(meet(surgeon, patient)) << "session " << session;
+    surgeon.server.close("next one");
+    ASSERT_TRUE(run_until({&patient}, nullptr, [&] { return patient.state == LinkState::Down; }));
+  }
 }
 
 TEST(SessionServerTest, SilentlyRestartedPatientIsANewSession) {
@@ -191,6 +203,9 @@ TEST(SessionServerTest, FloodOfJunkBreaksNothing) {
       ++first;
     }
   };
+  for (int i = 0; i < 100; ++i) {
+    flood();
+  }
   Site surgeon{Role::Surgeon, patient.server.local().port()};
   ASSERT_TRUE(run_until({&surgeon, &patient}, nullptr, [&] {
     flood();
@@ -233,12 +248,19 @@ TEST(SessionServerTest, AddressInUseIsOneSentence) {
             "cannot listen on " + owner.local().to_string() + ": address already in use");
 }
 
-TEST(SessionServerTest, SecondServerCannotTakeThePortOfOneInSession) {
+TEST(SessionServerTest, PortIsNotSharedWithAnOwnerWhoWould) {
+  test::PlainSocket owner{0, true};
+  EXPECT_THAT(complaint(config_of(Role::Patient, owner.local().port(), "direct")),
+              HasSubstr("address already in use"));
+}
+
+TEST(SessionServerTest, NobodyCanShareThePortOfOneInSession) {
   Site patient{Role::Patient, 0};
   Site surgeon{Role::Surgeon, patient.server.local().port()};
   ASSERT_TRUE(meet(surgeon, patient));
   EXPECT_THAT(complaint(config_of(Role::Patient, patient.server.local().port(), "direct")),
               HasSubstr("address already in use"));
+  EXPECT_FALSE(test::can_share(patient.server.local()));
 }
 
 TEST(SessionServerTest, HostThatDoesNotExistAndPortZeroAreOneSentence) {
