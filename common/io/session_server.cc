@@ -32,7 +32,7 @@ using asio::ip::udp;
 constexpr Duration kRound = std::chrono::milliseconds{5};  ///< between two looks at everything
 /// Datagrams of strangers looked at in a round. A flood beyond it is left to the kernel to drop: a
 /// FIFO thread that never sleeps would be stopped, and rt with it.
-constexpr int kStrangersPerRoundMax = 256;
+constexpr int kStrangersPerRoundMax = 512;
 constexpr int kEarlyMax = 4096;
 constexpr std::size_t kNewsMax = 64;
 constexpr int kClassSelector3 = 24 << 2;  ///< TOS byte of DSCP CS3, RFC 2474

@@ -60,6 +60,9 @@ void Terminal::restore() noexcept {
     tcsetattr(STDIN_FILENO, TCSANOW, &before_);
     keys_ = false;
   }
+  // Also where they were ignored, as a shell does for its background jobs.
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
   const sigset_t set = stop_signals();
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }

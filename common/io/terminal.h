@@ -19,13 +19,13 @@ enum class StopCause : std::uint8_t { Key, Signal };
 class Terminal {
  public:
   Terminal();
-  /// Puts everything back.
+  /// Puts the terminal back; the signals have their usual effect again.
   ~Terminal();
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
   /// Waits up to `span` for a key or a signal. Once there was one it answers at once, and a
-  /// further signal has its usual effect.
+  /// further signal ends the program.
   [[nodiscard]] std::optional<StopCause> wait_for_stop(Duration span);
   /// Whether standard output is one (and a line may be written over).
   [[nodiscard]] static bool output_is_terminal() noexcept;

@@ -197,15 +197,21 @@ TEST(SessionServerTest, FloodOfJunkBreaksNothing) {
   Site patient{Role::Patient, 0};
   test::PlainSocket stranger;
   std::uint8_t first = 0;
-  const auto flood = [&] {
-    for (int i = 0; i < 20; ++i) {
+  const auto send_junk = [&](int count) {
+    for (int i = 0; i < count; ++i) {
       stranger.send_to(patient.server.local(), test::bytes_of(first, 40U + first));
       ++first;
     }
   };
-  for (int i = 0; i < 100; ++i) {
-    flood();
-  }
+  const SteadyClock clock;
+  TimePoint next = clock.now();
+  const auto flood = [&] {  // 40,000 a second
+    if (clock.now() >= next) {
+      next = clock.now() + milliseconds{1};
+      send_junk(40);
+    }
+  };
+  send_junk(2000);
   Site surgeon{Role::Surgeon, patient.server.local().port()};
   ASSERT_TRUE(run_until({&surgeon, &patient}, nullptr, [&] {
     flood();
