@@ -1,5 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <string_view>
+
 #include "common/core/site_state.h"
 #include "common/core/time.h"
 
@@ -25,6 +29,42 @@ struct OperatorView {
   bool tip_known{};
 };
 
+/// Why a scripted operator let go for good.
+enum class ScriptOutcome : std::uint8_t {
+  None,         ///< not yet
+  Completed,    ///< performed to the end
+  Interrupted,  ///< the link was lost, and the operator was told not to engage again
+  Refused,      ///< no engagement came about
+  Stopped       ///< the site is in state Stopped
+};
+
+[[nodiscard]] constexpr std::string_view to_string(ScriptOutcome outcome) noexcept {
+  switch (outcome) {
+    case ScriptOutcome::None:
+      return "";
+    case ScriptOutcome::Completed:
+      return "completed";
+    case ScriptOutcome::Interrupted:
+      return "interrupted";
+    case ScriptOutcome::Refused:
+      return "refused";
+    case ScriptOutcome::Stopped:
+      return "stopped";
+  }
+  return "?";
+}
+
+/// How far a scripted operator got; a device held by a person has no script.
+struct ScriptProgress {
+  bool scripted{};
+  bool begun{};
+  bool finished{};  ///< nothing more will happen
+  ScriptOutcome outcome{};
+  std::uint32_t phase{};              ///< 1, 2, ...: present or next
+  std::array<char, 24> phase_name{};  ///< ends with 0
+  double done{};                      ///< [-], 0 to 1
+};
+
 /// Thread: rt. Each call returns within 50 us and never blocks; a slow device has its own thread
 /// and answers from a mailbox.
 class HapticDevice {
@@ -33,6 +73,7 @@ class HapticDevice {
   virtual HandState read(TimePoint now) noexcept = 0;        ///< the last one again if none is new
   virtual void apply(double force) noexcept = 0;             ///< [N], + pushes out; |force| <= max
   virtual void show(const OperatorView& view) noexcept = 0;  ///< devices without a lamp ignore it
+  [[nodiscard]] virtual ScriptProgress progress() const noexcept { return {}; }
   [[nodiscard]] virtual double force_max() const noexcept = 0;         ///< [N], peak
   [[nodiscard]] virtual double force_continuous() const noexcept = 0;  ///< [N], for i^2 t
 };

@@ -1,0 +1,79 @@
+#include "surgeon_site/force_gate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/check.h"
+#include "common/core/limits.h"
+
+namespace palp::surgeon {
+namespace {
+
+/// A late tick must not buy a bigger step of a fade.
+constexpr Duration kFadeTickMax = std::chrono::milliseconds{10};
+
+constexpr bool may_carry_force(SiteState state) noexcept {
+  return state == SiteState::Engaged || state == SiteState::Hold || state == SiteState::Retract;
+}
+
+}  // namespace
+
+ForceGate::ForceGate(const ForceGateConfig& config) noexcept : config_{config} {
+  PALP_CHECK(config.force_max >= 0 && config.force_continuous > 0 && config.thermal_time > 0 &&
+                 config.fade_slew > 0,
+             "the limits of a gate are positive");
+}
+
+double ForceGate::limit() const noexcept {
+  if (config_.force_continuous >= config_.force_max) return config_.force_max;
+  // From the peak when cold down to the continuous force when hot, where heat rises no more.
+  const double room = 1 - heat_ / (config_.force_continuous * config_.force_continuous);
+  return config_.force_continuous +
+         (config_.force_max - config_.force_continuous) * std::clamp(room, 0.0, 1.0);
+}
+
+void ForceGate::heat_up(Duration dt) noexcept {
+  const double share = std::min(1.0, seconds(dt) / config_.thermal_time);
+  heat_ += share * (force_ * force_ - heat_);
+}
+
+ForceAnswer ForceGate::pass(const ForceRequest& asked, Duration dt) noexcept {
+  heat_up(dt);
+  guard_left_ = std::max(Duration{0}, guard_left_ - dt);
+  if (asked.state != state_ || asked.dead_man_held != dead_man_held_) {
+    fading_ = true;
+    guard_left_ = config_.fade_guard;
+  }
+  state_ = asked.state;
+  dead_man_held_ = asked.dead_man_held;
+
+  const bool finite = std::isfinite(asked.force);
+  const double wanted = finite ? asked.force : 0;
+  const double largest = limit();
+  const bool open = asked.dead_man_held && may_carry_force(asked.state);
+  const double target = open ? std::clamp(wanted, -largest, largest) : 0;
+  if (asked.cut || !finite) {
+    force_ = 0;
+    fading_ = true;
+  } else if (fading_ || guard_left_ > Duration{0}) {
+    const double step = config_.fade_slew * seconds(std::min(dt, kFadeTickMax));
+    force_ = step_towards(force_, target, step);
+    fading_ = force_ != target;
+  } else {
+    force_ = target;
+  }
+
+  ForceAnswer answer{force_, !finite || force_ != asked.force, record::NoteCode::None, 0};
+  const bool clamped = open && finite && target != wanted;
+  if (!finite && !not_finite_) {
+    answer.note = record::NoteCode::NotFinite;
+  } else if (clamped && !clamped_) {
+    answer.note = record::NoteCode::ForceGateClamped;
+    answer.detail = asked.force;
+  }
+  not_finite_ = !finite;
+  clamped_ = clamped;
+  return answer;
+}
+
+}  // namespace palp::surgeon

@@ -1,0 +1,168 @@
+#include "surgeon_site/script_builder.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "common/core/check.h"
+#include "common/core/conventions.h"
+
+namespace palp::surgeon {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double kHertz = 1897.0;  ///< [N/m^1.5], see plain_force
+
+std::string millimetres(double length) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g mm", length / kMillimetre);
+  return text.data();
+}
+
+void palpate(ScriptBuilder& script, Duration hold) {
+  script.move(-3e-3, milliseconds{500})
+      .taps(4, 4e-3, milliseconds{1000}, milliseconds{500})
+      .press(2e-3, milliseconds{600}, hold)
+      .press(4e-3, milliseconds{400}, hold)
+      .lift(milliseconds{600}, hold);
+}
+
+void palpate_briefly(ScriptBuilder& script) {
+  script.move(-3e-3, milliseconds{500})
+      .taps(4, 4e-3, milliseconds{1000}, milliseconds{500})
+      .press(4e-3, milliseconds{600}, milliseconds{2000})
+      .lift(milliseconds{600}, milliseconds{1000});
+}
+
+}  // namespace
+
+double plain_force(double depth) noexcept { return kHertz * depth * std::sqrt(depth); }
+
+std::string site_name(double lateral) {
+  constexpr double kSamePlace = 1e-9;  // [m]
+  if (std::abs(lateral - kSiteA) < kSamePlace) return "A";
+  if (std::abs(lateral - kSiteB) < kSamePlace) return "B";
+  return millimetres(lateral);
+}
+
+ScriptBuilder::ScriptBuilder(double hand_stiffness) : hand_stiffness_{hand_stiffness} {
+  PALP_CHECK(hand_stiffness > 0, "a hand without stiffness cannot aim");
+}
+
+double ScriptBuilder::aim_for(double depth) const noexcept {
+  return depth + plain_force(depth) / hand_stiffness_;
+}
+
+void ScriptBuilder::begin_phase(std::string name) { phases_.push_back({std::move(name), length_}); }
+
+void ScriptBuilder::append(Stretch stretch) {
+  stretch.phase = static_cast<std::uint32_t>(phases_.size());
+  stretch.began_at = length_;
+  stretch.from = position_;
+  stretch.lateral = lateral_;
+  length_ += stretch.duration;
+  stretches_.push_back(stretch);
+}
+
+void ScriptBuilder::hold_as(StretchKind kind, Duration span) {
+  Stretch stretch;
+  stretch.kind = kind;
+  stretch.duration = span;
+  stretch.to = position_;
+  append(stretch);
+}
+
+void ScriptBuilder::move_as(StretchKind kind, double to, Duration span, double depth) {
+  Stretch stretch;
+  stretch.kind = kind;
+  stretch.duration = span;
+  stretch.to = to;
+  stretch.depth = depth;
+  append(stretch);
+  position_ = to;
+}
+
+ScriptBuilder& ScriptBuilder::hold(Duration span) {
+  begin_phase("hold");
+  hold_as(StretchKind::Hold, span);
+  return *this;
+}
+
+ScriptBuilder& ScriptBuilder::air(double amplitude, double frequency, Duration span) {
+  begin_phase("free air");
+  Stretch stretch;
+  stretch.kind = StretchKind::Air;
+  stretch.duration = span;
+  stretch.to = position_ + amplitude;
+  stretch.frequency = frequency;
+  append(stretch);
+  return *this;
+}
+
+ScriptBuilder& ScriptBuilder::move(double position, Duration span) {
+  begin_phase("move " + site_name(lateral_));
+  move_as(StretchKind::Move, position, span);
+  return *this;
+}
+
+ScriptBuilder& ScriptBuilder::taps(std::uint32_t count,
+                                   double depth,
+                                   Duration span,
+                                   Duration pause) {
+  begin_phase("taps " + site_name(lateral_));
+  for (std::uint32_t index = 1; index <= count; ++index) {
+    Stretch tap;
+    tap.kind = StretchKind::Tap;
+    tap.index = index;
+    tap.duration = span;
+    tap.to = aim_for(depth);
+    tap.depth = depth;
+    append(tap);
+    if (pause > Duration{0}) hold_as(StretchKind::Pause, pause);
+  }
+  return *this;
+}
+
+ScriptBuilder& ScriptBuilder::press(double depth, Duration move_span, Duration hold_span) {
+  begin_phase("press " + millimetres(depth) + " " + site_name(lateral_));
+  move_as(StretchKind::PressMove, aim_for(depth), move_span, depth);
+  hold_as(StretchKind::PressHold, hold_span);
+  stretches_.back().depth = depth;
+  return *this;
+}
+
+ScriptBuilder& ScriptBuilder::lift(Duration move_span, Duration hold_span) {
+  begin_phase("lift " + site_name(lateral_));
+  move_as(StretchKind::LiftMove, kClearPlace, move_span);
+  hold_as(StretchKind::LiftHold, hold_span);
+  return *this;
+}
+
+ScriptBuilder& ScriptBuilder::site(double lateral) {
+  lateral_ = lateral;
+  return *this;
+}
+
+GestureScript ScriptBuilder::build() const { return GestureScript{stretches_, phases_}; }
+
+GestureScript standard_script(const ScriptSetting& setting) {
+  const Duration hold = std::max<Duration>(milliseconds{2000}, 4 * setting.round_trip);
+  ScriptBuilder script{setting.hand_stiffness};
+  script.hold(milliseconds{1000}).air(5e-3, 1.0, milliseconds{4000}).hold(milliseconds{500});
+  palpate(script.site(kSiteA), hold);
+  palpate(script.site(kSiteB), hold);
+  return script.build();
+}
+
+GestureScript demo_script(const ScriptSetting& setting) {
+  ScriptBuilder script{setting.hand_stiffness};
+  script.hold(milliseconds{1000}).air(5e-3, 1.0, milliseconds{2000}).hold(milliseconds{500});
+  palpate_briefly(script.site(kSiteA));
+  palpate_briefly(script.site(kSiteB));
+  return script.build();
+}
+
+}  // namespace palp::surgeon

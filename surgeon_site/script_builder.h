@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/core/time.h"
+#include "surgeon_site/gesture_script.h"
+
+namespace palp::surgeon {
+
+inline constexpr double kSiteA = 0.0;          ///< [m], lateral of the site without inclusion
+inline constexpr double kSiteB = 20e-3;        ///< [m], lateral of the site above the inclusion
+inline constexpr double kClearPlace = -10e-3;  ///< [m], where scripts start and lift to
+
+/// Force of plain tissue at `depth` [m] >= 0, as scripts assume it: 1897 d^1.5 [N], Hertz's law for
+/// a sphere of 5 mm radius on an elastic half space of 15.3 kPa, Poisson's ratio 0.49.
+[[nodiscard]] double plain_force(double depth) noexcept;
+
+/// "A", "B", or the lateral place [m] in millimetres: the name of a site for people and reports.
+[[nodiscard]] std::string site_name(double lateral);
+
+/// Puts a script together, phase by phase, from a hold of no length at -10 mm, lateral 0.
+/// Depths are what a hand of the given stiffness reaches on plain tissue: it aims at
+/// d + plain_force(d)/stiffness, on every tissue alike, so a stiffer one gives less depth.
+/// All spans must be > 0; ranges are the reader's to check. Not for rt: allocates.
+class ScriptBuilder {
+ public:
+  explicit ScriptBuilder(double hand_stiffness);  ///< [N/m] > 0
+
+  ScriptBuilder& hold(Duration span);
+  /// Sine of `amplitude` [m] and `frequency` [Hz] about the present place.
+  ScriptBuilder& air(double amplitude, double frequency, Duration span);
+  ScriptBuilder& move(double position, Duration span);  ///< [m], half-cosine
+  /// `count` raised cosines from here to `depth` [m] and back, each followed by a pause (0: none).
+  ScriptBuilder& taps(std::uint32_t count, double depth, Duration span, Duration pause);
+  ScriptBuilder& press(double depth, Duration move_span, Duration hold_span);  ///< depth [m]
+  ScriptBuilder& lift(Duration move_span, Duration hold_span);
+  /// The next phases are at `lateral` [m]. Takes no time, so be clear of the tissue.
+  ScriptBuilder& site(double lateral);
+
+  [[nodiscard]] double position() const noexcept { return position_; }  ///< [m], after all so far
+  [[nodiscard]] Duration length() const noexcept { return length_; }
+  [[nodiscard]] GestureScript build() const;  ///< at least one phase was added
+
+ private:
+  [[nodiscard]] double aim_for(double depth) const noexcept;
+  void begin_phase(std::string name);
+  /// Fills in phase, time and place, and goes to where the stretch ends.
+  void append(Stretch stretch);
+  void hold_as(StretchKind kind, Duration span);
+  void move_as(StretchKind kind, double to, Duration span, double depth = 0);
+
+  double hand_stiffness_;         ///< [N/m]
+  double position_{kClearPlace};  ///< [m]
+  double lateral_{kSiteA};        ///< [m]
+  Duration length_{};
+  std::vector<Stretch> stretches_;
+  std::vector<ScriptPhase> phases_;
+};
+
+/// What a ready-made script is made for.
+struct ScriptSetting {
+  double hand_stiffness{300.0};  ///< [N/m], of the grip
+  Duration round_trip{};         ///< expected; lengthens the holds of `standard`
+};
+
+/// The standard palpation: a hold, 4 s of free air, then on site A and on site B four taps to 4 mm,
+/// presses held at 2 and 4 mm, and a lift. Every hold lasts max(2 s, 4 round trips).
+[[nodiscard]] GestureScript standard_script(const ScriptSetting& setting);
+
+/// The same taps on both sites and one held press to 4 mm each, in 25 s.
+[[nodiscard]] GestureScript demo_script(const ScriptSetting& setting);
+
+}  // namespace palp::surgeon

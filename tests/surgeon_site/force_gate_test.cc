@@ -1,0 +1,158 @@
+#include "surgeon_site/force_gate.h"
+
+#include <cmath>
+#include <deque>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace palp::surgeon {
+namespace {
+
+using std::chrono_literals::operator""s;
+using std::chrono_literals::operator""ms;
+using record::NoteCode;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+ForceRequest engaged(double force) { return {force, SiteState::Engaged, true, false}; }
+
+/// A gate after a minute of contact without force: its fades are over.
+ForceGate settled() {
+  ForceGate gate{ForceGateConfig{}};
+  for (int i = 0; i < 4000; ++i) gate.pass(engaged(0), 1ms);
+  return gate;
+}
+
+TEST(ForceGateTest, LeavesNormalContactAlone) {
+  ForceGate gate = settled();
+  for (int i = 0; i < 3000; ++i) {
+    const double force = 2 * std::sin(0.05 * i);  // up to 100 N/s
+    const ForceAnswer answer = gate.pass(engaged(force), 1ms);
+    ASSERT_EQ(answer.force, force);
+    ASSERT_FALSE(answer.acted);
+  }
+}
+
+TEST(ForceGateTest, ClampsToThePeakAndSaysSoOnce) {
+  ForceGate gate = settled();
+  const ForceAnswer first = gate.pass(engaged(20), 1ms);
+  EXPECT_EQ(first.force, 8.5);
+  EXPECT_TRUE(first.acted);
+  EXPECT_EQ(first.note, NoteCode::ForceGateClamped);
+  EXPECT_EQ(first.detail, 20);
+  EXPECT_EQ(gate.pass(engaged(20), 1ms).note, NoteCode::None);
+  EXPECT_EQ(gate.pass(engaged(1), 1ms).note, NoteCode::None);
+  EXPECT_EQ(gate.pass(engaged(-20), 1ms).note, NoteCode::ForceGateClamped);
+  EXPECT_LT(gate.force(), -8.4);
+}
+
+TEST(ForceGateTest, LastForceBelowThePeakPasses) {
+  ForceGate gate = settled();
+  EXPECT_EQ(gate.pass(engaged(8.5), 1ms).force, 8.5);
+  EXPECT_FALSE(settled().pass(engaged(8.5), 1ms).acted);
+}
+
+TEST(ForceGateTest, NotANumberIsZeroAtOnceAndNoted) {
+  for (const double bad : {kNan, HUGE_VAL, -HUGE_VAL}) {
+    ForceGate gate = settled();
+    gate.pass(engaged(2), 1ms);
+    const ForceAnswer answer = gate.pass(engaged(bad), 1ms);
+    EXPECT_EQ(answer.force, 0);
+    EXPECT_EQ(answer.note, NoteCode::NotFinite);
+    EXPECT_EQ(gate.pass(engaged(bad), 1ms).note, NoteCode::None);
+    EXPECT_NEAR(gate.pass(engaged(2), 1ms).force, 0.04, 1e-12) << "and comes back as a fade";
+  }
+}
+
+TEST(ForceGateTest, HotMotorsGetTheirContinuousForce) {
+  ForceGate gate = settled();
+  double force = 0;
+  for (int i = 0; i < 120000; ++i) force = gate.pass(engaged(8), 1ms).force;
+  EXPECT_NEAR(force, 1.4, 0.02);
+}
+
+TEST(ForceGateTest, ContinuousForceIsNeverLimited) {
+  ForceGate gate = settled();
+  for (int i = 0; i < 120000; ++i) ASSERT_EQ(gate.pass(engaged(1.4), 1ms).force, 1.4);
+}
+
+TEST(ForceGateTest, HeatNeverExceedsWhatTheMotorsStand) {
+  ForceGate gate = settled();
+  double heat = 0;
+  for (int i = 0; i < 60000; ++i) {
+    const double force = gate.pass(engaged(i % 2000 < 1200 ? 8.5 : 0), 1ms).force;
+    heat += 1e-3 / 10.0 * (force * force - heat);
+    ASSERT_LE(heat, 1.4 * 1.4 + 1e-6);
+  }
+}
+
+TEST(ForceGateTest, NoForceWithoutPedalOrOutOfContactStates) {
+  for (const SiteState state : {SiteState::Parked, SiteState::Clutched, SiteState::Stopped}) {
+    ForceGate gate = settled();
+    gate.pass(engaged(1), 1ms);
+    EXPECT_NEAR(gate.pass({1, state, true, false}, 1ms).force, 0.96, 1e-12);
+    for (int i = 0; i < 25; ++i) gate.pass({1, state, true, false}, 1ms);
+    EXPECT_EQ(gate.force(), 0) << to_string(state);
+  }
+  ForceGate gate = settled();
+  gate.pass(engaged(1), 1ms);
+  for (int i = 0; i < 26; ++i) gate.pass({1, SiteState::Engaged, false, false}, 1ms);
+  EXPECT_EQ(gate.force(), 0) << "pedal up";
+}
+
+TEST(ForceGateTest, RetractAndHoldLeaveTheFadeToTheLaw) {
+  for (const SiteState state : {SiteState::Hold, SiteState::Retract}) {
+    ForceGate gate = settled();
+    gate.pass(engaged(1), 1ms);
+    EXPECT_EQ(gate.pass({0.99, state, true, false}, 1ms).force, 0.99);
+  }
+}
+
+TEST(ForceGateTest, EmergencyStopIsImmediate) {
+  ForceGate gate = settled();
+  gate.pass(engaged(8), 1ms);
+  EXPECT_EQ(gate.pass({8, SiteState::Stopped, true, true}, 1ms).force, 0);
+}
+
+TEST(ForceGateTest, LateFirstSampleOfAnEngagementFadesIn) {
+  ForceGate gate{ForceGateConfig{}};
+  for (int i = 0; i < 2000; ++i) gate.pass(engaged(0), 1ms);
+  EXPECT_NEAR(gate.pass(engaged(1), 1ms).force, 0.04, 1e-12);
+}
+
+RC_GTEST_PROP(ForceGateTest, NoChangeOfStateMovesTheForceByMoreThanHalfANewtonInTenTicks, ()) {
+  ForceGate gate = settled();
+  const double force = *rc::gen::map(rc::gen::inRange(-8000, 8000), [](int x) { return x * 1e-3; });
+  // Reached as contact reaches it, not by a jump.
+  for (int i = 1; i <= 1000; ++i) gate.pass(engaged(force * i / 1000), 1ms);
+  std::deque<double> last(10, gate.force());
+  for (int i = 0; i < 40; ++i) {
+    const auto state = static_cast<SiteState>(*rc::gen::inRange(0, kSiteStateCount));
+    const bool pedal = *rc::gen::inRange(0, 4) != 0;
+    const int span = *rc::gen::inRange(1, 120);
+    for (int k = 0; k < span; ++k) {
+      const ForceAnswer answer = gate.pass({force, state, pedal, false}, 1ms);
+      RC_ASSERT(std::abs(answer.force - last.front()) <= 0.5);
+      RC_ASSERT(std::abs(answer.force) <= 8.5);
+      last.pop_front();
+      last.push_back(answer.force);
+    }
+  }
+}
+
+RC_GTEST_PROP(ForceGateTest, NeverGivesMoreThanTheDeviceCan, ()) {
+  ForceGate gate{ForceGateConfig{}};
+  for (int i = 0; i < 300; ++i) {
+    const double force = *rc::gen::element(0.0, 1.0, -1.0, 9.0, -1e300, 1e300, kNan, HUGE_VAL);
+    const auto state = static_cast<SiteState>(*rc::gen::inRange(0, kSiteStateCount));
+    const Duration dt = *rc::gen::element<Duration>(1ms, 2ms, 50ms, 10s);
+    const ForceAnswer answer = gate.pass({force, state, *rc::gen::arbitrary<bool>(), false}, dt);
+    RC_ASSERT(std::isfinite(answer.force));
+    RC_ASSERT(std::abs(answer.force) <= 8.5);
+  }
+}
+
+}  // namespace
+}  // namespace palp::surgeon

@@ -1,0 +1,133 @@
+#include "surgeon_site/script_reader.h"
+
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palp::surgeon {
+namespace {
+
+using std::chrono_literals::operator""s;
+using std::chrono_literals::operator""ms;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr double kStiffness = 300;  // [N/m]
+
+std::string refusal(const std::string& text) {
+  const Result<GestureScript> script = parse_script(text, kStiffness);
+  return script ? "accepted" : script.error().text;
+}
+
+std::string replay_refusal(const std::string& text) {
+  const Result<GestureScript> script = parse_replay(text);
+  return script ? "accepted" : script.error().text;
+}
+
+TEST(ScriptReaderTest, StandardPalpationAsTextIsTheStandardPalpation) {
+  const std::string site = "move -3 0.5\ntaps 4 4 1 0.5\npress 2 0.6 2\npress 4 .4 2\nlift 0.6 2\n";
+  const Result<GestureScript> read = parse_script(
+      "# the standard palpation\nhold 1\n\nair 5 1 4  # free air\nhold 0.5\r\nsite A\n" + site +
+          "site B\n" + site,
+      kStiffness);
+  ASSERT_TRUE(read) << read.error().text;
+  const GestureScript standard = standard_script({kStiffness, {}});
+  ASSERT_EQ(read->length(), standard.length());
+  for (Duration t{}; t <= standard.length(); t += 7ms) {
+    ASSERT_EQ(read->at(t).position, standard.at(t).position) << seconds(t);
+    ASSERT_EQ(read->at(t).lateral, standard.at(t).lateral) << seconds(t);
+  }
+}
+
+TEST(ScriptReaderTest, LastLineNeedsNoNewline) {
+  EXPECT_TRUE(parse_script("hold 1", kStiffness));
+  EXPECT_TRUE(parse_script("hold 1\nsite 12.5\ntaps 1 20 0.02 0", kStiffness));
+}
+
+TEST(ScriptReaderTest, RefusalsNameLineWordAndWhatWasExpected) {
+  EXPECT_THAT(refusal("hold 1\n\ntap 4"), AllOf(HasSubstr("line 3"), HasSubstr("'tap'")));
+  EXPECT_THAT(refusal("hold"), AllOf(HasSubstr("line 1"), HasSubstr("hold SECONDS")));
+  EXPECT_THAT(refusal("hold 1 2"), AllOf(HasSubstr("hold SECONDS"), HasSubstr("2 value")));
+  EXPECT_THAT(refusal("taps 4 4 one 0.5"), AllOf(HasSubstr("SECONDS 'one'"), HasSubstr("number")));
+  EXPECT_THAT(refusal("hold 1s"), HasSubstr("'1s' is not a number"));
+  EXPECT_THAT(refusal("hold nan"), HasSubstr("not a number"));
+  EXPECT_THAT(refusal("hold inf"), HasSubstr("not a number"));
+  EXPECT_THAT(refusal("taps 1.5 4 1 0"), AllOf(HasSubstr("COUNT 1.5"), HasSubstr("whole number")));
+  EXPECT_THAT(refusal("site C"), HasSubstr("'C' is not a number"));
+  EXPECT_THAT(refusal(""), HasSubstr("no phase"));
+  EXPECT_THAT(refusal("# nothing\nsite B\n"), HasSubstr("no phase"));
+}
+
+TEST(ScriptReaderTest, BordersOfEveryRange) {
+  EXPECT_EQ(refusal("press 20 0.6 2"), "accepted");
+  EXPECT_THAT(refusal("press 20.001 0.6 2"), HasSubstr("DEPTH_MM 20.001"));
+  EXPECT_THAT(refusal("press 0 0.6 2"), HasSubstr("above 0"));
+  EXPECT_EQ(refusal("hold 0.02"), "accepted");
+  EXPECT_THAT(refusal("hold 0.019"), HasSubstr("SECONDS 0.019"));
+  EXPECT_EQ(refusal("hold 3600"), "accepted");
+  EXPECT_THAT(refusal("hold 3600.1"), HasSubstr("to 3600"));
+  EXPECT_EQ(refusal("move -60 1"), "accepted");
+  EXPECT_THAT(refusal("move -60.1 1"), HasSubstr("POSITION_MM"));
+  EXPECT_EQ(refusal("taps 1000 4 1 0"), "accepted");
+  EXPECT_THAT(refusal("taps 0 4 1 0"), HasSubstr("COUNT 0"));
+  EXPECT_THAT(refusal("taps 1001 4 1 0"), HasSubstr("COUNT 1001"));
+  EXPECT_EQ(refusal("hold 3600\nhold 3600\nhold 3600\nhold 3600"), "accepted");
+  EXPECT_THAT(refusal("hold 3600\nhold 3600\nhold 3600\nhold 3600\nhold 1"),
+              AllOf(HasSubstr("line 5"), HasSubstr("4 hours")));
+}
+
+TEST(ScriptReaderTest, FreeAirStaysFreeAndEndsWhereItBegan) {
+  EXPECT_EQ(refusal("air 10 1 4"), "accepted");
+  EXPECT_THAT(refusal("air 10.1 1 4"), HasSubstr("free air"));
+  EXPECT_THAT(refusal("air 5 1 4.3"), HasSubstr("whole number of cycles"));
+  EXPECT_THAT(refusal("air 5 0.00001 0.02"), HasSubstr("whole number of cycles"));
+}
+
+TEST(ScriptReaderTest, SiteChangesOnlyClearOfTheTissue) {
+  EXPECT_EQ(refusal("press 4 1 1\nlift 1 1\nsite B\nhold 1"), "accepted");
+  EXPECT_THAT(refusal("press 4 1 1\nsite B\nhold 1"),
+              AllOf(HasSubstr("line 2"), HasSubstr("lift first")));
+}
+
+TEST(ScriptReaderTest, ReplayStartsAtItsFirstRow) {
+  const Result<GestureScript> script =
+      parse_replay("t_s,position_mm,lateral_mm\r\n5.0,-10,0\r\n5.5,-9,0\n\n6,-9,20\n");
+  ASSERT_TRUE(script) << script.error().text;
+  EXPECT_EQ(script->length(), 1s);
+  EXPECT_NEAR(script->at(250ms).position, -9.5e-3, 1e-12);
+  EXPECT_NEAR(script->at(1s).lateral, 20e-3, 1e-12);
+}
+
+TEST(ScriptReaderTest, ReplayRefusalsNameLineAndValue) {
+  EXPECT_THAT(replay_refusal(""), HasSubstr("header"));
+  EXPECT_THAT(replay_refusal("t_s,position_m\n0,0\n1,0\n"), HasSubstr("line 1"));
+  EXPECT_THAT(replay_refusal("t_s,position_mm\n0,0\n"), HasSubstr("two rows"));
+  EXPECT_THAT(replay_refusal("t_s,position_mm\n0,0\n0,1\n"),
+              AllOf(HasSubstr("line 3"), HasSubstr("does not rise")));
+  EXPECT_THAT(replay_refusal("t_s,position_mm\n1,0\n0.5,1\n"), HasSubstr("does not rise"));
+  EXPECT_THAT(replay_refusal("t_s,position_mm\n0,x\n1,0\n"), HasSubstr("position_mm 'x'"));
+  EXPECT_THAT(replay_refusal("t_s,position_mm\n0,1e9\n1,0\n"), HasSubstr("position_mm"));
+  EXPECT_THAT(replay_refusal("t_s,position_mm\n0,0,0\n1,0\n"), HasSubstr("expected 2 columns"));
+  EXPECT_THAT(replay_refusal("t_s,position_mm\n0,\n1,0\n"), HasSubstr("''"));
+  EXPECT_THAT(replay_refusal("t_s,position_mm\n0,0\n1e9,0\n"), HasSubstr("4 hours"));
+}
+
+TEST(ScriptReaderTest, LoadsByNameAndByFile) {
+  const ScriptSetting setting{.hand_stiffness = kStiffness};
+  EXPECT_EQ(load_script("script:standard", setting)->length(), 33700ms);
+  EXPECT_TRUE(load_script("script:demo", setting));
+  const std::string path = ::testing::TempDir() + "palp_script_reader_test.txt";
+  std::ofstream{path} << "hold 1\nhold x\n";
+  EXPECT_THAT(load_script("script:" + path, setting).error().text,
+              AllOf(HasSubstr(path), HasSubstr("line 2")));
+  std::ofstream{path} << "t_s,position_mm\n0,-10\n2,-10\n";
+  EXPECT_EQ(load_script("replay:" + path, setting)->length(), 2s);
+  EXPECT_THAT(load_script("script:/nowhere/x", setting).error().text, HasSubstr("cannot open"));
+  EXPECT_THAT(load_script("script:/", setting).error().text, HasSubstr("cannot"));
+  EXPECT_THAT(load_script("robot", setting).error().text, HasSubstr("unknown master 'robot'"));
+}
+
+}  // namespace
+}  // namespace palp::surgeon
