@@ -6,9 +6,8 @@ namespace palp::surgeon {
 
 using record::NoteCode;
 
-/// A peer's epoch never falls while it lives.
-bool SurgeonSupervisor::peer_restarted(const SupervisorInput& in) const noexcept {
-  return in.peer_heard && in.peer.epoch < peer_epoch_;
+bool SurgeonSupervisor::session_began(const SupervisorInput& in) const noexcept {
+  return in.session_id != 0 && in.session_id != session_id_;
 }
 
 bool SurgeonSupervisor::pedal_pressed(const SupervisorInput& in) const noexcept {
@@ -16,8 +15,8 @@ bool SurgeonSupervisor::pedal_pressed(const SupervisorInput& in) const noexcept 
 }
 
 bool SurgeonSupervisor::ready_to_engage(const SupervisorInput& in) const noexcept {
-  return pedal_pressed(in) && in.link == LinkState::Live && in.round_trip > Duration{0} &&
-         in.peer_heard && in.peer.state == SiteState::Clutched && in.tip_known;
+  return pedal_pressed(in) && in.link == LinkState::Live && in.peer_heard &&
+         in.peer.state == SiteState::Clutched && in.tip_known;
 }
 
 bool SurgeonSupervisor::round_trip_too_long(const SupervisorInput& in) const noexcept {
@@ -53,8 +52,8 @@ SurgeonSupervisor::Arrow SurgeonSupervisor::from_clutched(
 /// What ends a session of the hand whatever the gap: in Engaged and in Hold alike.
 SurgeonSupervisor::Arrow SurgeonSupervisor::by_peer_or_pedal(
     const SupervisorInput& in) const noexcept {
+  if (session_began(in)) return {SiteState::Retract, NoteCode::SessionBegan};
   if (in.link == LinkState::Down) return {SiteState::Retract, NoteCode::LinkDown};
-  if (peer_restarted(in)) return {SiteState::Retract, NoteCode::SessionBegan};
   if (in.peer_heard && in.peer.epoch >= epoch_) {
     if (in.peer.state == SiteState::Retract || in.peer.state == SiteState::Parked) {
       return {SiteState::Retract, NoteCode::PeerRetracting};
@@ -121,15 +120,15 @@ SurgeonSupervisor::Arrow SurgeonSupervisor::decide(const SupervisorInput& in) co
 
 void SurgeonSupervisor::remember(const SupervisorInput& in) noexcept {
   pedal_was_held_ = in.pedal_held;
-  if (in.peer_heard) {
-    peer_was_stopped_ = in.peer.state == SiteState::Stopped;
-    peer_epoch_ = in.peer.epoch;
-  }
+  if (in.peer_heard) peer_was_stopped_ = in.peer.state == SiteState::Stopped;
+  if (session_began(in)) session_id_ = in.session_id;
   lost_in_hold_ = state_ == SiteState::Hold && (lost_in_hold_ || in.link == LinkState::Lost);
 }
 
 SupervisorOutput SurgeonSupervisor::step(const SupervisorInput& in) noexcept {
   SupervisorOutput out;
+  out.session_began = session_began(in);
+  if (out.session_began) epoch_ = 0;
   const Arrow arrow = decide(in);
   out.reason = arrow.reason;
   if (arrow.reason != NoteCode::None) {

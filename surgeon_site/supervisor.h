@@ -24,10 +24,11 @@ struct SupervisorInput {
   bool pedal_held{};
   bool emergency_stop{};
   bool device_faulted{};
-  bool local_reset{};  ///< the user's way out of Stopped, true for one tick
-  LinkState link{};
+  bool local_reset{};          ///< the user's way out of Stopped, true for one tick
+  LinkState link{};            ///< Live only once the round trip was measured
+  std::uint64_t session_id{};  ///< 0: none
   Duration gap{};
-  Duration round_trip{};  ///< 0: not measured yet
+  Duration round_trip{};
   link::SiteReport peer;
   bool peer_heard{};
   bool tip_known{};  ///< without it the clutch has nothing to align with
@@ -38,6 +39,7 @@ struct SupervisorOutput {
   SiteState state{};
   std::uint32_t epoch{};
   bool engaged_now{};         ///< this tick opened the epoch
+  bool session_began{};       ///< another session than the last one
   record::NoteCode reason{};  ///< of the change of state
   record::NoteCode refused{};
   double detail{};  ///< of `refused`
@@ -45,7 +47,9 @@ struct SupervisorOutput {
 
 /// The surgeon's half of the site states: says when the peer's samples may cause force. A pure
 /// machine: its output depends on nothing but config, the inputs so far and their order.
-/// A report of an older epoch moves nothing, unless it says Stopped. Thread: rt. A value.
+/// A report of an older epoch moves nothing, unless it says Stopped. With a new session epochs
+/// count from 0 again, because the peer may be a process that has just started. Thread: rt. A
+/// value.
 class SurgeonSupervisor {
  public:
   explicit SurgeonSupervisor(const SupervisorConfig& config) noexcept : config_{config} {}
@@ -70,7 +74,7 @@ class SurgeonSupervisor {
   [[nodiscard]] Arrow from_retract(const SupervisorInput& in) const noexcept;
   [[nodiscard]] Arrow from_stopped(const SupervisorInput& in) const noexcept;
   [[nodiscard]] Arrow by_peer_or_pedal(const SupervisorInput& in) const noexcept;
-  [[nodiscard]] bool peer_restarted(const SupervisorInput& in) const noexcept;
+  [[nodiscard]] bool session_began(const SupervisorInput& in) const noexcept;
   [[nodiscard]] bool pedal_pressed(const SupervisorInput& in) const noexcept;
   [[nodiscard]] bool ready_to_engage(const SupervisorInput& in) const noexcept;
   [[nodiscard]] bool round_trip_too_long(const SupervisorInput& in) const noexcept;
@@ -81,7 +85,7 @@ class SurgeonSupervisor {
   std::uint32_t epoch_{};
   TimePoint entered_at_{};
   TimePoint engaged_at_{};
-  std::uint32_t peer_epoch_{};   ///< last heard
+  std::uint64_t session_id_{};   ///< of the last session there was; 0: none yet
   bool pedal_was_held_{true};    ///< held from the start is no edge
   bool peer_was_stopped_{true};  ///< Stopped from the start is no change, Parked waits for its end
   bool lost_in_hold_{};

@@ -8,7 +8,7 @@ namespace palp::surgeon {
 /// A session as an operator sees it: engages on the pedal's edge at once, or refuses.
 class FakeSession {
  public:
-  explicit FakeSession(double tip) : tip_{tip} {}  ///< [m]
+  explicit FakeSession(double tip_position) : tip{tip_position} {}  ///< [m]
 
   void step(bool pedal) {
     const bool edge = pedal && !pedal_;
@@ -17,17 +17,17 @@ class FakeSession {
     if (state == SiteState::Clutched && edge && willing) state = SiteState::Engaged;
     if (state == SiteState::Engaged && !pedal) state = SiteState::Clutched;
   }
-  [[nodiscard]] OperatorView view() const { return {state, peer_state, link, tip_, tip_known}; }
+  [[nodiscard]] OperatorView view() const { return {state, peer_state, link, tip, tip_known}; }
 
   SiteState state{SiteState::Clutched};
   SiteState peer_state{SiteState::Clutched};
   LinkState link{LinkState::Live};
+  double tip;  ///< [m]
   bool tip_known{true};
   bool willing{true};
   int presses{};
 
  private:
-  double tip_;  ///< [m]
   bool pedal_{};
 };
 

@@ -75,6 +75,15 @@ TEST(ScriptedOperatorTest, AlignsWithTheTipSlowlyBeforePressing) {
   EXPECT_LE(fastest, 0.03 + 1e-9);
 }
 
+TEST(ScriptedOperatorTest, AlignsAgainWhenTheTipMovedMeanwhile) {
+  ScriptedOperator person{{}, short_script()};
+  FakeSession session{-2e-3};
+  run(person, session, 5s, [&] { return person.intent().position != -2e-3; });
+  session.tip = -2.1e-3;
+  run(person, session, 5s, [&] { return !person.pedal_held(); });
+  EXPECT_EQ(person.intent().position, -2.1e-3);
+}
+
 TEST(ScriptedOperatorTest, PerformsTheScriptOnceAndLetsGo) {
   ScriptedOperator person{{}, short_script()};
   FakeSession session{-2e-3};

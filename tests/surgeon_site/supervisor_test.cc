@@ -20,6 +20,7 @@ struct Site {
 
   Site() {
     in.link = LinkState::Live;
+    in.session_id = 1;
     in.round_trip = 10ms;
     in.peer_heard = true;
     in.peer.state = SiteState::Parked;
@@ -150,9 +151,9 @@ const Arrow kArrows[]{
      [](auto& in) { in.peer.state = S::Stopped; },
      S::Stopped,
      NoteCode::PeerStopped},
-    {"EngagedPeerRestarts",
+    {"EngagedSessionBegins",
      S::Engaged,
-     [](auto& in) { in.peer = {}; },
+     [](auto& in) { in.session_id = 2; },
      S::Retract,
      NoteCode::SessionBegan},
     {"EngagedLinkHold",
@@ -212,11 +213,11 @@ const Arrow kArrows[]{
      },
      S::Retract,
      NoteCode::PeerRetracting},
-    {"HoldPeerRestarts",
+    {"HoldSessionBegins",
      S::Hold,
      [](auto& in) {
        in.link = LinkState::Live;
-       in.peer = {};
+       in.session_id = 2;
      },
      S::Retract,
      NoteCode::SessionBegan},
@@ -255,7 +256,6 @@ TEST(SupervisorTest, EngagesOnlyWhenEverythingIsReady) {
     return out.state == SiteState::Clutched && out.epoch == 0 && !out.engaged_now;
   };
   EXPECT_TRUE(refuses([](auto& in) { in.link = LinkState::Hold; }));
-  EXPECT_TRUE(refuses([](auto& in) { in.round_trip = 0ms; }));
   EXPECT_TRUE(refuses([](auto& in) { in.peer.state = SiteState::Parked; }));
   EXPECT_TRUE(refuses([](auto& in) { in.peer.state = SiteState::Retract; }));
   EXPECT_TRUE(refuses([](auto& in) { in.tip_known = false; }));
@@ -314,6 +314,29 @@ TEST(SupervisorTest, RestartedSurgeonOpensAnEpochAboveThePatients) {
   site.in.peer.epoch = 7;
   site.in.pedal_held = true;
   EXPECT_EQ(site.step().epoch, 8U);
+}
+
+TEST(SupervisorTest, NewSessionCountsEpochsFromZero) {
+  Site site = Site::in_state(SiteState::Engaged);
+  site.in.session_id = 2;
+  site.in.link = LinkState::Down;
+  site.in.peer = {};
+  site.in.peer_heard = false;
+  const SupervisorOutput out = site.step();
+  EXPECT_TRUE(out.session_began);
+  EXPECT_EQ(out.epoch, 0U);
+  EXPECT_EQ(out.reason, NoteCode::SessionBegan);
+  EXPECT_FALSE(site.step().session_began);
+}
+
+TEST(SupervisorTest, EndOfASessionIsNoNewOne) {
+  Site site = Site::in_state(SiteState::Engaged);
+  site.in.session_id = 0;
+  site.in.link = LinkState::Down;
+  const SupervisorOutput out = site.step();
+  EXPECT_FALSE(out.session_began);
+  EXPECT_EQ(out.epoch, 1U);
+  EXPECT_EQ(out.reason, NoteCode::LinkDown);
 }
 
 TEST(SupervisorTest, ReportsOfAnOlderEpochMoveNothingButStop) {

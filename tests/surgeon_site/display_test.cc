@@ -1,0 +1,77 @@
+#include "surgeon_site/display.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palp::surgeon {
+namespace {
+
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""us;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+SurgeonStatus engaged() {
+  SurgeonStatus status;
+  status.state = SiteState::Engaged;
+  status.link.state = LinkState::Live;
+  status.link.round_trip = 12300us;
+  status.link.accepted = 980;
+  status.link.lost = 20;
+  status.force = 0.482;
+  status.depth.number = 3;
+  status.depth.verdict = DepthVerdict::Found;
+  status.depth.depth = 9.7e-3;
+  status.depth.hash = 0.0712;
+  status.script.scripted = true;
+  status.script.begun = true;
+  status.script.done = 0.62;
+  const std::string_view name = "taps B";
+  std::copy(name.begin(), name.end(), status.script.phase_name.begin());
+  return status;
+}
+
+TEST(DisplayTest, SaysStateLinkForceDepthAndProgressInOneLine) {
+  const std::string line = status_line(engaged());
+  EXPECT_EQ(line,
+            "ENGAGED  rtt 12.3 ms  loss 2.0 %  force 0.48 N  depth 9.7 mm (h 0.0712 N)"
+            "  [######----] 62 %  taps B");
+}
+
+TEST(DisplayTest, SaysWhatIsNotKnown) {
+  EXPECT_EQ(status_line({}), "PARKED  no link  force 0.00 N  depth -");
+}
+
+TEST(DisplayTest, SaysWhyTheForceIsGone) {
+  SurgeonStatus status = engaged();
+  status.state = SiteState::Hold;
+  status.reason = record::NoteCode::GapHold;
+  status.link.state = LinkState::Hold;
+  status.link.gap = 240ms;
+  EXPECT_THAT(status_line(status), AllOf(HasSubstr("HOLD ("), HasSubstr("silent 0.2 s")));
+}
+
+TEST(DisplayTest, SaysTheVerdictOfADepth) {
+  SurgeonStatus status = engaged();
+  status.depth.verdict = DepthVerdict::None;
+  EXPECT_THAT(status_line(status), HasSubstr("no inclusion (h 0.0712 N)"));
+  status.depth.verdict = DepthVerdict::Invalid;
+  status.depth.reason = DepthReason::StrokeTooShort;
+  EXPECT_THAT(status_line(status), HasSubstr("depth ? (stroke too short)"));
+}
+
+TEST(DisplayTest, SaysTheOutcomeOfAFinishedScript) {
+  SurgeonStatus status = engaged();
+  status.script.done = 1;
+  status.script.finished = true;
+  status.script.outcome = ScriptOutcome::Completed;
+  EXPECT_THAT(status_line(status),
+              AllOf(HasSubstr("[##########] 100 %  completed"), Not(HasSubstr("taps"))));
+}
+
+}  // namespace
+}  // namespace palp::surgeon

@@ -1,0 +1,351 @@
+#include "surgeon_site/surgeon_node.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "surgeon_site/script_builder.h"
+#include "surgeon_site/simulated_hand.h"
+#include "tests/surgeon_site/two_ends.h"
+
+namespace palp::surgeon {
+namespace {
+
+using record::NoteCode;
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
+
+GestureScript short_script() {
+  return ScriptBuilder{kFirmGrip.stiffness}
+      .hold(std::chrono::milliseconds{200})
+      .move(-3e-3, std::chrono::milliseconds{500})
+      .taps(2, 4e-3, std::chrono::milliseconds{1000}, std::chrono::milliseconds{500})
+      .press(4e-3, std::chrono::milliseconds{600}, std::chrono::milliseconds{4000})
+      .lift(std::chrono::milliseconds{600}, std::chrono::milliseconds{200})
+      .build();
+}
+
+SimulatedHandConfig firm_hand() {
+  SimulatedHandConfig config;
+  config.plant.grip = kFirmGrip;
+  return config;
+}
+
+/// A device that a test holds in its hand.
+class HeldDevice final : public HapticDevice {
+ public:
+  HandState read(TimePoint now) noexcept override {
+    state.sampled_at = now;
+    return state;
+  }
+  void apply(double force) noexcept override { force_applied = force; }
+  void show(const OperatorView& view) noexcept override { shown = view; }
+  [[nodiscard]] double force_max() const noexcept override { return 8.5; }
+  [[nodiscard]] double force_continuous() const noexcept override { return 1.4; }
+
+  HandState state;
+  OperatorView shown;
+  double force_applied{};  ///< [N]
+};
+
+/// Both sites on one wire, a millisecond at a time.
+class Bench {
+ public:
+  explicit Bench(HapticDevice& device, SurgeonConfig config = {})
+      : device_{device}, node_{config, {device, law_, link_, recorder}} {
+    open_session(link_, up, down, 1, now);
+  }
+
+  void run(
+      Duration span, const std::function<bool()>& busy = [] { return true; }) {
+    for (const TimePoint end = now + span; now < end && busy();) {
+      now += 1ms;
+      node_.tick(now);
+      if (patient_lives) patient.tick(now);
+    }
+  }
+  [[nodiscard]] SurgeonStatus status() { return node_.status().get(); }
+  void restart_patient(std::uint64_t session_id) {
+    open_session(link_, up, down, session_id, now);
+    patient.restart(session_id, now);
+    patient_lives = true;
+  }
+  [[nodiscard]] SurgeonNode& node() { return node_; }
+
+  TimePoint now{};
+  Wire up;
+  Wire down;
+  PlainPatient patient{down, up};
+  bool patient_lives{true};
+  Keeper recorder;
+
+ private:
+  HapticDevice& device_;
+  coupling::SurgeonCoupling law_{coupling::DirectSurgeon{{}}};
+  link::Link link_{link::LinkConfig{}, std::make_unique<link::RawCodec>()};
+  SurgeonNode node_;
+};
+
+double worst_step(const Keeper& recorder) {
+  const std::vector<record::SiteTick> ticks = recorder.all<record::SiteTick>();
+  double worst = 0;
+  for (std::size_t i = 10; i < ticks.size(); ++i) {
+    worst = std::max(worst, std::abs(ticks[i].command - ticks[i - 10].command));
+  }
+  return worst;
+}
+
+bool noted(const Keeper& recorder, NoteCode code) {
+  for (const record::Note& note : recorder.all<record::Note>()) {
+    if (note.code == static_cast<std::uint16_t>(code)) return true;
+  }
+  return false;
+}
+
+TEST(SurgeonNodeTest, PalpatesFromBeginningToEnd) {
+  SimulatedHand hand{firm_hand(), short_script()};
+  Bench bench{hand};
+  double force_max = 0;
+  double depth_max = 0;
+  bench.run(30s, [&] {
+    force_max = std::max(force_max, bench.status().force);
+    depth_max = std::max(depth_max, bench.patient.position);
+    return !hand.finished();
+  });
+  EXPECT_EQ(hand.progress().outcome, ScriptOutcome::Completed);
+  EXPECT_NEAR(force_max, plain_force(4e-3), 0.1);
+  EXPECT_NEAR(depth_max, 4e-3, 0.3e-3);
+  const auto transitions = bench.recorder.all<record::Transition>();
+  ASSERT_GE(transitions.size(), 3U);
+  EXPECT_EQ(transitions[0].to, SiteState::Clutched);
+  EXPECT_EQ(transitions[1].to, SiteState::Engaged);
+  EXPECT_EQ(transitions[2].to, SiteState::Clutched);
+  EXPECT_TRUE(noted(bench.recorder, NoteCode::ScriptPhase));
+  EXPECT_TRUE(noted(bench.recorder, NoteCode::SessionBegan));
+}
+
+TEST(SurgeonNodeTest, EngagementMovesNothingHoweverFarTheHandIsFromTheTip) {
+  HeldDevice device;
+  device.state.position = 15e-3;
+  Bench bench{device};
+  bench.run(1s);
+  ASSERT_EQ(bench.status().state, SiteState::Clutched);
+  device.state.dead_man_held = true;
+  bench.run(1s);
+  EXPECT_EQ(bench.status().state, SiteState::Engaged);
+  EXPECT_DOUBLE_EQ(bench.status().offset, 25e-3);
+  EXPECT_DOUBLE_EQ(bench.status().position, -10e-3);
+  EXPECT_DOUBLE_EQ(bench.patient.position, -10e-3);
+  EXPECT_EQ(device.force_applied, 0);
+}
+
+TEST(SurgeonNodeTest, SamplesSentBeforeTheEngagementCauseNoForce) {
+  HeldDevice device;
+  Bench bench{device};
+  bench.up.delay = bench.down.delay = 20ms;
+  bench.patient.follows = false;
+  bench.patient.position = 3e-3;  // in contact: its samples carry force
+  bench.run(1s);
+  device.state.dead_man_held = true;
+  device.state.position += 5e-3;
+  bench.run(1s);
+  ASSERT_EQ(bench.status().state, SiteState::Engaged);
+  for (const record::SiteTick& tick : bench.recorder.all<record::SiteTick>()) {
+    ASSERT_EQ(tick.command, 0);
+  }
+}
+
+TEST(SurgeonNodeTest, NoForceWhileThePedalIsUp) {
+  HeldDevice device;
+  Bench bench{device};
+  bench.run(1s);
+  device.state.dead_man_held = true;
+  bench.run(500ms);
+  device.state.position = 3e-3 + bench.status().offset;
+  bench.run(500ms);
+  ASSERT_GT(device.force_applied, 0.1);
+  device.state.dead_man_held = false;
+  bench.run(1ms);
+  EXPECT_EQ(bench.status().state, SiteState::Clutched);
+  bench.run(100ms);
+  EXPECT_EQ(device.force_applied, 0);
+}
+
+TEST(SurgeonNodeTest, PatientKilledInAPressGoesHoldThenRetractThenEngagesAgain) {
+  SimulatedHand hand{firm_hand(), short_script()};
+  Bench bench{hand};
+  bench.run(30s,
+            [&] { return std::string_view{hand.progress().phase_name.data()} != "press 4 mm A"; });
+  bench.run(1s);
+  ASSERT_EQ(bench.status().state, SiteState::Engaged);
+  ASSERT_GT(bench.status().force, 0.3);
+
+  const TimePoint killed_at = bench.now;
+  bench.patient_lives = false;
+  bench.run(99ms);
+  EXPECT_EQ(bench.status().state, SiteState::Engaged);
+  bench.run(4s);
+  bench.restart_patient(2);
+  bench.run(30s, [&] { return !hand.finished(); });
+  EXPECT_EQ(hand.progress().outcome, ScriptOutcome::Completed);
+  EXPECT_LE(worst_step(bench.recorder), 0.5);
+
+  std::vector<SiteState> states;
+  TimePoint held_at{};
+  TimePoint retracted_at{};
+  for (const record::Transition& transition : bench.recorder.all<record::Transition>()) {
+    if (transition.at < killed_at) continue;
+    states.push_back(transition.to);
+    if (transition.to == SiteState::Hold) held_at = transition.at;
+    if (transition.to == SiteState::Retract && retracted_at == TimePoint{}) {
+      retracted_at = transition.at;
+    }
+  }
+  ASSERT_GE(states.size(), 5U);
+  EXPECT_EQ(states[0], SiteState::Hold);
+  EXPECT_EQ(states[1], SiteState::Retract);
+  EXPECT_EQ(states[2], SiteState::Parked);
+  EXPECT_EQ(states[3], SiteState::Clutched);
+  EXPECT_EQ(states[4], SiteState::Engaged);
+  EXPECT_NEAR(seconds(held_at - killed_at), 0.1, 0.003);
+  EXPECT_NEAR(seconds(retracted_at - killed_at), 2.0, 0.003);
+}
+
+TEST(SurgeonNodeTest, RestartWithinAHoldIsNoWayBackToTheOldSession) {
+  SimulatedHand hand{firm_hand(), short_script()};
+  Bench bench{hand};
+  bench.run(30s,
+            [&] { return std::string_view{hand.progress().phase_name.data()} != "press 4 mm A"; });
+  bench.run(1s);
+  bench.patient_lives = false;
+  bench.run(200ms);
+  ASSERT_EQ(bench.status().state, SiteState::Hold);
+  bench.restart_patient(2);
+  bench.run(1ms);
+  EXPECT_EQ(bench.status().state, SiteState::Retract);
+  EXPECT_EQ(bench.status().reason, NoteCode::SessionBegan);
+  EXPECT_FALSE(bench.status().tip_known);
+  EXPECT_LE(worst_step(bench.recorder), 0.5);
+}
+
+TEST(SurgeonNodeTest, ShortGapHoldsAndComesBackWithoutAJump) {
+  SimulatedHand hand{firm_hand(), short_script()};
+  Bench bench{hand};
+  bench.run(30s,
+            [&] { return std::string_view{hand.progress().phase_name.data()} != "press 4 mm A"; });
+  bench.run(1s);
+  bench.down.cut = true;
+  bench.run(400ms);
+  EXPECT_EQ(bench.status().state, SiteState::Hold);
+  EXPECT_NEAR(bench.status().force, 0, 1e-9);
+  bench.down.cut = false;
+  bench.run(1s);
+  EXPECT_EQ(bench.status().state, SiteState::Engaged);
+  EXPECT_GT(bench.status().force, 0.3);
+  EXPECT_LE(worst_step(bench.recorder), 0.5);
+}
+
+TEST(SurgeonNodeTest, UsersStopIsImmediateAndLatched) {
+  HeldDevice device;
+  Bench bench{device};
+  bench.run(1s);
+  device.state.dead_man_held = true;
+  bench.run(500ms);
+  device.state.position = 3e-3 + bench.status().offset;
+  bench.run(500ms);
+  ASSERT_GT(device.force_applied, 0.1);
+  bench.node().commands().put({.emergency_stop = true, .resets = 0});
+  bench.run(1ms);
+  EXPECT_EQ(device.force_applied, 0);
+  EXPECT_EQ(bench.status().state, SiteState::Stopped);
+  bench.node().commands().put({.emergency_stop = false, .resets = 0});
+  bench.run(1s);
+  EXPECT_EQ(bench.status().state, SiteState::Stopped);
+  bench.node().commands().put({.emergency_stop = false, .resets = 1});
+  bench.run(1s);
+  EXPECT_EQ(bench.status().state, SiteState::Clutched);
+}
+
+TEST(SurgeonNodeTest, DeviceWithoutNumbersStopsTheSite) {
+  HeldDevice device;
+  Bench bench{device};
+  bench.run(1s);
+  device.state.dead_man_held = true;
+  bench.run(500ms);
+  device.state.position = std::numeric_limits<double>::quiet_NaN();
+  bench.run(10ms);
+  EXPECT_EQ(bench.status().state, SiteState::Stopped);
+  EXPECT_EQ(bench.status().reason, NoteCode::DeviceFault);
+  EXPECT_TRUE(std::isfinite(bench.status().position));
+  EXPECT_EQ(device.force_applied, 0);
+  int notes = 0;
+  for (const record::Note& note : bench.recorder.all<record::Note>()) {
+    notes += note.code == static_cast<std::uint16_t>(NoteCode::NotFinite);
+  }
+  EXPECT_EQ(notes, 1);
+}
+
+TEST(SurgeonNodeTest, LongRoundTripIsRefusedAndShown) {
+  SurgeonConfig config;
+  config.supervisor.round_trip_max_to_engage = 20ms;
+  HeldDevice device;
+  Bench bench{device, config};
+  bench.up.delay = bench.down.delay = 12ms;
+  bench.run(1s);
+  device.state.dead_man_held = true;
+  bench.run(1s);
+  EXPECT_EQ(bench.status().state, SiteState::Clutched);
+  EXPECT_EQ(bench.status().refused, NoteCode::RoundTripTooLong);
+}
+
+TEST(SurgeonNodeTest, RecordsEveryTickEveryArrivalAndTenStatusesASecond) {
+  HeldDevice device;
+  Bench bench{device};
+  bench.run(2s);
+  EXPECT_EQ(bench.recorder.all<record::SiteTick>().size(), 2000U);
+  EXPECT_EQ(bench.recorder.all<record::LinkStatus>().size(), 20U);
+  EXPECT_EQ(bench.recorder.all<record::Arrived>().size(), 1999U);
+  EXPECT_EQ(bench.status().ticks, 2000U);
+  EXPECT_EQ(bench.status().records, bench.recorder.kept.size());
+}
+
+TEST(SurgeonNodeTest, EachDepthIsRecordedOnce) {
+  HeldDevice device;
+  Bench bench{device};
+  bench.run(100ms);
+  bench.patient.report.depth.number = 1;
+  bench.patient.report.depth.depth = 5e-3;
+  bench.run(100ms);
+  bench.patient.report.depth.number = 2;
+  bench.run(100ms);
+  const auto depths = bench.recorder.all<record::DepthArrived>();
+  ASSERT_EQ(depths.size(), 2U);
+  EXPECT_EQ(depths[0].report.depth, 5e-3);
+  EXPECT_EQ(bench.status().depth.number, 2U);
+}
+
+TEST(SurgeonNodeTest, LateTickCountsThePeriodsMissed) {
+  HeldDevice device;
+  Bench bench{device};
+  bench.run(10ms);
+  bench.now += 4ms;
+  bench.run(1ms);
+  EXPECT_EQ(bench.status().ticks, 11U);
+  EXPECT_EQ(bench.status().ticks_missed, 4U);
+}
+
+TEST(SurgeonNodeTest, ShowsTheDeviceWhatTheOperatorSees) {
+  HeldDevice device;
+  Bench bench{device};
+  bench.run(1s);
+  EXPECT_EQ(device.shown.state, SiteState::Clutched);
+  EXPECT_EQ(device.shown.peer_state, SiteState::Clutched);
+  EXPECT_EQ(device.shown.link, LinkState::Live);
+  EXPECT_TRUE(device.shown.tip_known);
+  EXPECT_DOUBLE_EQ(device.shown.tip_position, -10e-3);
+}
+
+}  // namespace
+}  // namespace palp::surgeon
