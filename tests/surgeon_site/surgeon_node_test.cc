@@ -126,6 +126,17 @@ TEST(SurgeonNodeTest, PalpatesFromBeginningToEnd) {
   EXPECT_TRUE(noted(bench.recorder, NoteCode::SessionBegan));
 }
 
+TEST(SurgeonNodeTest, LawIsToldTheForceThatWasApplied) {
+  SimulatedHand hand{firm_hand(), short_script()};
+  Bench bench{hand};
+  bench.run(30s, [&] { return !hand.finished(); });
+  double before = 0;
+  for (const record::SiteTick& tick : bench.recorder.all<record::SiteTick>()) {
+    ASSERT_EQ(tick.force, before);
+    before = tick.command;
+  }
+}
+
 TEST(SurgeonNodeTest, EngagementMovesNothingHoweverFarTheHandIsFromTheTip) {
   HeldDevice device;
   device.state.position = 15e-3;
