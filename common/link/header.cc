@@ -8,7 +8,7 @@ namespace {
 /// The lowest bytes of `value`, as many as `out` has room for.
 void put(std::uint64_t value, std::span<std::byte> out) noexcept {
   for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = static_cast<std::byte>(value >> (8 * (out.size() - 1 - i)) & 0xFFU);
+    out[i] = static_cast<std::byte>((value >> (8U * (out.size() - 1U - i))) & 0xFFU);
   }
 }
 
