@@ -1,0 +1,190 @@
+#include "lab/run_report.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <span>
+
+#include <nlohmann/json.hpp>
+
+#include "patient_site/estimator/depth_summary.h"
+#include "patient_site/phantom.h"
+
+namespace palp::lab {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Site site_of(const DepthEstimate& estimate) {
+  return estimate.lateral < patient::Phantom::kSiteBoundary ? Site::A : Site::B;
+}
+
+const char* name_of(Site site) { return site == Site::A ? "A" : "B"; }
+
+std::vector<DepthEstimate> estimates_at(Site site, std::span<const DepthEstimate> all) {
+  std::vector<DepthEstimate> here;
+  for (const DepthEstimate& estimate : all) {
+    if (site_of(estimate) == site) here.push_back(estimate);
+  }
+  return here;
+}
+
+Json depth_json(const DepthEstimate& estimate) {
+  const bool found = estimate.verdict == DepthVerdict::Found;
+  const bool spread = found && estimate.depth_stddev > 0;
+  Json json;
+  json["verdict"] = to_string(estimate.verdict);
+  json["depth_mm"] = found ? number(estimate.depth * 1e3) : Json(nullptr);
+  json["low_mm"] = spread ? number(estimate.depth_low * 1e3) : Json(nullptr);
+  json["high_mm"] = spread ? number(estimate.depth_high * 1e3) : Json(nullptr);
+  json["stddev_mm"] = spread ? number(estimate.depth_stddev * 1e3) : Json(nullptr);
+  json["h_n"] = number(estimate.hash);
+  json["reason"] = to_string(estimate.reason);
+  json["estimator"] = "paper";
+  return json;
+}
+
+/// The strokes of a site follow each other as its taps do; presses come behind them.
+Json taps_json(const TrialResult& result) {
+  const std::array<std::vector<DepthEstimate>, 2> strokes{estimates_at(Site::A, result.depths),
+                                                          estimates_at(Site::B, result.depths)};
+  Json taps = Json::array();
+  for (const TapMetrics& tap : result.metrics.taps) {
+    const auto& here = strokes[static_cast<std::size_t>(tap.site)];
+    const auto index = static_cast<std::size_t>(tap.index - 1);
+    Json json;
+    json["site"] = name_of(tap.site);
+    json["index"] = tap.index;
+    const bool known = index < here.size();
+    json["indentation_max_mm"] = known ? number(here[index].indentation_max * 1e3) : Json(nullptr);
+    json["force_max_n"] = known ? number(here[index].force_max) : Json(nullptr);
+    json["stiffness_felt_n_per_m"] = number(tap.stiffness_felt);
+    json["stiffness_true_n_per_m"] = number(tap.stiffness_true);
+    json["depth"] = known ? depth_json(here[index]) : Json(nullptr);
+    taps.push_back(json);
+  }
+  return taps;
+}
+
+Json metrics_json(const TrialMetrics& m) {
+  Json json;
+  json["unstable"] = m.unstable;
+  json["unstable_reason"] = m.unstable_reason;
+  json["tap_a_error"] = number(m.tap_error[0]);
+  json["tap_b_error"] = number(m.tap_error[1]);
+  json["tap1_a_error"] = number(m.tap1_error[0]);
+  json["tap1_b_error"] = number(m.tap1_error[1]);
+  json["tap2_a_error"] = number(m.tap2_error[0]);
+  json["tap2_b_error"] = number(m.tap2_error[1]);
+  json["ratio_error"] = number(m.ratio_error);
+  json["stat_a_error"] = number(m.static_error[0]);
+  json["stat_b_error"] = number(m.static_error[1]);
+  json["stat_ratio_error"] = number(m.static_ratio_error);
+  json["drag_rms_n"] = number(m.drag_rms);
+  json["drag_peak_n"] = number(m.drag_peak);
+  json["drift_mm"] = number(m.drift * 1e3);
+  json["energy_operator_mj"] = number(m.energy_operator * 1e3);
+  json["energy_net_mj"] = number(m.energy_net * 1e3);
+  json["force_step_10ms_n"] = number(m.force_step_10ms);
+  json["force_peak_n"] = number(m.force_peak);
+  json["contact_force_max_n"] = number(m.contact_force_max);
+  return json;
+}
+
+std::string hexadecimal(std::uint64_t value) {
+  std::array<char, 17> text{};
+  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
+  return text.data();
+}
+
+template <class... Arguments>
+void append(std::string& text, const char* format, Arguments... arguments) {
+  std::array<char, 240> line{};
+  std::snprintf(line.data(), line.size(), format, arguments...);
+  text += line.data();
+}
+
+}  // namespace
+
+std::string run_report(const Scenario& scenario,
+                       const TrialResult& result,
+                       const RunAccount& account) {
+  Json json;
+  json["schema"] = "palp.run/1";
+  json["scenario"] = account.scenario;
+  json["seed"] = scenario.seed;
+  json["coupling"] = scenario.coupling.name;
+  json["tissue"] = scenario.phantom.name;
+  json["bare"] = scenario.bare;
+  json["digest"] = hexadecimal(result.digest);
+  json["outcome"] = surgeon::to_string(result.outcome);
+  json["virtual_s"] = seconds(result.virtual_span);
+  json["cpu_s"] = account.cpu;
+  json["wall_s"] = account.wall;
+  json["speed"] = number(seconds(result.virtual_span) / account.cpu);
+  json["records"] = result.records;
+  json.update(metrics_json(result.metrics));
+  json["taps"] = taps_json(result);
+  json["depth"] = depth_json(estimator::summarise_depths(estimates_at(Site::B, result.depths)));
+  return json.dump(2) + "\n";
+}
+
+std::string run_summary(const Scenario& scenario,
+                        const TrialResult& result,
+                        const RunAccount& account) {
+  std::string text;
+  append(text,
+         "scenario   %s, seed %llu, coupling %s, phantom %s\n",
+         account.scenario.c_str(),
+         static_cast<unsigned long long>(scenario.seed),
+         scenario.coupling.name.c_str(),
+         scenario.phantom.name.c_str());
+  const TrialMetrics& m = result.metrics;
+  for (const TapMetrics& tap : m.taps) {
+    append(text,
+           "tap %s%d     felt %6.1f N/m, true %6.1f N/m (%+.1f %%), hand to %.2f mm\n",
+           name_of(tap.site),
+           tap.index,
+           tap.stiffness_felt,
+           tap.stiffness_true,
+           100 * (tap.stiffness_felt / tap.stiffness_true - 1),
+           tap.hand_max * 1e3);
+  }
+  for (const DepthEstimate& estimate : result.depths) {
+    append(text,
+           "stroke %s    h %.4f N, %s",
+           name_of(site_of(estimate)),
+           estimate.hash,
+           std::string{to_string(estimate.verdict)}.c_str());
+    if (estimate.verdict == DepthVerdict::Found) append(text, " at %.1f mm", estimate.depth * 1e3);
+    if (estimate.reason != DepthReason::Ok) {
+      append(text, " (%s)", std::string{to_string(estimate.reason)}.c_str());
+    }
+    text += '\n';
+  }
+  append(text, "stability  %s\n", m.unstable ? m.unstable_reason : "stable");
+  append(text,
+         "taps 2-4   A %+.1f %%, B %+.1f %%, ratio %+.1f %%; holds A %+.1f %%, B %+.1f %%\n",
+         100 * m.tap_error[0],
+         100 * m.tap_error[1],
+         100 * m.ratio_error,
+         100 * m.static_error[0],
+         100 * m.static_error[1]);
+  append(text,
+         "hand       drag %.3f N rms, worst step %.2f N in 10 ms, energy out %.3f mJ\n",
+         m.drag_rms,
+         m.force_step_10ms,
+         m.energy_operator * 1e3);
+  append(text,
+         "outcome    %s after %.1f s of virtual time in %.2f s of processor time: %.0f times\n",
+         std::string{surgeon::to_string(result.outcome)}.c_str(),
+         seconds(result.virtual_span),
+         account.cpu,
+         seconds(result.virtual_span) / account.cpu);
+  append(text, "digest     %s\n", hexadecimal(result.digest).c_str());
+  return text;
+}
+
+}  // namespace palp::lab

@@ -1,0 +1,41 @@
+#include "patient_site/estimator/depth_summary.h"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace palp::estimator {
+namespace {
+
+DepthEstimate found(double depth) {
+  return {.verdict = DepthVerdict::Found, .hash = 0.07, .depth = depth};
+}
+DepthEstimate none() { return {.verdict = DepthVerdict::None, .hash = 0.059}; }
+DepthEstimate invalid() {
+  return {.verdict = DepthVerdict::Invalid, .reason = DepthReason::StrokeTooShort};
+}
+
+TEST(DepthSummaryTest, NothingSaysNothing) {
+  EXPECT_EQ(summarise_depths({}).verdict, DepthVerdict::Invalid);
+  const std::vector<DepthEstimate> strokes{invalid(), invalid()};
+  EXPECT_EQ(summarise_depths(strokes).verdict, DepthVerdict::Invalid);
+  EXPECT_EQ(summarise_depths(strokes).reason, DepthReason::StrokeTooShort);
+}
+
+TEST(DepthSummaryTest, MostStrokesDecideAndAnInvalidOneHasNoVoice) {
+  const std::vector<DepthEstimate> strokes{found(0.01), none(), invalid(), none(), invalid()};
+  EXPECT_EQ(summarise_depths(strokes).verdict, DepthVerdict::None);
+  EXPECT_EQ(summarise_depths(strokes).reason, DepthReason::Ok);
+  const std::vector<DepthEstimate> tie{found(0.01), none()};
+  EXPECT_EQ(summarise_depths(tie).verdict, DepthVerdict::Found);
+}
+
+TEST(DepthSummaryTest, TheDepthIsTheMedianSoOneOutlierDoesNotMoveIt) {
+  const std::vector<DepthEstimate> strokes{found(0.010), found(0.011), found(0.090)};
+  EXPECT_DOUBLE_EQ(summarise_depths(strokes).depth, 0.011);
+  const std::vector<DepthEstimate> four{found(0.012), found(0.010), found(0.014), found(0.011)};
+  EXPECT_DOUBLE_EQ(summarise_depths(four).depth, 0.0115);
+}
+
+}  // namespace
+}  // namespace palp::estimator
