@@ -1,0 +1,280 @@
+#include "common/record/mcap_reader.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace palp::record {
+
+McapReader::McapReader(std::span<const std::byte> file, const McapLimits& limits)
+    : file_{file}, limits_{limits}, decompressor_{limits.chunk_size_max} {
+  const std::size_t shared = std::min(file.size(), kMcapMagic.size());
+  if (!std::equal(kMcapMagic.begin(), kMcapMagic.begin() + shared, file.begin())) {
+    fault(0, "this is not an MCAP file: its first bytes are others");
+    ended_ = true;
+  }
+  offset_ = shared;
+  ended_ = ended_ || shared < kMcapMagic.size();
+}
+
+std::optional<McapItem> McapReader::next() {
+  while (true) {
+    if (chunk_offset_ < chunk_.size()) {
+      if (auto item = next_in_chunk()) {
+        return item;
+      }
+      continue;
+    }
+    if (ended_) {
+      return std::nullopt;
+    }
+    if (auto item = next_in_file()) {
+      return item;
+    }
+  }
+}
+
+std::optional<McapReader::RawRecord> McapReader::cut_record(std::span<const std::byte> bytes,
+                                                            std::size_t& offset) {
+  ByteCursor cursor{bytes.subspan(offset)};
+  RawRecord record;
+  record.offset = offset;
+  record.opcode = static_cast<McapOpcode>(cursor.read<std::uint8_t>());
+  record.content = cursor.take(cursor.read<std::uint64_t>());
+  if (!cursor.ok()) {
+    return std::nullopt;
+  }
+  offset += kMcapPrefixSize + record.content.size();
+  return record;
+}
+
+std::optional<McapItem> McapReader::next_in_chunk() {
+  auto record = cut_record(chunk_, chunk_offset_);
+  if (!record) {
+    fault(chunk_at_, "a record of this chunk reaches beyond its end");
+    ++report_.chunks_damaged;
+    chunk_offset_ = chunk_.size();
+    return std::nullopt;
+  }
+  record->offset = chunk_at_;
+  switch (record->opcode) {
+    case McapOpcode::Schema:
+      return read_schema(*record);
+    case McapOpcode::Channel:
+      return read_channel(*record);
+    case McapOpcode::Message: {
+      auto item = read_message(*record);
+      if (item) {
+        ++chunk_messages_[std::get<McapMessage>(*item).channel->id];
+      }
+      return item;
+    }
+    default:
+      if (record->opcode <= McapOpcode::DataEnd) {
+        fault(chunk_at_, "a record inside this chunk is of a kind that may not stand there");
+      }
+      return std::nullopt;  // unknown opcodes are skipped: later versions may have more
+  }
+}
+
+std::optional<McapItem> McapReader::next_in_file() {
+  const auto record = cut_record(file_, offset_);
+  if (!record) {
+    report_.bytes_unread = file_.size() - offset_;
+    ended_ = true;
+    return std::nullopt;
+  }
+  return interpret(*record);
+}
+
+std::optional<McapItem> McapReader::interpret(const RawRecord& record) {
+  switch (record.opcode) {
+    case McapOpcode::Schema:
+      return read_schema(record);
+    case McapOpcode::Channel:
+      return read_channel(record);
+    case McapOpcode::Message:
+      return read_message(record);
+    case McapOpcode::Attachment:
+      return read_attachment(record);
+    case McapOpcode::Metadata:
+      return read_metadata(record);
+    case McapOpcode::Statistics:
+      return read_statistics(record);
+    case McapOpcode::Chunk:
+      open_chunk(record);
+      break;
+    case McapOpcode::MessageIndex:
+      check_message_index(record);
+      break;
+    case McapOpcode::ChunkIndex:
+      check_chunk_index(record);
+      break;
+    case McapOpcode::DataEnd:
+      check_data_end(record);
+      break;
+    case McapOpcode::Footer:
+      check_footer(record);
+      break;
+    default:  // the header says nothing we need; indexes of attachments repeat what was read
+      break;
+  }
+  return std::nullopt;
+}
+
+void McapReader::open_chunk(const RawRecord& record) {
+  chunk_ = {};
+  chunk_offset_ = 0;
+  chunk_at_ = record.offset;
+  chunk_messages_.clear();
+  chunk_places_.push_back({record.offset, kMcapPrefixSize + record.content.size()});
+  ++report_.chunks;
+  ByteCursor cursor{record.content};
+  cursor.take(16);  // begin and end: the messages themselves say more
+  const auto size = cursor.read<std::uint64_t>();
+  const auto crc = cursor.read<std::uint32_t>();
+  const auto compression = cursor.text();
+  const auto bytes = cursor.take(cursor.read<std::uint64_t>());
+  if (!cursor.ok()) {
+    ++report_.chunks_damaged;
+    fault(record.offset, "a field of this chunk reaches beyond its end");
+    return;
+  }
+  const auto answer = decompressor_.decompress(compression, bytes, size);
+  const bool crc_wrong = answer.error.empty() && crc != 0 && crc32(answer.records) != crc;
+  if (!answer.error.empty() || crc_wrong) {
+    ++report_.chunks_damaged;
+    fault(record.offset, "this chunk " + std::string{crc_wrong ? "has a wrong CRC" : answer.error});
+    return;
+  }
+  chunk_ = answer.records;
+}
+
+bool McapReader::admit_definition(const RawRecord& record) {
+  definitions_size_ += record.content.size();
+  if (definitions_size_ > limits_.definitions_size_max) {
+    fault(record.offset, "schemas and channels take more bytes than the limit");
+    return false;
+  }
+  return true;
+}
+
+std::optional<McapItem> McapReader::read_schema(const RawRecord& record) {
+  ByteCursor cursor{record.content};
+  McapSchema schema;
+  schema.id = cursor.read<std::uint16_t>();
+  schema.name = cursor.text();
+  schema.encoding = cursor.text();
+  const auto data = cursor.take(cursor.read<std::uint32_t>());
+  schema.data.assign(data.begin(), data.end());
+  if (!cursor.ok() || schema.id == 0) {
+    fault(record.offset, "this schema is broken: its id is 0 or a field does not fit");
+    return std::nullopt;
+  }
+  if (const auto known = schemas_.find(schema.id); known != schemas_.end()) {
+    if (!(known->second == schema)) {
+      fault(record.offset, "schema " + std::to_string(schema.id) + " is defined twice, unlike");
+    }
+    return std::nullopt;
+  }
+  if (!admit_definition(record)) {
+    return std::nullopt;
+  }
+  return schemas_.emplace(schema.id, std::move(schema)).first->second;
+}
+
+std::optional<McapItem> McapReader::read_channel(const RawRecord& record) {
+  ByteCursor cursor{record.content};
+  McapChannel channel;
+  channel.id = cursor.read<std::uint16_t>();
+  channel.schema = cursor.read<std::uint16_t>();
+  channel.topic = cursor.text();
+  channel.message_encoding = cursor.text();
+  channel.metadata = cursor.map();
+  if (!cursor.ok()) {
+    fault(record.offset, "a field of this channel reaches beyond its end");
+    return std::nullopt;
+  }
+  if (const auto known = channels_.find(channel.id); known != channels_.end()) {
+    if (!(known->second == channel)) {
+      fault(record.offset, "channel " + std::to_string(channel.id) + " is defined twice, unlike");
+    }
+    return std::nullopt;
+  }
+  if (channel.schema != 0 && !schemas_.contains(channel.schema)) {
+    fault(record.offset,
+          "channel " + channel.topic + " names schema " + std::to_string(channel.schema) +
+              ", which is not there");
+    return std::nullopt;
+  }
+  if (!admit_definition(record)) {
+    return std::nullopt;
+  }
+  return channels_.emplace(channel.id, std::move(channel)).first->second;
+}
+
+std::optional<McapItem> McapReader::read_message(const RawRecord& record) {
+  ByteCursor cursor{record.content};
+  McapMessage message;
+  const auto id = cursor.read<std::uint16_t>();
+  message.sequence = cursor.read<std::uint32_t>();
+  message.log_time = cursor.read<std::uint64_t>();
+  message.publish_time = cursor.read<std::uint64_t>();
+  message.payload = cursor.rest();
+  const auto channel = channels_.find(id);
+  if (!cursor.ok() || channel == channels_.end()) {
+    fault(record.offset,
+          cursor.ok() ? "a message names channel " + std::to_string(id) + ", which is not there"
+                      : "a message is too short");
+    return std::nullopt;
+  }
+  message.channel = &channel->second;
+  if (const auto schema = schemas_.find(message.channel->schema); schema != schemas_.end()) {
+    message.schema = &schema->second;
+  }
+  ++report_.messages;
+  ++messages_by_channel_[id];
+  report_.last_log_time = std::max(report_.last_log_time, message.log_time);
+  return message;
+}
+
+std::optional<McapItem> McapReader::read_attachment(const RawRecord& record) {
+  ByteCursor cursor{record.content};
+  McapAttachment attachment;
+  attachment.log_time = cursor.read<std::uint64_t>();
+  attachment.create_time = cursor.read<std::uint64_t>();
+  attachment.name = cursor.text();
+  attachment.media_type = cursor.text();
+  attachment.data = cursor.take(cursor.read<std::uint64_t>());
+  const std::size_t covered = record.content.size() - cursor.rest().size();
+  const auto crc = cursor.read<std::uint32_t>();
+  if (!cursor.ok() || (crc != 0 && crc != crc32(record.content.first(covered)))) {
+    fault(record.offset,
+          cursor.ok() ? "this attachment has a wrong CRC"
+                      : "a field of this attachment reaches beyond its end");
+    return std::nullopt;
+  }
+  ++report_.attachments;
+  return attachment;
+}
+
+std::optional<McapItem> McapReader::read_metadata(const RawRecord& record) {
+  ByteCursor cursor{record.content};
+  McapMetadata metadata;
+  metadata.name = cursor.text();
+  metadata.entries = cursor.map();
+  if (!cursor.ok()) {
+    fault(record.offset, "a field of this metadata record reaches beyond its end");
+    return std::nullopt;
+  }
+  ++report_.metadata;
+  return metadata;
+}
+
+void McapReader::fault(std::uint64_t offset, std::string text) {
+  ++report_.fault_count;
+  if (report_.faults.size() < limits_.faults_max) {
+    report_.faults.push_back({offset, std::move(text)});
+  }
+}
+
+}  // namespace palp::record

@@ -1,0 +1,61 @@
+#include "common/record/notes.h"
+
+namespace palp::record {
+
+std::string_view to_string(NoteCode code) noexcept {
+  switch (code) {
+    case NoteCode::None:
+      return "";
+    case NoteCode::LinkReady:
+      return "link ready";
+    case NoteCode::PedalPressed:
+      return "pedal pressed";
+    case NoteCode::PedalReleased:
+      return "pedal released";
+    case NoteCode::PeerEngaged:
+      return "peer engaged";
+    case NoteCode::PeerClutched:
+      return "peer clutched";
+    case NoteCode::PeerRetracting:
+      return "peer is retracting";
+    case NoteCode::PeerStopped:
+      return "peer stopped";
+    case NoteCode::GapHold:
+      return "nothing arrived: hold";
+    case NoteCode::GapLost:
+      return "nothing arrived for long: link lost";
+    case NoteCode::GapOver:
+      return "samples arrive again";
+    case NoteCode::LinkDown:
+      return "no session with the peer";
+    case NoteCode::RetractDone:
+      return "retracted, clear of the tissue";
+    case NoteCode::ForceLimit:
+      return "force limit reached";
+    case NoteCode::DeviceFault:
+      return "device fault";
+    case NoteCode::EmergencyStop:
+      return "emergency stop";
+    case NoteCode::LocalReset:
+      return "reset on the spot";
+    case NoteCode::EngageRefusedForce:
+      return "engagement refused: contact force too high";
+    case NoteCode::ForceGateClamped:
+      return "force gate limited the force on the hand";
+    case NoteCode::MotionGateLimited:
+      return "motion gate limited the stage";
+    case NoteCode::ForceRetreat:
+      return "contact force too high: the stage retreats";
+    case NoteCode::NotFinite:
+      return "a value was not finite";
+    case NoteCode::SessionBegan:
+      return "new session with the peer";
+    case NoteCode::RoundTripTooLong:
+      return "round trip too long for this coupling: engagement refused";
+    case NoteCode::ScriptPhase:
+      return "next phase of the script";
+  }
+  return "unknown note";
+}
+
+}  // namespace palp::record

@@ -1,0 +1,202 @@
+#include "common/record/session_decoder.h"
+
+#include <limits>
+
+#include "proto/session_log.pb.h"
+
+namespace palp::record {
+namespace {
+
+/// Collects whether all enumerations and small integers of a message were in range.
+struct Range {
+  bool ok{true};
+
+  template <class Enum>
+  Enum checked(int value, int count) noexcept {
+    ok = ok && value >= 0 && value < count;
+    return static_cast<Enum>(ok ? value : 0);
+  }
+  SiteState site_state(int value) noexcept { return checked<SiteState>(value, kSiteStateCount); }
+};
+
+template <class Message>
+CouplingPayload payload_of(const Message& in) {
+  if (in.has_wave()) {
+    return WavePayload{.wave_integral = in.wave().wave_integral_sqrt_w_s(),
+                       .wave_energy = in.wave().wave_energy_j()};
+  }
+  if (in.has_tdpa()) {
+    return TdpaPayload{.energy_in = in.tdpa().energy_in_j()};
+  }
+  if (in.has_model()) {
+    const auto& model = in.model();
+    return ModelPayload{.version = model.version(),
+                        .c = {model.c1_n(), model.c2_n(), model.c3_n()},
+                        .surface = model.surface_m(),
+                        .depth_max = model.depth_max_m(),
+                        .residual = model.residual_n()};
+  }
+  return {};
+}
+
+// The one difference between the sites' ticks: the unit of the command.
+double command_of(const session::SurgeonTick& in) { return in.command_n(); }
+double command_of(const session::PatientTick& in) { return in.command_m(); }
+
+template <class Message>
+Record tick_of(const Message& in, TimePoint at, Range& range) {
+  return SiteTick{.at = at,
+                  .state = range.site_state(in.state()),
+                  .epoch = in.epoch(),
+                  .position = in.position_m(),
+                  .velocity = in.velocity_m_per_s(),
+                  .force = in.force_n(),
+                  .lateral = in.lateral_m(),
+                  .command = command_of(in),
+                  .gate_acted = in.gate_acted(),
+                  .round_trip = Duration{in.round_trip_ns()},
+                  .sent = {.position = in.sent_position_m(),
+                           .velocity = in.sent_velocity_m_per_s(),
+                           .force = in.sent_force_n(),
+                           .payload = payload_of(in)}};
+}
+
+Record arrived_of(const session::ArrivedSample& in, TimePoint at) {
+  return Arrived{.at = at,
+                 .incoming = {.sample = {.position = in.position_m(),
+                                         .velocity = in.velocity_m_per_s(),
+                                         .force = in.force_n(),
+                                         .payload = payload_of(in)},
+                              .number = in.number(),
+                              .fresh = in.fresh(),
+                              .repaired = in.repaired(),
+                              .sent_at = PeerTimePoint{Duration{in.sent_at_ns()}},
+                              .arrived_at = TimePoint{Duration{in.arrived_at_ns()}}}};
+}
+
+Record link_status_of(const session::LinkStatus& in, TimePoint at, Range& range) {
+  return LinkStatus{.at = at,
+                    .health = {.state = range.checked<LinkState>(in.state(), kLinkStateCount),
+                               .gap = Duration{in.gap_ns()},
+                               .round_trip = Duration{in.round_trip_ns()},
+                               .round_trip_min = Duration{in.round_trip_min_ns()},
+                               .jitter = Duration{in.jitter_ns()},
+                               .sent = in.sent(),
+                               .accepted = in.accepted(),
+                               .late = in.late(),
+                               .repaired = in.repaired(),
+                               .lost = in.lost(),
+                               .reordered = in.reordered(),
+                               .stale = in.stale(),
+                               .old_epoch = in.old_epoch(),
+                               .unsent = in.unsent(),
+                               .malformed = in.malformed(),
+                               .foreign = in.foreign(),
+                               .replayed = in.replayed(),
+                               .too_old = in.too_old(),
+                               .forged = in.forged()}};
+}
+
+Record event_of(const session::Event& in, TimePoint at, Range& range) {
+  range.ok = range.ok && in.code() <= std::numeric_limits<std::uint16_t>::max() &&
+             session::Event::Kind_IsValid(in.kind());
+  const auto code = static_cast<std::uint16_t>(in.code());
+  if (in.kind() == session::Event::TRANSITION) {
+    return Transition{.at = at,
+                      .from = range.site_state(in.from()),
+                      .to = range.site_state(in.to()),
+                      .reason = code};
+  }
+  return Note{.at = at, .code = code, .detail = in.detail()};
+}
+
+Record contact_of(const session::ContactSample& in, TimePoint at) {
+  return ContactSample{
+      .at = at, .position = in.position_m(), .force = in.force_n(), .lateral = in.lateral_m()};
+}
+
+Record estimate_of(const session::DepthEstimate& in, Range& range) {
+  return DepthEstimate{.number = in.number(),
+                       .stroke_began_at = TimePoint{Duration{in.stroke_began_at_ns()}},
+                       .stroke_ended_at = TimePoint{Duration{in.stroke_ended_at_ns()}},
+                       .lateral = in.lateral_m(),
+                       .indentation_max = in.indentation_max_m(),
+                       .force_max = in.force_max_n(),
+                       .surface = in.surface_m(),
+                       .verdict = range.checked<DepthVerdict>(in.verdict(), kDepthVerdictCount),
+                       .reason = range.checked<DepthReason>(in.reason(), kDepthReasonCount),
+                       .hash = in.hash_n(),
+                       .depth = in.depth_m(),
+                       .depth_stddev = in.depth_stddev_m(),
+                       .depth_low = in.depth_low_m(),
+                       .depth_high = in.depth_high_m(),
+                       .fit_rms = in.fit_rms_n()};
+}
+
+Record report_of(const session::DepthReport& in, TimePoint at, Range& range) {
+  return DepthArrived{
+      .at = at,
+      .report = {.number = in.number(),
+                 .verdict = range.checked<DepthVerdict>(in.verdict(), kDepthVerdictCount),
+                 .reason = range.checked<DepthReason>(in.reason(), kDepthReasonCount),
+                 .depth = in.depth_m(),
+                 .depth_stddev = in.depth_stddev_m(),
+                 .depth_low = in.depth_low_m(),
+                 .depth_high = in.depth_high_m(),
+                 .hash = in.hash_n()}};
+}
+
+}  // namespace
+
+struct SessionDecoder::Messages {
+  session::SurgeonTick surgeon_tick;
+  session::PatientTick patient_tick;
+  session::SurgeonTickView surgeon_view;
+  session::PatientTickView patient_view;
+  session::ArrivedSample arrived;
+  session::LinkStatus link;
+  session::Event event;
+  session::ContactSample contact;
+  session::DepthEstimate estimate;
+  session::DepthReport report;
+};
+
+SessionDecoder::SessionDecoder() : messages_{std::make_unique<Messages>()} {}
+SessionDecoder::~SessionDecoder() = default;
+
+SessionDecoder::Answer SessionDecoder::decode(std::string_view schema,
+                                              std::span<const std::byte> payload,
+                                              TimePoint at) {
+  Messages& from = *messages_;
+  Range range;
+  Answer answer{.verdict = Verdict::Unknown, .record = {}};
+  // Parses `payload` if the schema is that of `message`; then `convert` makes the record.
+  const auto attempt = [&](auto& message, auto convert) {
+    if (answer.verdict != Verdict::Unknown || schema != message.GetDescriptor()->full_name()) {
+      return;
+    }
+    answer.verdict = Verdict::Malformed;
+    if (payload.size() <= std::numeric_limits<int>::max() &&
+        message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
+      answer.verdict = convert();
+    }
+  };
+  const auto record = [&](Record value) {
+    answer.record = value;
+    return range.ok ? Verdict::Decoded : Verdict::Malformed;
+  };
+  const auto view = [] { return Verdict::View; };
+  attempt(from.surgeon_tick, [&] { return record(tick_of(from.surgeon_tick, at, range)); });
+  attempt(from.patient_tick, [&] { return record(tick_of(from.patient_tick, at, range)); });
+  attempt(from.arrived, [&] { return record(arrived_of(from.arrived, at)); });
+  attempt(from.contact, [&] { return record(contact_of(from.contact, at)); });
+  attempt(from.link, [&] { return record(link_status_of(from.link, at, range)); });
+  attempt(from.event, [&] { return record(event_of(from.event, at, range)); });
+  attempt(from.estimate, [&] { return record(estimate_of(from.estimate, range)); });
+  attempt(from.report, [&] { return record(report_of(from.report, at, range)); });
+  attempt(from.surgeon_view, view);
+  attempt(from.patient_view, view);
+  return answer;
+}
+
+}  // namespace palp::record

@@ -1,0 +1,94 @@
+#include "common/record/session_reader.h"
+
+#include <algorithm>
+
+namespace palp::record {
+namespace {
+
+TimePoint instant(std::uint64_t stamp) noexcept {
+  return TimePoint{Duration{static_cast<std::int64_t>(stamp)}};
+}
+
+}  // namespace
+
+SessionReader::SessionReader(std::span<const std::byte> file, const McapLimits& limits)
+    : mcap_{file, limits} {}
+
+std::optional<SessionEntry> SessionReader::next() {
+  while (const auto item = mcap_.next()) {
+    if (const auto* metadata = std::get_if<McapMetadata>(&*item)) {
+      metadata_.insert_or_assign(std::string{metadata->name}, metadata->entries);
+    } else if (const auto* attachment = std::get_if<McapAttachment>(&*item)) {
+      // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes of a text
+      const auto* text = reinterpret_cast<const char*>(attachment->data.data());
+      attachments_.insert_or_assign(std::string{attachment->name},
+                                    std::string_view{text, attachment->data.size()});
+    } else if (const auto* message = std::get_if<McapMessage>(&*item)) {
+      count(*message);
+      if (auto entry = decode(*message)) {
+        return entry;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+void SessionReader::count(const McapMessage& message) {
+  TopicCount& topic = topics_[message.channel->topic];
+  const TimePoint at = instant(message.publish_time);
+  if (topic.messages == 0) {
+    topic.schema = message.schema == nullptr ? "" : message.schema->name;
+    topic.first = at;
+    topic.skipped = message.sequence;
+  } else {
+    topic.skipped += static_cast<std::uint32_t>(message.sequence - topic.sequence - 1);
+  }
+  topic.sequence = message.sequence;
+  topic.last = at;
+  ++topic.messages;
+  began_at_ = began_at_ ? std::min(*began_at_, at) : at;
+  ended_at_ = ended_at_ ? std::max(*ended_at_, at) : at;
+}
+
+std::optional<SessionEntry> SessionReader::decode(const McapMessage& message) {
+  const std::string_view topic = message.channel->topic;
+  const bool surgeon = topic.starts_with("surgeon/");
+  if (message.schema == nullptr || message.channel->message_encoding != "protobuf" ||
+      !(surgeon || topic.starts_with("patient/"))) {
+    ++unknown_;
+    return std::nullopt;
+  }
+  const auto answer =
+      decoder_.decode(message.schema->name, message.payload, instant(message.publish_time));
+  using Verdict = SessionDecoder::Verdict;
+  if (answer.verdict == Verdict::Decoded) {
+    return SessionEntry{.site = surgeon ? link::Role::Surgeon : link::Role::Patient,
+                        .logged_at = instant(message.log_time),
+                        .record = answer.record};
+  }
+  if (answer.verdict == Verdict::Unknown) {
+    ++unknown_;
+  } else if (answer.verdict == Verdict::Malformed && malformed_++ == 0) {
+    first_malformed_ = std::string{topic} + " number " + std::to_string(message.sequence);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> SessionReader::metadata(std::string_view record,
+                                                   std::string_view key) const {
+  const auto found = metadata_.find(record);
+  if (found == metadata_.end()) {
+    return std::nullopt;
+  }
+  const auto entry = std::find_if(found->second.begin(),
+                                  found->second.end(),
+                                  [&](const auto& pair) { return pair.first == key; });
+  return entry == found->second.end() ? std::nullopt : std::optional{entry->second};
+}
+
+std::optional<std::string_view> SessionReader::attachment(std::string_view name) const {
+  const auto found = attachments_.find(name);
+  return found == attachments_.end() ? std::nullopt : std::optional{found->second};
+}
+
+}  // namespace palp::record

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "common/link/telegram.h"
+#include "common/record/mcap_reader.h"
+#include "common/record/recorder.h"
+#include "common/record/session_decoder.h"
+
+namespace palp::record {
+
+struct SessionEntry {
+  link::Role site{};
+  TimePoint logged_at{};
+  Record record;
+};
+
+struct TopicCount {
+  std::string schema;
+  std::uint64_t messages{};
+  TimePoint first{};  ///< the sample's own instant, as are the following
+  TimePoint last{};
+  std::uint64_t skipped{};   ///< gaps in the topic's sequence: messages that a damage took
+  std::uint32_t sequence{};  ///< of the newest
+};
+
+/// Reads a session file back to Records, also one that was cut off or damaged (see McapReader).
+/// Messages that nobody of ours wrote are counted, never fatal. Does not own the bytes.
+class SessionReader {
+ public:
+  explicit SessionReader(std::span<const std::byte> file, const McapLimits& limits = {});
+
+  /// The next record, or nullopt at the end. Views carry no record; they are only counted.
+  std::optional<SessionEntry> next();
+
+  // All that was met so far; complete once next() said nullopt.
+  [[nodiscard]] const McapReadReport& report() const noexcept { return mcap_.report(); }
+  [[nodiscard]] const std::map<std::string, TopicCount>& topics() const noexcept { return topics_; }
+  /// A value of a metadata record ("palp", "program"), or nullopt.
+  [[nodiscard]] std::optional<std::string> metadata(std::string_view record,
+                                                    std::string_view key) const;
+  /// The content, or nullopt; valid as long as the file's bytes.
+  [[nodiscard]] std::optional<std::string_view> attachment(std::string_view name) const;
+  [[nodiscard]] std::uint64_t unknown() const noexcept { return unknown_; }
+  [[nodiscard]] std::uint64_t malformed() const noexcept { return malformed_; }
+  /// Topic and sequence of the first malformed message; empty: there is none.
+  [[nodiscard]] const std::string& first_malformed() const noexcept { return first_malformed_; }
+  /// Earliest instant of any sample: where a session's own time begins.
+  [[nodiscard]] std::optional<TimePoint> began_at() const noexcept { return began_at_; }
+  [[nodiscard]] std::optional<TimePoint> ended_at() const noexcept { return ended_at_; }
+
+ private:
+  std::optional<SessionEntry> decode(const McapMessage& message);
+  void count(const McapMessage& message);
+
+  McapReader mcap_;
+  SessionDecoder decoder_;
+  std::map<std::string, TopicCount> topics_;
+  std::map<std::string, McapMap, std::less<>> metadata_;
+  std::map<std::string, std::string_view, std::less<>> attachments_;
+  std::uint64_t unknown_{};
+  std::uint64_t malformed_{};
+  std::string first_malformed_;
+  std::optional<TimePoint> began_at_;
+  std::optional<TimePoint> ended_at_;
+};
+
+}  // namespace palp::record

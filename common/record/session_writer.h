@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "common/record/mcap_writer.h"
+#include "common/record/recorder.h"
+#include "common/record/session_encoder.h"
+#include "common/record/tick_view.h"
+
+namespace palp::record {
+
+struct SessionAttachment {
+  std::string name;        ///< "config.textproto", "tissue.csv"
+  std::string media_type;  ///< "text/plain", "text/csv"
+  std::string content;
+};
+
+/// What a file says of itself before its first message.
+struct SessionInfo {
+  link::Role site{};
+  /// Program, version, git commit, protocol version, seed, host kernel, real or virtual time, ...:
+  /// becomes the metadata record `palp`.
+  McapMap metadata;
+  std::vector<SessionAttachment> attachments;
+  TimePoint opened_at{};
+};
+
+struct SessionCounts {
+  std::array<std::uint64_t, std::variant_size_v<Record>> by_type{};  ///< in the order of Record
+  std::uint64_t views{};
+  std::uint64_t misplaced{};  ///< records that have no topic at this site
+  [[nodiscard]] std::uint64_t records() const noexcept;
+};
+
+/// Writes one site's session file: each Record on its topic, stamped with its own instant, and the
+/// ticks once more at 50 Hz as extremes. Never throws after construction; when the disk is full
+/// the recording ends and `lost()` grows. Thread: record (or the one thread of virtual time).
+class SessionWriter {
+ public:
+  /// `sink` outlives the writer.
+  SessionWriter(ByteSink& sink, const SessionInfo& info, const McapOptions& options = {});
+  ~SessionWriter();
+  SessionWriter(const SessionWriter&) = delete;
+  SessionWriter& operator=(const SessionWriter&) = delete;
+
+  /// `now`: the instant of writing. @returns false: not written, and counted.
+  bool write(const Record& record, TimePoint now);
+  /// Total of records that a full queue dropped; shown in the next link status and the summary.
+  void set_dropped(std::uint64_t total) noexcept { dropped_ = total; }
+  /// Keeps the promise that a kill loses at most half a second, also when nothing is recorded.
+  void flush_if_due(TimePoint now);
+  /// Writes summary and index; the destructor does it too. Later writes are refused.
+  void close();
+
+  [[nodiscard]] const SessionCounts& counts() const noexcept { return counts_; }
+  /// Messages in the file (or its waiting chunk), views included: what an independent reader
+  /// counts.
+  [[nodiscard]] std::uint64_t messages() const noexcept { return mcap_.counts().messages; }
+  [[nodiscard]] std::uint64_t lost() const noexcept { return mcap_.counts().lost; }
+  [[nodiscard]] std::uint64_t size() const noexcept { return mcap_.counts().bytes; }  ///< [bytes]
+  [[nodiscard]] bool failed() const noexcept { return mcap_.failed(); }
+
+ private:
+  bool put(const Prepared& prepared, TimePoint now);
+  void view(const SiteTick& tick, TimePoint now);
+  void write_view(TimePoint now);
+
+  McapWriter mcap_;
+  SessionEncoder encoder_;
+  struct Channel {
+    std::uint16_t id{};
+    std::uint32_t sequence{};
+  };
+  std::array<Channel, kTopicCount> channels_{};
+  TickView view_;
+  TimePoint newest_now_{};
+  std::uint64_t dropped_{};
+  SessionCounts counts_;
+  bool closed_{};
+};
+
+}  // namespace palp::record

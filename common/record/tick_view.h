@@ -1,0 +1,49 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "common/record/recorder.h"
+
+namespace palp::record {
+
+inline constexpr Duration kViewInterval{std::chrono::milliseconds{20}};  ///< 50 Hz
+
+/// A signal over some ticks: a spike of one tick stays visible.
+struct SignalView {
+  double newest{};
+  double min{};
+  double max{};
+
+  void add(double value, bool first) noexcept {
+    newest = value;
+    min = first ? value : std::min(min, value);
+    max = first ? value : std::max(max, value);
+  }
+};
+
+/// Ticks of one interval, for eyes and slow plots.
+struct TickView {
+  TimePoint began_at{};
+  std::uint32_t ticks{};
+  bool gate_acted{};  ///< in any of them
+  SiteTick newest;
+  SignalView position;  ///< [m]
+  SignalView velocity;  ///< [m/s]
+  SignalView force;     ///< [N]
+  SignalView command;   ///< [N] or [m]
+
+  void add(const SiteTick& tick) noexcept {
+    const bool first = ticks == 0;
+    began_at = first ? tick.at : began_at;
+    gate_acted = gate_acted || tick.gate_acted;
+    newest = tick;
+    position.add(tick.position, first);
+    velocity.add(tick.velocity, first);
+    force.add(tick.force, first);
+    command.add(tick.command, first);
+    ++ticks;
+  }
+};
+
+}  // namespace palp::record
