@@ -1,0 +1,272 @@
+#include "patient_site/force_table.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "common/core/check.h"
+#include "common/core/conventions.h"
+
+namespace palp::patient {
+namespace {
+
+constexpr std::size_t kRowsMin = 4;
+constexpr std::size_t kRowsMax = 20'000;
+constexpr double kIndentationMax = 0.1;        // [m]; beyond it a table is not one of an indenter
+constexpr double kForceMax = 1000;             // [N]; likewise
+constexpr double kIntervalMin = 1e-7;          // [m]; closer rows make slopes of rounding errors
+constexpr std::size_t kTextSizeMax = 4 << 20;  // [bytes]
+
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.9g", value);
+  return text.data();
+}
+
+std::string row_error(std::size_t index, const std::string& what) {
+  return "row " + std::to_string(index + 1) + ": " + what;
+}
+
+/// Empty, or what is wrong with row `index`.
+std::string check_row(std::span<const ForceRow> rows, std::size_t index) {
+  const ForceRow& row = rows[index];
+  if (!std::isfinite(row.indentation)) return "d_mm is not finite";
+  if (!std::isfinite(row.force)) return "F_N is not finite";
+  const std::string indentation_mm = number_text(row.indentation / kMillimetre);
+  if (row.indentation < 0) return "d_mm = " + indentation_mm + " is negative";
+  if (row.indentation > kIndentationMax) {
+    return "d_mm = " + indentation_mm + " exceeds " + number_text(kIndentationMax / kMillimetre);
+  }
+  if (row.force < 0) return "F_N = " + number_text(row.force) + " is negative";
+  if (row.force > kForceMax) {
+    return "F_N = " + number_text(row.force) + " exceeds " + number_text(kForceMax);
+  }
+  if (index > 0 && row.indentation < rows[index - 1].indentation + kIntervalMin) {
+    return "d_mm = " + indentation_mm + " does not rise above the row before (" +
+           number_text(rows[index - 1].indentation / kMillimetre) + "): d_mm must be monotone";
+  }
+  return {};
+}
+
+std::string too_few(std::size_t count) {
+  return "there are " + std::to_string(count) + " rows; a table needs at least " +
+         std::to_string(kRowsMin);
+}
+
+/// The one-sided three-point slope at an end, limited so that the end interval stays monotone.
+double end_slope(double h0, double h1, double secant0, double secant1) noexcept {
+  const double slope = ((2 * h0 + h1) * secant0 - h0 * secant1) / (h0 + h1);
+  if (slope * secant0 <= 0) return 0;
+  if (secant0 * secant1 < 0 && std::abs(slope) > 3 * std::abs(secant0)) return 3 * secant0;
+  return slope;
+}
+
+/// The slope at d = 0 with which the first interval encloses the same area as the power law through
+/// the first two rows: the contact of a round tip begins like d^1.5 (Hertz), which no polynomial
+/// through rows this far apart would guess; a straight table stays straight.
+double contact_slope(const ForceRow& first, const ForceRow& second, double slope_first) noexcept {
+  if (!(first.force > 0) || !(second.force > first.force)) return 0;
+  const double exponent =
+      std::log(second.force / first.force) / std::log(second.indentation / first.indentation);
+  const double secant = first.force / first.indentation;
+  return std::clamp(slope_first + 12 * secant * (1 / (exponent + 1) - 0.5), 0.0, 3 * secant);
+}
+
+/// Slopes at the rows: weighted harmonic means of the neighbouring secants (Fritsch, Butland 1984).
+std::vector<double> monotone_slopes(std::span<const ForceRow> rows) {
+  const std::size_t last = rows.size() - 1;
+  std::vector<double> widths(last);
+  std::vector<double> secants(last);
+  for (std::size_t i = 0; i < last; ++i) {
+    widths[i] = rows[i + 1].indentation - rows[i].indentation;
+    secants[i] = (rows[i + 1].force - rows[i].force) / widths[i];
+  }
+  std::vector<double> slopes(rows.size(), 0.0);
+  slopes.front() = end_slope(widths[0], widths[1], secants[0], secants[1]);
+  slopes.back() =
+      end_slope(widths[last - 1], widths[last - 2], secants[last - 1], secants[last - 2]);
+  for (std::size_t i = 1; i < last; ++i) {
+    if (secants[i - 1] * secants[i] <= 0) continue;
+    const double before = 2 * widths[i] + widths[i - 1];
+    const double after = widths[i] + 2 * widths[i - 1];
+    slopes[i] = (before + after) / (before / secants[i - 1] + after / secants[i]);
+  }
+  if (rows[0].force == 0) slopes[0] = contact_slope(rows[1], rows[2], slopes[1]);
+  return slopes;
+}
+
+/// Walks over the lines of a text and the fields of a line.
+std::string_view take_until(std::string_view& rest, char separator) noexcept {
+  const std::size_t end = rest.find(separator);
+  const std::string_view taken = rest.substr(0, end);
+  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  return taken;
+}
+
+std::string_view trimmed(std::string_view text) noexcept {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// What stands in a message: printable and short, whatever was in the file.
+std::string quoted(std::string_view text) {
+  std::string out = "'";
+  for (const char letter : text.substr(0, 40)) {
+    out += letter >= ' ' && letter <= '~' ? letter : '?';
+  }
+  return out + (text.size() > 40 ? "...'" : "'");
+}
+
+struct Columns {
+  std::size_t indentation{};
+  std::size_t force{};
+};
+
+Result<Columns> find_columns(std::string_view header) {
+  std::optional<std::size_t> indentation;
+  std::optional<std::size_t> force;
+  for (std::size_t column = 0; !header.empty(); ++column) {
+    const std::string_view field = trimmed(take_until(header, ','));
+    if (field == "d_mm" && !indentation) indentation = column;
+    if (field == "F_N" && !force) force = column;
+  }
+  if (!indentation) return fail("the header has no column d_mm");
+  if (!force) return fail("the header has no column F_N");
+  return Columns{*indentation, *force};
+}
+
+/// One field as a number; the whole field must be one.
+Result<double> parse_number(std::string_view line, std::size_t column, std::string_view name) {
+  const std::string where =
+      "column " + std::to_string(column + 1) + " (" + std::string{name} + "): ";
+  for (std::size_t i = 0; i < column && !line.empty(); ++i) take_until(line, ',');
+  const std::string_view field = trimmed(take_until(line, ','));
+  if (field.empty()) return fail(where + "the value is missing");
+  const char* begin = field.data() + (field.size() > 1 && field.front() == '+' ? 1 : 0);
+  double value = 0;
+  const auto [end, error] = std::from_chars(begin, field.data() + field.size(), value);
+  if (error == std::errc::result_out_of_range)
+    return fail(where + quoted(field) + " is out of range");
+  if (error != std::errc{} || end != field.data() + field.size()) {
+    return fail(where + quoted(field) + " is not a number");
+  }
+  if (!std::isfinite(value)) return fail(where + quoted(field) + " is not finite");
+  return value;
+}
+
+Result<ForceRow> parse_row(std::string_view line, const Columns& columns) {
+  const Result<double> indentation_mm = parse_number(line, columns.indentation, "d_mm");
+  if (!indentation_mm) return tl::unexpected(indentation_mm.error());
+  const Result<double> force = parse_number(line, columns.force, "F_N");
+  if (!force) return tl::unexpected(force.error());
+  return ForceRow{.indentation = *indentation_mm * kMillimetre, .force = *force};
+}
+
+}  // namespace
+
+Result<ForceTable> ForceTable::make(std::vector<ForceRow> rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::string wrong = check_row(rows, i);
+    if (!wrong.empty()) return fail(row_error(i, wrong));
+  }
+  if (rows.size() < kRowsMin) return fail(too_few(rows.size()));
+  if (rows.front().indentation > 0) rows.insert(rows.begin(), ForceRow{});
+  return ForceTable{std::move(rows)};
+}
+
+ForceTable::ForceTable(std::vector<ForceRow> rows)
+    : rows_{std::move(rows)}, slopes_{monotone_slopes(rows_)} {
+  PALP_CHECK(rows_.size() >= kRowsMin, "a force table has at least 4 rows");
+  const std::size_t cells = 2 * rows_.size();
+  cells_per_metre_ = static_cast<double>(cells) / depth_max();
+  starts_.resize(cells);
+  for (std::size_t cell = 0, row = 0; cell < cells; ++cell) {
+    const double edge = static_cast<double>(cell) / cells_per_metre_;
+    while (row + 2 < rows_.size() && rows_[row + 1].indentation <= edge) ++row;
+    starts_[cell] = static_cast<std::uint32_t>(row);
+  }
+}
+
+std::size_t ForceTable::interval(double indentation) const noexcept {
+  const auto cell = static_cast<std::size_t>(indentation * cells_per_metre_);
+  std::size_t row = starts_[std::min(cell, starts_.size() - 1)];
+  while (row + 2 < rows_.size() && rows_[row + 1].indentation < indentation) ++row;
+  return row;
+}
+
+double ForceTable::force(double indentation) const noexcept {
+  if (!(indentation >= 0)) return 0;
+  if (indentation >= depth_max()) return rows_.back().force;
+  const std::size_t i = interval(indentation);
+  const double width = rows_[i + 1].indentation - rows_[i].indentation;
+  const double t = (indentation - rows_[i].indentation) / width;
+  const double u = 1 - t;
+  // Cubic Hermite form.
+  return rows_[i].force * (1 + 2 * t) * u * u + rows_[i + 1].force * t * t * (3 - 2 * t) +
+         width * t * u * (slopes_[i] * u - slopes_[i + 1] * t);
+}
+
+double ForceTable::derivative(double indentation) const noexcept {
+  if (!(indentation >= 0) || indentation > depth_max()) return 0;
+  const std::size_t i = interval(indentation);
+  const double width = rows_[i + 1].indentation - rows_[i].indentation;
+  const double t = (indentation - rows_[i].indentation) / width;
+  const double u = 1 - t;
+  return 6 * t * u * (rows_[i + 1].force - rows_[i].force) / width + slopes_[i] * u * (u - 2 * t) +
+         slopes_[i + 1] * t * (t - 2 * u);
+}
+
+Result<ForceTable> parse_force_table(std::string_view text, std::string_view name) {
+  const std::string prefix = std::string{name} + ": ";
+  if (text.size() > kTextSizeMax) {
+    return fail(prefix + "the table has " + std::to_string(text.size()) + " bytes, more than " +
+                std::to_string(kTextSizeMax));
+  }
+  std::optional<Columns> columns;
+  std::vector<ForceRow> rows;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::string where = prefix + "line " + std::to_string(number) + ": ";
+    const std::string_view line = trimmed(take_until(text, '\n'));
+    if (line.empty() || line.front() == '#') continue;
+    if (!columns) {
+      const Result<Columns> found = find_columns(line);
+      if (!found) return fail(where + found.error().text);
+      columns = *found;
+      continue;
+    }
+    const Result<ForceRow> row = parse_row(line, *columns);
+    if (!row) return fail(where + row.error().text);
+    rows.push_back(*row);
+    const std::string wrong = check_row(rows, rows.size() - 1);
+    if (!wrong.empty()) return fail(where + wrong);
+    if (rows.size() > kRowsMax) {
+      return fail(where + "more than " + std::to_string(kRowsMax) + " rows");
+    }
+  }
+  if (!columns) return fail(prefix + "there is no header line with the columns d_mm and F_N");
+  if (rows.size() < kRowsMin) return fail(prefix + too_few(rows.size()));
+  return ForceTable::make(std::move(rows)).map_error([&](const Error& error) {
+    return Error{prefix + error.text};
+  });
+}
+
+Result<ForceTable> load_force_table(const std::string& path) {
+  std::ifstream file{path, std::ios::binary};
+  if (!file) return fail(path + ": the file cannot be opened");
+  std::string text(kTextSizeMax + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad() || (file.gcount() == 0 && !file.eof())) {
+    return fail(path + ": the file cannot be read");
+  }
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return parse_force_table(text, path);
+}
+
+}  // namespace palp::patient

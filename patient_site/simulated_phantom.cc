@@ -1,0 +1,108 @@
+#include "patient_site/simulated_phantom.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/core/check.h"
+#include "common/core/random.h"
+
+namespace palp::patient {
+namespace {
+
+constexpr Duration kStep = std::chrono::microseconds{100};
+constexpr double kStepSeconds = 1e-4;
+// A process that was stopped for longer than this resumes where it was: the loop stays bounded.
+constexpr std::int64_t kStepsMax = 2'000;
+constexpr std::uint64_t kForceNoiseStream = 0x666f726365;  // "force"
+
+double rounded(double value, double quantum) noexcept {
+  return quantum > 0 ? quantum * std::round(value / quantum) : value;
+}
+
+}  // namespace
+
+SimulatedPhantom::SimulatedPhantom(const Phantom& phantom, const SimulatedPhantomConfig& config)
+    : phantom_{phantom},
+      config_{config},
+      target_{config.start_position, config.start_lateral},
+      position_{config.start_position},
+      lateral_{config.start_lateral},
+      surface_{config.surface_offset} {
+  PALP_CHECK(config.servo_frequency > 0 && config.sensor_cut_off > 0, "frequencies are positive");
+  const double omega = 2 * std::numbers::pi * config.servo_frequency;
+  servo_stiffness_ = omega * omega;
+  servo_drag_ = 2 * config.servo_damping * omega;
+  sensor_gain_ = 1 - std::exp(-2 * std::numbers::pi * config.sensor_cut_off * kStepSeconds);
+}
+
+StageState SimulatedPhantom::read(TimePoint now) noexcept {
+  advance(now);
+  return {.sampled_at = now,
+          .position = rounded(position_, config_.encoder_step),
+          .velocity = velocity_,
+          .lateral = lateral_,
+          .at_limit = false,
+          .faulted = false};
+}
+
+void SimulatedPhantom::move_to(const StageTarget& target) noexcept {
+  if (!std::isfinite(target.position) || !std::isfinite(target.lateral)) return halt();
+  target_ = target;
+  lateral_ = target.lateral;
+}
+
+void SimulatedPhantom::halt() noexcept { target_.position = position_; }
+
+std::optional<ForceSample> SimulatedPhantom::sample(TimePoint now) noexcept {
+  advance(now);
+  double force = sensed_force_;
+  if (config_.force_noise > 0) {
+    force += config_.force_noise * random_normal(config_.seed, kForceNoiseStream, steps_);
+  }
+  return ForceSample{
+      .sampled_at = now, .force = rounded(force, config_.force_quantum), .saturated = false};
+}
+
+void SimulatedPhantom::advance(TimePoint now) noexcept {
+  if (!started_) {
+    started_ = true;
+    at_ = now;
+  }
+  const std::int64_t due = (now - at_) / kStep;
+  if (due <= 0) return;
+  for (std::int64_t i = 0; i < std::min(due, kStepsMax); ++i) integrate_step();
+  at_ += due * kStep;
+}
+
+void SimulatedPhantom::integrate_step() noexcept {
+  const double pull = servo_stiffness_ * (target_.position - position_) - servo_drag_ * velocity_;
+  const double acceleration = std::clamp(pull, -config_.acceleration_max, config_.acceleration_max);
+  velocity_ =
+      std::clamp(velocity_ + acceleration * kStepSeconds, -config_.speed_max, config_.speed_max);
+  position_ += velocity_ * kStepSeconds;
+  ++steps_;
+
+  double surface_rate = 0;
+  if (config_.breathing_amplitude > 0) {
+    const double omega = 2 * std::numbers::pi * config_.breathing_frequency;
+    const double phase = omega * kStepSeconds * static_cast<double>(steps_);
+    surface_ = config_.surface_offset + config_.breathing_amplitude * std::sin(phase);
+    surface_rate = config_.breathing_amplitude * omega * std::cos(phase);
+  }
+  const double elastic = phantom_.at(lateral_).force(position_ - surface_);
+  const double rate = velocity_ - surface_rate;
+  contact_force_ = std::max(0.0, elastic * (1 + config_.viscous_factor * rate));
+  tissue_energy_ += contact_force_ * velocity_ * kStepSeconds;
+  sensed_force_ += sensor_gain_ * (contact_force_ - sensed_force_);
+}
+
+PhantomTruth SimulatedPhantom::truth() const noexcept {
+  return {.position = position_,
+          .velocity = velocity_,
+          .surface = surface_,
+          .contact_force = contact_force_,
+          .tissue_energy = tissue_energy_};
+}
+
+}  // namespace palp::patient

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+
+#include "patient_site/force_sensor.h"
+#include "patient_site/phantom.h"
+#include "patient_site/stage.h"
+
+namespace palp::patient {
+
+struct SimulatedPhantomConfig {
+  double servo_frequency{20};     ///< [Hz], natural frequency of the position servo
+  double servo_damping{0.9};      ///< [-], its damping ratio
+  double acceleration_max{8};     ///< [m/s^2]
+  double speed_max{0.15};         ///< [m/s]
+  double encoder_step{5e-6};      ///< [m]; 0: exact
+  double start_position{-10e-3};  ///< [m]
+  double start_lateral{0};        ///< [m]
+  double surface_offset{0};       ///< [m], where the undeformed surface lies
+  double breathing_amplitude{0};  ///< [m], of the surface
+  double breathing_frequency{0};  ///< [Hz]
+  double viscous_factor{0.5};     ///< [s/m]: F_c = f(d) (1 + factor * rate of d)
+  double sensor_cut_off{20};      ///< [Hz], first-order pole of the transducer
+  double force_noise{0.015};      ///< [N], rms, white, per sample; 0: none
+  double force_quantum{0.05};     ///< [N], paper II.A: resolution of the transducer; 0: exact
+  std::uint64_t seed{1};          ///< of the force noise
+};
+
+/// The plant's own state, for judges: nothing of it may reach a node.
+struct PhantomTruth {
+  double position{};       ///< [m], tip
+  double velocity{};       ///< [m/s]
+  double surface{};        ///< [m], where the surface is now (breathing)
+  double contact_force{};  ///< [N]
+  double tissue_energy{};  ///< [J], integral of F_c dx_s since the start
+};
+
+/// A stage, the tissue it presses and the transducer at its tip, simulated together. A position
+/// servo moves the tip whatever the tissue does; the contact force is F(d) of the phantom at the
+/// present place, with a factor for the rate of indentation. A place is a place: lateral motion
+/// takes no time. Integrates in steps of 0.1 ms from one `now` to the next.
+/// Thread: rt. Owns nothing it was given: the phantom outlives it.
+class SimulatedPhantom final : public Stage, public ForceSensor {
+ public:
+  SimulatedPhantom(const Phantom& phantom, const SimulatedPhantomConfig& config);
+
+  StageState read(TimePoint now) noexcept override;
+  void move_to(const StageTarget& target) noexcept override;
+  void halt() noexcept override;
+  std::optional<ForceSample> sample(TimePoint now) noexcept override;
+
+  [[nodiscard]] PhantomTruth truth() const noexcept;
+
+ private:
+  void advance(TimePoint now) noexcept;
+  void integrate_step() noexcept;
+
+  const Phantom& phantom_;
+  SimulatedPhantomConfig config_;
+  double servo_stiffness_;  ///< [1/s^2]
+  double servo_drag_;       ///< [1/s]
+  double sensor_gain_;      ///< [-], of the transducer's pole, per step
+
+  bool started_{};
+  TimePoint at_{};         ///< how far the plant has been integrated
+  std::uint64_t steps_{};  ///< since the start
+  StageTarget target_;
+  double position_{};       ///< [m]
+  double velocity_{};       ///< [m/s]
+  double lateral_{};        ///< [m]
+  double surface_{};        ///< [m]
+  double contact_force_{};  ///< [N]
+  double sensed_force_{};   ///< [N], behind the transducer's pole
+  double tissue_energy_{};  ///< [J]
+};
+
+}  // namespace palp::patient
