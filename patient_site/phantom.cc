@@ -67,9 +67,9 @@ Result<Phantom> closed_form_phantom(std::string_view spec, std::string_view dept
   if (!depth_text.empty()) {
     const char* end = depth_text.data() + depth_text.size();
     const auto [stop, error] = std::from_chars(depth_text.data(), end, depth_mm);
-    if (error != std::errc{} || stop != end || !(depth_mm >= 1 && depth_mm <= 100)) {
+    if (error != std::errc{} || stop != end || !(depth_mm >= 2 && depth_mm <= 100)) {
       return fail("phantom '" + std::string{spec} +
-                  "': the depth must be a number from 1 to 100 (mm)");
+                  "': the depth must be a number from 2 to 100 (mm)");
     }
   }
   return Phantom{.name = std::string{spec},

@@ -42,7 +42,7 @@ double dither(double noise, double quantum) noexcept {
 double neighbour_noise(std::span<const StrokeSample> samples) noexcept {
   double sum = 0;
   for (std::size_t i = 1; i < samples.size(); ++i) {
-    const double step = samples[i].force_measured - samples[i - 1].force_measured;
+    const double step = samples[i].measured.force - samples[i - 1].measured.force;
     sum += step * step;
   }
   return std::sqrt(sum / (2 * static_cast<double>(samples.size()))) + kNoiseFloor;
@@ -65,6 +65,27 @@ double fit_rate_factor(std::span<const ContactPoint> points,
     information += weight * regressor * regressor;
   }
   return sum / information;
+}
+
+struct Misfit {
+  double mean{};  ///< [N], measured minus law, in contact
+  double rms{};   ///< [N]
+};
+
+Misfit compare(std::span<const ContactPoint> points, const ContactLaw& law) noexcept {
+  double sum = 0;
+  double squares = 0;
+  double count = 0;
+  for (const ContactPoint& point : points) {
+    if (point.position < law.surface) continue;
+    const double elastic = law.force(point.position - law.surface);
+    const double rest = point.force - elastic * (1 + law.rate_factor * point.rate);
+    sum += point.count * rest;
+    squares += point.count * rest * rest;
+    count += point.count;
+  }
+  if (!(count > 0)) return {};
+  return {sum / count, std::sqrt(squares / count)};
 }
 
 }  // namespace
@@ -101,7 +122,7 @@ std::optional<DepthEstimate> PaperEstimator::add(const ContactSample& sample) {
 }
 
 StrokeSample PaperEstimator::filter(const ContactSample& sample) noexcept {
-  StrokeSample out{.at = sample.at, .tip = sample.position, .force_measured = sample.force};
+  StrokeSample out{.measured = sample, .tip = sample.position};
   if (previous_) {
     // The co-filter is a known first-order pole: undone exactly, it gives the encoder's reading.
     out.tip = previous_->position + (sample.position - previous_->position) / pole_gain_;
@@ -122,7 +143,7 @@ PaperEstimator::Measured PaperEstimator::measure() const noexcept {
   measured.position_max = loading.back().position;
   for (const StrokeSample& sample : loading) {
     measured.force_max = std::max(measured.force_max, sample.force);
-    measured.saturated |= std::abs(sample.force_measured) >= config_.force_range;
+    measured.saturated |= std::abs(sample.measured.force) >= config_.force_range;
     if (sample.force < config_.cutter.contact_force) continue;
     if (measured.in_contact++ == 0) measured.first_contact = sample.position;
   }
@@ -160,8 +181,8 @@ DepthEstimate PaperEstimator::estimate_stroke() {
   const Measured measured = measure();
   DepthEstimate estimate;
   estimate.number = ++number_;
-  estimate.stroke_ended_at = cutter_.loading().back().at;
-  estimate.stroke_began_at = cutter_.loading().front().at;
+  estimate.stroke_ended_at = cutter_.loading().back().measured.at;
+  estimate.stroke_began_at = cutter_.loading().front().measured.at;
   estimate.lateral = previous_->lateral;
   estimate.force_max = measured.force_max;
   estimate.verdict = DepthVerdict::Invalid;
@@ -195,23 +216,13 @@ bool PaperEstimator::learn_loading(Place& place,
   noise_ = measured.noise;
   std::optional<ContactLaw> law = place.law;
   Branch own = branch_curve(place, ContactCurve::Branch::Loading, law, noise_);
-  if (law) {
-    double misfit = 0;
-    double count = 0;
-    for (const ContactPoint& point : own.curve.points()) {
-      const double elastic = law->force(point.position - law->surface);
-      if (point.position < law->surface) continue;
-      misfit += point.count * (point.force - elastic * (1 + law->rate_factor * point.rate));
-      count += point.count;
-    }
-    if (count > 0 && std::abs(misfit / count) > config_.change_force) {
-      place.curve = ContactCurve{measured.first_contact};
-      place.first_contact = measured.first_contact;
-      place.law.reset();
-      law.reset();
-      place.strokes = 0;
-      own = branch_curve(place, ContactCurve::Branch::Loading, law, noise_);
-    }
+  if (law && std::abs(compare(own.curve.points(), *law).mean) > config_.change_force) {
+    place.curve = ContactCurve{measured.first_contact};
+    place.first_contact = measured.first_contact;
+    place.law.reset();
+    place.strokes = 0;
+    law.reset();
+    own = branch_curve(place, ContactCurve::Branch::Loading, law, noise_);
   }
   const int passes = law ? kPassesLater : kPassesFirst;
   for (int pass = 0; pass < passes; ++pass) {
@@ -234,26 +245,23 @@ bool PaperEstimator::learn_loading(Place& place,
     place.curve.scale(0.5);
     place.strokes /= 2;
   }
+  describe(estimate, *law, own.curve, measured.position_max);
+  return true;
+}
 
-  estimate.surface = law->surface;
-  estimate.indentation_max = measured.position_max - law->surface;
+void PaperEstimator::describe(DepthEstimate& estimate,
+                              const ContactLaw& law,
+                              const ContactCurve& own,
+                              double position_max) const {
+  estimate.surface = law.surface;
+  estimate.indentation_max = position_max - law.surface;
   std::array<CurvePoint, 81> curve{};  // every 0.05 mm; 0.25 mm gives the same h within 0.05 %
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const double depth = config_.fit_range * static_cast<double>(i) / (curve.size() - 1);
-    curve[i] = {depth, law->force(depth)};
+    curve[i] = {depth, law.force(depth)};
   }
   if (const std::optional<Cubic> cubic = fit_cubic(curve)) estimate.hash = hash(*cubic);
-  double squares = 0;
-  double count = 0;
-  for (const ContactPoint& point : own.curve.points()) {
-    if (point.position < law->surface) continue;
-    const double elastic = law->force(point.position - law->surface);
-    const double rest = point.force - elastic * (1 + law->rate_factor * point.rate);
-    squares += point.count * rest * rest;
-    count += point.count;
-  }
-  estimate.fit_rms = count > 0 ? std::sqrt(squares / count) : 0;
-  return true;
+  estimate.fit_rms = compare(own.points(), law).rms;
 }
 
 /// The branch after the reversal is no measurement of h, but it shows the surface once more and how
@@ -294,7 +302,7 @@ PaperEstimator::Branch PaperEstimator::branch_curve(const Place& place,
   std::size_t count = 0;
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const StrokeSample& sample = samples[i];
-    const double dt = seconds(sample.at - samples[i - 1].at);
+    const double dt = seconds(sample.measured.at - samples[i - 1].measured.at);
     const double rate = (sample.position - samples[i - 1].position) / dt;
     const bool loading = i < cutter_.loading_count();
     double correction = 0;
@@ -312,7 +320,7 @@ PaperEstimator::Branch PaperEstimator::branch_curve(const Place& place,
       correction = filtered -
                    law->force(sample.position - law->surface) * (1 + law->rate_factor * rate) +
                    bias;
-      const double rest = sample.force_measured - sensed - steps;
+      const double rest = sample.measured.force - sensed - steps;
       if (loading) squares += rest * rest;
     }
     count += loading ? 1 : 0;

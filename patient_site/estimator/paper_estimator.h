@@ -49,8 +49,8 @@ class PaperEstimator {
   /// @returns the estimate when a stroke's reversal was seen.
   [[nodiscard]] std::optional<DepthEstimate> add(const ContactSample& sample);
 
-  /// The samples of the stroke that gave the last estimate, from air to beyond the reversal.
-  [[nodiscard]] std::span<const StrokeSample> stroke() const noexcept { return cutter_.samples(); }
+  /// The loading branch that gave an estimate, from the air on. Valid until the next add().
+  [[nodiscard]] std::span<const StrokeSample> stroke() const noexcept { return cutter_.loading(); }
 
  private:
   /// What is known of one place along the surface.
@@ -89,6 +89,10 @@ class PaperEstimator {
                                     double noise) const;
   [[nodiscard]] bool learn_loading(Place& place, const Measured& measured, DepthEstimate& estimate);
   void learn_unloading();
+  void describe(DepthEstimate& estimate,
+                const ContactLaw& law,
+                const ContactCurve& own,
+                double position_max) const;
 
   PaperEstimatorConfig config_;
   StrokeCutter cutter_;

@@ -5,17 +5,16 @@
 #include <span>
 #include <vector>
 
-#include "common/core/time.h"
+#include "common/core/stroke.h"
 
 namespace palp::estimator {
 
 /// A contact sample as the estimator works with it.
 struct StrokeSample {
-  TimePoint at{};
-  double tip{};             ///< [m], stage position, unfiltered
-  double position{};        ///< [m], the same behind the transducer's pole and the 20 Hz filter
-  double force{};           ///< [N], behind the transducer's pole and the 20 Hz filter
-  double force_measured{};  ///< [N], as it came
+  ContactSample measured;  ///< as it came
+  double tip{};            ///< [m], stage position, unfiltered
+  double position{};       ///< [m], the same behind the transducer's pole and the 20 Hz filter
+  double force{};          ///< [N], behind the transducer's pole and the 20 Hz filter
 };
 
 struct StrokeCutterConfig {

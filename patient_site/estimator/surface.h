@@ -34,7 +34,7 @@ struct SurfaceInput {
   double first_contact{};         ///< [m], where the force was first felt
   double noise{};                 ///< [N], rms of one sample
   double rate_factor{};           ///< [s/m], as known so far
-  std::optional<double> surface;  ///< [m], as known so far: search near it first
+  std::optional<double> surface{};  ///< [m], as known so far: search near it first
 };
 
 /// Finds the surface and the law together: the surface hides in the transducer's noise and steps

@@ -21,10 +21,11 @@ struct Tapping {
   double lateral{10e-3};     ///< [m], site B
 };
 
-inline std::vector<DepthEstimate> tap(const Phantom& phantom,
-                                      SimulatedPhantomConfig config,
-                                      const Tapping& tapping,
-                                      const estimator::PaperEstimatorConfig& estimator_config = {}) {
+inline std::vector<DepthEstimate> tap(
+    const Phantom& phantom,
+    SimulatedPhantomConfig config,
+    const Tapping& tapping,
+    const estimator::PaperEstimatorConfig& estimator_config = {}) {
   config.start_position = config.surface_offset - tapping.clearance;
   config.start_lateral = tapping.lateral;
   SimulatedPhantom site{phantom, config};

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+
+#include "common/core/mailbox.h"
+#include "common/core/spsc_queue.h"
+#include "common/core/stroke.h"
+#include "common/record/recorder.h"
+#include "patient_site/estimator/paper_estimator.h"
+
+namespace palp::patient {
+
+/// Runs the depth estimator beside the node: takes its samples from a queue, leaves estimates in a
+/// mailbox, and records each stroke with its estimate. Thread: estimator's, or the lab's; whoever
+/// calls drain(). Owns the estimator; the rest outlives it. The recorder is its own, not the
+/// node's.
+class EstimatorWorker {
+ public:
+  struct Parts {
+    SpscQueue<ContactSample>& contact;  ///< writer: rt; reader: this
+    Mailbox<DepthEstimate>& depth;      ///< writer: this; reader: rt
+    record::Recorder& recorder;
+  };
+
+  EstimatorWorker(const estimator::PaperEstimatorConfig& config, Parts parts);
+
+  /// Works on what waits in the queue. @returns how many samples there were.
+  std::size_t drain();
+
+  [[nodiscard]] std::uint64_t strokes() const noexcept { return strokes_; }
+  [[nodiscard]] std::uint64_t records() const noexcept { return records_; }
+  [[nodiscard]] std::uint64_t records_lost() const noexcept { return records_lost_; }
+
+ private:
+  void publish(const DepthEstimate& estimate);
+  void record(const record::Record& record);
+
+  estimator::PaperEstimator estimator_;
+  Parts parts_;
+  std::uint64_t strokes_{};
+  std::uint64_t records_{};
+  std::uint64_t records_lost_{};
+};
+
+}  // namespace palp::patient

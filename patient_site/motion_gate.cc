@@ -1,0 +1,152 @@
+#include "patient_site/motion_gate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/limits.h"
+
+namespace palp::patient {
+namespace {
+
+using record::NoteCode;
+
+constexpr double kSmoothing = 0.1;          // per tick: 10 ms
+constexpr double kFeltShare = 0.4;          // of contact_force, smoothed: noise alone is no contact
+constexpr double kOutside = 0.5e-3;         // [m], of the learned surface: more than its error
+constexpr double kRetractedWithin = 50e-6;  // [m]
+
+}  // namespace
+
+void MotionGate::begin(double tip, double lateral) noexcept {
+  command_ = tip;
+  lateral_ = lateral;
+  velocity_ = 0;
+}
+
+void MotionGate::feel(double tip, double contact_force) noexcept {
+  felt_ += kSmoothing * (contact_force - felt_);
+  const bool contact =
+      contact_force >= config_.contact_force && felt_ >= kFeltShare * config_.contact_force;
+  if (!contact || surface_of_this_place_) return;
+  // Contact began where Hertz' law of the expected tissue gives no force.
+  const double force = std::max(felt_, config_.contact_force / 2) / config_.contact_stiffness;
+  surface_ = tip - std::cbrt(force * force);
+  surface_of_this_place_ = true;
+}
+
+bool MotionGate::outside(double tip) const noexcept {
+  return felt_ < config_.contact_force && (!surface_ || tip < *surface_ - kOutside);
+}
+
+bool MotionGate::free_to_follow(double tip) const noexcept {
+  return felt_ < config_.contact_force || (surface_ && tip < *surface_ - kOutside);
+}
+
+double MotionGate::clear_position() const noexcept { return *surface_ - config_.clearance; }
+
+bool MotionGate::retracted(double tip) const noexcept {
+  if (!surface_) return felt_ < config_.contact_force;
+  return tip <= clear_position() + kRetractedWithin;
+}
+
+double MotionGate::within_limits(double position) const noexcept {
+  double deepest = config_.travel_max;
+  if (surface_) deepest = std::min(deepest, *surface_ + config_.depth_max);
+  return std::clamp(position, config_.travel_min, std::max(deepest, config_.travel_min));
+}
+
+double MotionGate::speed_limit() const noexcept {
+  if (resynchronising_) return config_.speed_resync;
+  const bool near = surface_ && command_ > *surface_ - config_.near_distance;
+  return near ? config_.speed_near : config_.speed_max;
+}
+
+/// Towards `target` as fast as speed and acceleration allow, braking in time.
+void MotionGate::follow(double target, double dt) noexcept {
+  const double ahead = target - command_;
+  if (std::abs(ahead) <= config_.resync_distance) resynchronising_ = false;
+  const double speed = speed_limit();
+  const double exact = ahead / dt;
+  const double change_max = config_.acceleration_max * dt;
+  const bool small = std::abs(ahead) <= config_.step_free;
+  const bool reachable =
+      std::abs(exact) <= speed && (small || std::abs(exact - velocity_) <= change_max);
+  if (reachable) {
+    velocity_ = exact;
+    command_ = target;
+    return;
+  }
+  const double braking = std::sqrt(2 * config_.acceleration_max * std::abs(ahead));
+  const double wanted = std::copysign(std::min(speed, braking), ahead);
+  velocity_ = std::clamp(step_towards(velocity_, wanted, change_max), -speed, speed);
+  command_ = within_limits(command_ + velocity_ * dt);
+}
+
+/// Never inwards.
+void MotionGate::move_out(double tip, double target, double speed, double dt) noexcept {
+  const double from = std::min(command_, tip);
+  command_ = std::min(from, std::max(target, from - speed * dt));
+  command_ = std::max(command_, std::min(config_.travel_min, from));
+  velocity_ = -speed;
+}
+
+/// A place changes only in the air: sideways motion would tear at the tissue.
+void MotionGate::follow_lateral(double asked, double tip) noexcept {
+  if (!std::isfinite(asked) || !outside(tip)) return;
+  const double place = std::clamp(asked, -config_.lateral_max, config_.lateral_max);
+  if (std::abs(place - lateral_) > config_.place_size) surface_of_this_place_ = false;
+  lateral_ = place;
+}
+
+void MotionGate::note_once(MotionAnswer& answer, NoteCode code, double detail) noexcept {
+  if (noted_ != code) {
+    answer.note = code;
+    answer.detail = detail;
+  }
+  noted_ = code;
+}
+
+MotionAnswer MotionGate::pass(const MotionRequest& request, Duration dt) noexcept {
+  MotionAnswer answer;
+  const double span = seconds(dt);
+  NoteCode condition = NoteCode::None;
+  const bool finite = std::isfinite(request.position);
+  if (request.state == SiteState::Stopped) {
+    hold();
+    command_ = finite_or(request.tip, command_);
+    answer.halt = true;
+  } else if (request.contact_force > config_.force_limit) {
+    const double excess = request.contact_force - config_.force_limit;
+    const double speed = config_.retreat_speed * std::min(3.0, 1 + 4 * excess);
+    move_out(request.tip, config_.travel_min, speed, span);
+    condition = NoteCode::ForceRetreat;
+    note_once(answer, condition, request.contact_force);
+  } else if (request.state == SiteState::Retract || request.state == SiteState::Parked) {
+    if (retracted(request.tip) || !surface_) {
+      hold();
+    } else {
+      move_out(request.tip, clear_position(), config_.retract_speed, span);
+    }
+  } else if (request.state != SiteState::Engaged) {
+    hold();
+  } else if (!finite) {
+    hold();
+    condition = NoteCode::NotFinite;
+    note_once(answer, condition, 0);
+  } else {
+    const double target = within_limits(request.position);
+    if (target != request.position) {
+      condition = NoteCode::MotionGateLimited;
+      note_once(answer, condition, request.position);
+    }
+    follow_lateral(request.lateral, request.tip);
+    follow(target, span);
+  }
+  if (condition == NoteCode::None) noted_ = NoteCode::None;
+  answer.position = command_;
+  answer.lateral = lateral_;
+  answer.acted = request.state == SiteState::Engaged && command_ != request.position;
+  return answer;
+}
+
+}  // namespace palp::patient

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <optional>
+
+#include "common/core/site_state.h"
+#include "common/core/time.h"
+#include "common/record/notes.h"
+
+namespace palp::patient {
+
+struct MotionGateConfig {
+  double travel_min{-50e-3};       ///< [m], travel box
+  double travel_max{50e-3};        ///< [m]
+  double lateral_max{50e-3};       ///< [m], to both sides
+  double depth_max{8e-3};          ///< [m], below the learned surface
+  double speed_max{0.15};          ///< [m/s], in the air
+  double speed_near{0.05};         ///< [m/s], within `near_distance` of a known surface, and in it
+  double near_distance{5e-3};      ///< [m]
+  double speed_resync{0.03};       ///< [m/s], after a gap or an engagement, until caught up
+  double resync_distance{0.5e-3};  ///< [m], caught up
+  double acceleration_max{8};      ///< [m/s^2]
+  double step_free{50e-6};         ///< [m], a step of the target taken at once: encoder counts, not
+                                   ///< motion
+  double force_limit{3};           ///< [N], above it the tip retreats whatever is asked
+  double force_stop{5};            ///< [N], above it the site stops
+  double retreat_speed{0.03};      ///< [m/s], at force_limit; up to three times that above it
+  double retract_speed{5e-3};      ///< [m/s], state Retract
+  double clearance{2e-3};          ///< [m], of the tip from the surface after a retraction
+  double contact_force{0.1};       ///< [N], two steps of the transducer: felt as contact
+  double contact_stiffness{1897};  ///< [N/m^1.5], expected of tissue: how deep contact_force is
+  double place_size{1e-3};         ///< [m], farther along the surface is another place
+};
+
+/// What a law asks for and what the site measures at the same tick.
+struct MotionRequest {
+  SiteState state{};
+  double position{};       ///< [m], target asked for
+  double lateral{};        ///< [m], place asked for
+  double tip{};            ///< [m], of the stage
+  double contact_force{};  ///< [N]
+};
+
+struct MotionAnswer {
+  double position{};  ///< [m], for the stage
+  double lateral{};   ///< [m]
+  bool halt{};        ///< command nothing, hold
+  bool acted{};       ///< not what was asked for
+  record::NoteCode note{};
+  double detail{};
+};
+
+/// The last word before the tissue: nothing reaches the stage but through here, and nothing here
+/// depends on the network. Travel box, depth below the surface, speed, acceleration; a contact
+/// force above its limit is walked away from. Only Engaged follows the law; Retract, and Parked
+/// where the tip is not clear, move out; every other state holds the last command. Learns the
+/// surface from the first contact at a place. Thread: rt. A value.
+class MotionGate {
+ public:
+  explicit MotionGate(const MotionGateConfig& config) noexcept : config_{config} {}
+
+  /// The tip stands here and nothing was commanded yet.
+  void begin(double tip, double lateral) noexcept;
+  /// Once a tick, before pass(). `tip` behind the transducer's pole, as the force is.
+  void feel(double tip, double contact_force) noexcept;
+  /// Catch up slowly from here: after a gap, at an engagement.
+  void resynchronise() noexcept { resynchronising_ = true; }
+  [[nodiscard]] MotionAnswer pass(const MotionRequest& request, Duration dt) noexcept;
+
+  /// No contact felt, or the tip well outside: the stage may begin to follow, or change its place.
+  [[nodiscard]] bool free_to_follow(double tip) const noexcept;
+  /// The retraction is over.
+  [[nodiscard]] bool retracted(double tip) const noexcept;
+  [[nodiscard]] std::optional<double> surface() const noexcept { return surface_; }  ///< [m]
+  [[nodiscard]] double command() const noexcept { return command_; }                 ///< [m]
+  [[nodiscard]] double lateral() const noexcept { return lateral_; }                 ///< [m]
+  [[nodiscard]] double felt_force() const noexcept { return felt_; }  ///< [N], smoothed over 10 ms
+
+ private:
+  void follow(double target, double dt) noexcept;
+  void move_out(double tip, double target, double speed, double dt) noexcept;
+  void hold() noexcept { velocity_ = 0; }
+  [[nodiscard]] double speed_limit() const noexcept;
+  [[nodiscard]] double within_limits(double position) const noexcept;
+  [[nodiscard]] double clear_position() const noexcept;
+  [[nodiscard]] bool outside(double tip) const noexcept;
+  void follow_lateral(double asked, double tip) noexcept;
+  void note_once(MotionAnswer& answer, record::NoteCode code, double detail) noexcept;
+
+  MotionGateConfig config_;
+  double command_{};               ///< [m]
+  double velocity_{};              ///< [m/s], of the command
+  double lateral_{};               ///< [m]
+  double felt_{};                  ///< [N]
+  std::optional<double> surface_;  ///< [m]
+  bool surface_of_this_place_{};
+  bool resynchronising_{};
+  record::NoteCode noted_{};  ///< of the tick before: a lasting condition is noted once
+};
+
+}  // namespace palp::patient

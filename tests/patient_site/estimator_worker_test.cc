@@ -1,0 +1,82 @@
+#include "patient_site/estimator_worker.h"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/patient_site/tapping.h"
+
+namespace palp::patient {
+namespace {
+
+class ListRecorder final : public record::Recorder {
+ public:
+  bool record(const record::Record& record) noexcept override {
+    records.push_back(record);
+    return accept;
+  }
+  std::vector<record::Record> records;
+  bool accept{true};
+};
+
+struct Bench {
+  SpscQueue<ContactSample> contact{4096};
+  Mailbox<DepthEstimate> depth;
+  ListRecorder recorder;
+  EstimatorWorker worker{{}, {contact, depth, recorder}};
+
+  void press() {
+    const auto phantom = make_phantom("paper-10mm");
+    SimulatedPhantomConfig config = ideal_sensor();
+    config.start_position = -3e-3;
+    config.start_lateral = 10e-3;
+    SimulatedPhantom site{*phantom, config};
+    LowPass co_filter{20, 1e-3};
+    co_filter.reset(-3e-3);
+    TimePoint now{};
+    for (int i = 0; i < 1200; ++i) {
+      now += std::chrono::milliseconds{1};
+      const StageState stage = site.read(now);
+      contact.try_enqueue(
+          {now, co_filter.step(stage.position), site.sample(now)->force, stage.lateral});
+      const double t = std::min(i * 1e-3, 1.0);
+      site.move_to({-3e-3 + 3.5e-3 * (1 - std::cos(2 * std::numbers::pi * t)), 10e-3});
+    }
+  }
+};
+
+TEST(EstimatorWorkerTest, PutsAndRecordsEachEstimateWithItsStroke) {
+  Bench bench;
+  EXPECT_EQ(bench.depth.get().number, 0U);
+  bench.press();
+  EXPECT_EQ(bench.worker.drain(), 1200U);
+  EXPECT_EQ(bench.worker.drain(), 0U);
+  EXPECT_EQ(bench.depth.get().number, 1U);
+  EXPECT_EQ(bench.depth.get().verdict, DepthVerdict::Found);
+  EXPECT_EQ(bench.worker.strokes(), 1U);
+  ASSERT_GT(bench.recorder.records.size(), 100U);
+  EXPECT_EQ(bench.worker.records(), bench.recorder.records.size());
+  const auto* estimate = std::get_if<DepthEstimate>(&bench.recorder.records.back());
+  ASSERT_NE(estimate, nullptr);
+  TimePoint before{};
+  for (std::size_t i = 0; i + 1 < bench.recorder.records.size(); ++i) {
+    const auto* sample = std::get_if<ContactSample>(&bench.recorder.records[i]);
+    ASSERT_NE(sample, nullptr);
+    EXPECT_GT(sample->at, before);
+    before = sample->at;
+  }
+  EXPECT_EQ(before, estimate->stroke_ended_at);
+}
+
+TEST(EstimatorWorkerTest, CountsWhatTheRecorderRefuses) {
+  Bench bench;
+  bench.recorder.accept = false;
+  bench.press();
+  (void)bench.worker.drain();
+  EXPECT_EQ(bench.worker.records(), 0U);
+  EXPECT_EQ(bench.worker.records_lost(), bench.recorder.records.size());
+  EXPECT_EQ(bench.depth.get().number, 1U) << "the estimate itself is not lost";
+}
+
+}  // namespace
+}  // namespace palp::patient

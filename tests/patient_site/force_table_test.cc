@@ -1,0 +1,132 @@
+#include "patient_site/force_table.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palp::patient {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::vector<ForceRow> hertz_rows() {
+  std::vector<ForceRow> rows;
+  for (int i = 0; i <= 20; ++i) {
+    const double d = 0.25e-3 * i;
+    rows.push_back({d, 1897 * d * std::sqrt(d)});
+  }
+  return rows;
+}
+
+std::string sentence(std::string_view text) {
+  const Result<ForceTable> table = parse_force_table(text, "t.csv");
+  return table ? "" : table.error().text;
+}
+
+TEST(ForceTableTest, IsExactAtItsRows) {
+  const auto table = ForceTable::make(hertz_rows());
+  ASSERT_TRUE(table);
+  for (const ForceRow& row : hertz_rows()) {
+    EXPECT_NEAR(table->force(row.indentation), row.force, 1e-12);
+  }
+}
+
+TEST(ForceTableTest, FollowsHertzBetweenItsRows) {
+  const auto table = ForceTable::make(hertz_rows());
+  ASSERT_TRUE(table);
+  // Half a millinewton is a hundredth of the transducer's step.
+  for (double d = 0; d < 5e-3; d += 1e-5) {
+    EXPECT_NEAR(table->force(d), 1897 * d * std::sqrt(d), 0.3e-3) << d;
+  }
+}
+
+TEST(ForceTableTest, NeverFallsWhereItsRowsRise) {
+  const auto table = ForceTable::make({{0, 0}, {1e-3, 0.01}, {2e-3, 0.5}, {3e-3, 0.51}, {4e-3, 2}});
+  ASSERT_TRUE(table);
+  double before = 0;
+  for (double d = 0; d <= 4e-3; d += 1e-6) {
+    EXPECT_GE(table->force(d), before - 1e-12) << d;
+    before = table->force(d);
+  }
+}
+
+TEST(ForceTableTest, DerivativeIsTheSlopeOfTheForceAndContinuous) {
+  const auto table = ForceTable::make(hertz_rows());
+  ASSERT_TRUE(table);
+  constexpr double kStep = 1e-7;
+  for (double d = 0.1e-3; d < 4.9e-3; d += 37e-6) {
+    const double slope = (table->force(d + kStep) - table->force(d - kStep)) / (2 * kStep);
+    EXPECT_NEAR(table->derivative(d), slope, 0.02) << d;
+  }
+  for (const ForceRow& row : hertz_rows()) {
+    if (row.indentation < 1e-4 || row.indentation > 4.9e-3) continue;
+    EXPECT_NEAR(table->derivative(row.indentation - 1e-10),
+                table->derivative(row.indentation + 1e-10),
+                1e-3);
+  }
+}
+
+TEST(ForceTableTest, AStraightTableStaysStraight) {
+  const auto table = ForceTable::make({{0, 0}, {1e-3, 0.1}, {2e-3, 0.2}, {3e-3, 0.3}});
+  ASSERT_TRUE(table);
+  for (double d = 0; d < 3e-3; d += 1e-5) EXPECT_NEAR(table->force(d), 100 * d, 1e-12);
+}
+
+TEST(ForceTableTest, GivesNoForceInTheAirAndNeverExtrapolates) {
+  const auto table = ForceTable::make(hertz_rows());
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->force(-1e-3), 0);
+  EXPECT_EQ(table->force(std::nan("")), 0);
+  EXPECT_FALSE(table->beyond(5e-3));
+  EXPECT_TRUE(table->beyond(5.1e-3));
+  EXPECT_EQ(table->force(9e-3), hertz_rows().back().force);
+  EXPECT_EQ(table->force(std::numeric_limits<double>::infinity()), hertz_rows().back().force);
+  EXPECT_EQ(table->derivative(9e-3), 0);
+}
+
+TEST(ForceTableTest, BeginsAtTheSurfaceWhereItsFirstRowIsDeeper) {
+  const auto table = ForceTable::make({{1e-3, 0.06}, {2e-3, 0.17}, {3e-3, 0.31}, {4e-3, 0.48}});
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->force(0), 0);
+  EXPECT_NEAR(table->force(1e-3), 0.06, 1e-15);
+}
+
+TEST(ForceTableTest, ReadsCommentsExtraColumnsAndAnyOrderOfColumns) {
+  const auto table = parse_force_table(
+      "# made by hand\nerr_N,F_N,d_mm\r\n1,0,0\n1, 0.06 ,1\n\n# more\n1,0.17,2\n1,+0.31,3\n",
+      "t.csv");
+  ASSERT_TRUE(table) << table.error().text;
+  EXPECT_NEAR(table->force(2e-3), 0.17, 1e-15);
+  EXPECT_EQ(table->rows().size(), 4U);
+}
+
+TEST(ForceTableTest, SaysWhereAFileIsWrong) {
+  const std::string head = "# c\nd_mm,F_N\n0,0\n1,0.1\n";
+  EXPECT_THAT(sentence(head + "x,0.2\n3,0.3\n"), HasSubstr("t.csv: line 5: column 1 (d_mm): 'x'"));
+  EXPECT_THAT(sentence(head + "2,0.2x\n3,0.3\n"), HasSubstr("line 5: column 2 (F_N)"));
+  EXPECT_THAT(sentence(head + "2\n3,0.3\n"),
+              HasSubstr("line 5: column 2 (F_N): the value is missing"));
+  EXPECT_THAT(sentence(head + "2,nan\n3,0.3\n"), HasSubstr("not finite"));
+  EXPECT_THAT(sentence(head + "2,1e999\n3,0.3\n"), HasSubstr("out of range"));
+  EXPECT_THAT(sentence(head + "1,0.2\n3,0.3\n"), HasSubstr("line 5: d_mm = 1 does not rise"));
+  EXPECT_THAT(sentence(head + "2,-0.2\n3,0.3\n"), HasSubstr("line 5: F_N = -0.2 is negative"));
+  EXPECT_THAT(sentence("d_mm,F_N\n-1,0\n"), HasSubstr("d_mm = -1 is negative"));
+  EXPECT_THAT(sentence(head + "2000,0.2\n"), HasSubstr("exceeds 100"));
+  EXPECT_THAT(sentence(head + "2,2000\n"), HasSubstr("exceeds 1000"));
+  EXPECT_THAT(sentence(head + "2,0.2\n"), HasSubstr("3 rows; a table needs at least 4"));
+  EXPECT_THAT(sentence("d,F_N\n0,0\n"), HasSubstr("line 1: the header has no column d_mm"));
+  EXPECT_THAT(sentence("d_mm,f\n0,0\n"), HasSubstr("no column F_N"));
+  EXPECT_THAT(sentence(""), HasSubstr("no header"));
+  EXPECT_EQ(sentence(head + "2,0.2\n3,0.3\n"), "");
+}
+
+TEST(ForceTableTest, ANamedFileThatIsNotThereIsOneSentence) {
+  const auto table = load_force_table("no/such/file.csv");
+  ASSERT_FALSE(table);
+  EXPECT_EQ(table.error().text, "no/such/file.csv: the file cannot be opened");
+}
+
+}  // namespace
+}  // namespace palp::patient

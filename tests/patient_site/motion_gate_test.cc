@@ -1,0 +1,235 @@
+#include "patient_site/motion_gate.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+namespace palp::patient {
+namespace {
+
+using record::NoteCode;
+constexpr Duration kTick = std::chrono::milliseconds{1};
+
+MotionGate gate_at(double tip, const MotionGateConfig& config = {}) {
+  MotionGate gate{config};
+  gate.begin(tip, 0);
+  return gate;
+}
+
+MotionRequest engaged(double position, double tip = 0, double force = 0) {
+  return {SiteState::Engaged, position, 0, tip, force};
+}
+
+/// Felt for long enough to be believed.
+void touch(MotionGate& gate, double tip, double force) {
+  for (int i = 0; i < 100; ++i) gate.feel(tip, force);
+}
+void let_go(MotionGate& gate, double tip) { touch(gate, tip, 0); }
+
+TEST(MotionGateTest, FollowsSlowMotionExactly) {
+  MotionGate gate = gate_at(-10e-3);
+  for (int i = 0; i < 2000; ++i) {
+    const double asked = -10e-3 + 3e-3 * (1 - std::cos(i * 1e-3 * 6.28));
+    const MotionAnswer answer = gate.pass(engaged(asked), kTick);
+    EXPECT_EQ(answer.position, asked);
+    EXPECT_FALSE(answer.acted);
+  }
+}
+
+TEST(MotionGateTest, NeverExceedsSpeedAndAccelerationWhateverIsAsked) {
+  rc::check([] {
+    MotionGate gate = gate_at(0);
+    double before = 0;
+    double speed_before = 0;
+    for (int i = 0; i < 60; ++i) {
+      const double asked = *rc::gen::inRange(-60'000, 60'000) * 1e-6;
+      const double position = gate.pass(engaged(asked), kTick).position;
+      const double speed = (position - before) / 1e-3;
+      RC_ASSERT(std::abs(speed) <= 0.15 + 1e-9);
+      const bool small_step = std::abs(position - before) <= 50e-6 + 1e-12;
+      RC_ASSERT(small_step || std::abs(speed - speed_before) <= 8e-3 + 1e-9);
+      RC_ASSERT(std::abs(position) <= 50e-3);
+      before = position;
+      speed_before = speed;
+    }
+  });
+}
+
+TEST(MotionGateTest, ReachesAFarTargetAndStaysThere) {
+  MotionGate gate = gate_at(0);
+  double position = 0;
+  for (int i = 0; i < 400; ++i) position = gate.pass(engaged(20e-3), kTick).position;
+  EXPECT_EQ(position, 20e-3);
+}
+
+TEST(MotionGateTest, KeepsTheTravelBoxAndSaysSoOnce) {
+  MotionGate gate = gate_at(49.9e-3);
+  int notes = 0;
+  for (int i = 0; i < 200; ++i) {
+    const MotionAnswer answer = gate.pass(engaged(60e-3), kTick);
+    EXPECT_LE(answer.position, 50e-3);
+    EXPECT_TRUE(answer.acted);
+    notes += answer.note == NoteCode::MotionGateLimited ? 1 : 0;
+  }
+  EXPECT_EQ(notes, 1);
+}
+
+TEST(MotionGateTest, LearnsTheSurfaceFromTheFirstContact) {
+  MotionGate gate = gate_at(0);
+  EXPECT_FALSE(gate.surface());
+  touch(gate, 1.4e-3, 0.1);  // Hertz with 1897 N/m^1.5: 0.1 N at 1.41 mm, half of it at 0.89 mm
+  ASSERT_TRUE(gate.surface());
+  EXPECT_NEAR(*gate.surface(), 0.3e-3, 0.3e-3);
+  const double learned = *gate.surface();
+  touch(gate, 4e-3, 0.5);
+  EXPECT_EQ(*gate.surface(), learned);
+}
+
+TEST(MotionGateTest, ASingleNoisySampleIsNoContact) {
+  MotionGate gate = gate_at(0);
+  for (int i = 0; i < 100; ++i) gate.feel(0, i % 40 == 0 ? 0.15 : 0);
+  EXPECT_FALSE(gate.surface());
+}
+
+TEST(MotionGateTest, IsSlowNearAKnownSurface) {
+  MotionGate gate = gate_at(0);
+  touch(gate, 0, 0.1);
+  let_go(gate, 0);
+  double before = 0;
+  double fastest = 0;
+  for (int i = 0; i < 50; ++i) {
+    const double position = gate.pass(engaged(6e-3, before), kTick).position;
+    fastest = std::max(fastest, (position - before) / 1e-3);
+    before = position;
+  }
+  EXPECT_LE(fastest, 0.05 + 1e-9);
+  EXPECT_GT(fastest, 0.04);
+}
+
+TEST(MotionGateTest, GoesNoDeeperThanItsDepth) {
+  MotionGate gate = gate_at(0);
+  touch(gate, 0, 0.1);
+  for (int i = 0; i < 1000; ++i) (void)gate.pass(engaged(20e-3, gate.command()), kTick);
+  EXPECT_NEAR(gate.command(), *gate.surface() + 8e-3, 1e-9);
+}
+
+TEST(MotionGateTest, WalksAwayFromTooMuchForceFasterTheHigherItIs) {
+  for (const auto& [force, speed] :
+       {std::pair{3.001, 0.03}, std::pair{3.25, 0.06}, std::pair{4.9, 0.09}}) {
+    MotionGate gate = gate_at(5e-3);
+    const MotionAnswer answer = gate.pass(engaged(6e-3, 5e-3, force), kTick);
+    EXPECT_NEAR(answer.position, 5e-3 - speed * 1e-3, 2e-6) << force;
+    EXPECT_EQ(answer.note, NoteCode::ForceRetreat);
+    EXPECT_EQ(gate.pass(engaged(6e-3, 5e-3, force), kTick).note, NoteCode::None) << "once";
+  }
+  MotionGate gate = gate_at(5e-3);
+  EXPECT_GT(gate.pass(engaged(5.01e-3, 5e-3, 3.0), kTick).position, 5e-3) << "3 N is allowed";
+}
+
+TEST(MotionGateTest, RetreatsInEveryStateButStopped) {
+  for (const SiteState state :
+       {SiteState::Clutched, SiteState::Hold, SiteState::Retract, SiteState::Parked}) {
+    MotionGate gate = gate_at(5e-3);
+    EXPECT_LT(gate.pass({state, 9e-3, 0, 5e-3, 3.5}, kTick).position, 5e-3);
+  }
+}
+
+TEST(MotionGateTest, HoldsOnWhatIsNoNumber) {
+  MotionGate gate = gate_at(1e-3);
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    const MotionAnswer answer = gate.pass(engaged(bad), kTick);
+    EXPECT_EQ(answer.position, 1e-3);
+    EXPECT_TRUE(answer.acted);
+  }
+  EXPECT_EQ(gate.pass(engaged(1.01e-3), kTick).position, 1.01e-3);
+}
+
+TEST(MotionGateTest, OnlyEngagedFollows) {
+  for (const SiteState state : {SiteState::Parked, SiteState::Clutched, SiteState::Hold}) {
+    MotionGate gate = gate_at(1e-3);
+    const MotionAnswer answer = gate.pass({state, 5e-3, 10e-3, 1e-3, 0}, kTick);
+    EXPECT_EQ(answer.position, 1e-3) << to_string(state);
+    EXPECT_EQ(answer.lateral, 0);
+    EXPECT_FALSE(answer.halt);
+  }
+  MotionGate gate = gate_at(1e-3);
+  EXPECT_TRUE(gate.pass({SiteState::Stopped, 5e-3, 0, 2e-3, 0}, kTick).halt);
+}
+
+TEST(MotionGateTest, RetractsSlowlyToTwoMillimetreClear) {
+  MotionGate gate = gate_at(3e-3);
+  touch(gate, 0, 0.1);
+  EXPECT_FALSE(gate.retracted(3e-3));
+  double before = gate.command();
+  for (int i = 0; i < 2000; ++i) {
+    const double position = gate.pass({SiteState::Retract, 9e-3, 0, before, 0.2}, kTick).position;
+    EXPECT_LE(position, before);
+    EXPECT_LE(before - position, 5e-6 + 1e-12);
+    before = position;
+  }
+  EXPECT_NEAR(before, *gate.surface() - 2e-3, 60e-6);
+  EXPECT_TRUE(gate.retracted(before));
+}
+
+TEST(MotionGateTest, ATipThatNeverTouchedIsClearAlready) {
+  MotionGate gate = gate_at(-10e-3);
+  EXPECT_TRUE(gate.retracted(-10e-3));
+  EXPECT_EQ(gate.pass({SiteState::Retract, 0, 0, -10e-3, 0}, kTick).position, -10e-3);
+}
+
+TEST(MotionGateTest, CatchesUpSlowlyAfterAGap) {
+  MotionGate gate = gate_at(-10e-3);
+  gate.resynchronise();
+  double before = -10e-3;
+  while (before < -5.6e-3) {
+    const double position = gate.pass(engaged(-5e-3), kTick).position;
+    EXPECT_LE(position - before, 30e-6 + 1e-12);
+    ASSERT_GT(position, before);
+    before = position;
+  }
+  for (int i = 0; i < 100; ++i) (void)gate.pass(engaged(-5e-3), kTick);
+  before = gate.command();
+  double fastest = 0;
+  for (int i = 0; i < 100; ++i) {
+    const double position = gate.pass(engaged(5e-3), kTick).position;
+    fastest = std::max(fastest, position - before);
+    before = position;
+  }
+  EXPECT_GT(fastest, 100e-6) << "caught up, the speed of the air holds again";
+}
+
+TEST(MotionGateTest, ChangesThePlaceInTheAirOnly) {
+  MotionGate gate = gate_at(0);
+  touch(gate, 0, 0.2);
+  EXPECT_EQ(gate.pass({SiteState::Engaged, 0, 10e-3, 0, 0.2}, kTick).lateral, 0);
+  let_go(gate, -4e-3);
+  EXPECT_EQ(gate.pass({SiteState::Engaged, 0, 10e-3, -4e-3, 0}, kTick).lateral, 10e-3);
+  EXPECT_EQ(gate.pass({SiteState::Engaged, 0, 90e-3, -4e-3, 0}, kTick).lateral, 50e-3);
+  EXPECT_EQ(gate.pass({SiteState::Engaged, 0, std::nan(""), -4e-3, 0}, kTick).lateral, 50e-3);
+}
+
+TEST(MotionGateTest, LearnsTheSurfaceAnewAtAnotherPlace) {
+  MotionGate gate = gate_at(0);
+  touch(gate, 0, 0.1);
+  const double first = *gate.surface();
+  let_go(gate, -5e-3);
+  (void)gate.pass({SiteState::Engaged, -5e-3, 10e-3, -5e-3, 0}, kTick);
+  EXPECT_EQ(*gate.surface(), first) << "until something else is felt";
+  touch(gate, 2e-3, 0.1);
+  EXPECT_NEAR(*gate.surface(), first + 2e-3, 1e-9);
+}
+
+TEST(MotionGateTest, MayFollowWithoutContactOrWellOutside) {
+  MotionGate gate = gate_at(0);
+  EXPECT_TRUE(gate.free_to_follow(0));
+  touch(gate, 1e-3, 0.3);
+  EXPECT_FALSE(gate.free_to_follow(1e-3));
+  EXPECT_TRUE(gate.free_to_follow(-5e-3));
+  let_go(gate, 1e-3);
+  EXPECT_TRUE(gate.free_to_follow(1e-3));
+}
+
+}  // namespace
+}  // namespace palp::patient

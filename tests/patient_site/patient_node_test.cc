@@ -1,0 +1,381 @@
+#include "patient_site/patient_node.h"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "patient_site/estimator_worker.h"
+#include "patient_site/simulated_phantom.h"
+#include "tests/common/link/link_couple.h"
+
+namespace palp::patient {
+namespace {
+
+using record::NoteCode;
+constexpr Duration kTick = std::chrono::milliseconds{1};
+
+/// The simulated phantom with faults that a test switches on.
+class FaultySite final : public Stage, public ForceSensor {
+ public:
+  explicit FaultySite(SimulatedPhantom& site) : site_{site} {}
+  StageState read(TimePoint now) noexcept override {
+    StageState state = site_.read(now);
+    if (stage_gives_nan) state.position = std::nan("");
+    state.faulted = stage_faulted;
+    return state;
+  }
+  void move_to(const StageTarget& target) noexcept override {
+    target_ = target;
+    halted = false;
+    site_.move_to(target);
+  }
+  void halt() noexcept override {
+    halted = true;
+    site_.halt();
+  }
+  std::optional<ForceSample> sample(TimePoint now) noexcept override {
+    std::optional<ForceSample> sample = site_.sample(now);
+    if (silent) return std::nullopt;
+    if (force) sample->force = *force;
+    sample->saturated = saturated;
+    return sample;
+  }
+  [[nodiscard]] StageTarget target() const { return target_; }
+
+  bool stage_gives_nan{};
+  bool stage_faulted{};
+  bool silent{};
+  bool saturated{};
+  bool halted{};
+  std::optional<double> force;  ///< [N], in place of the sensor's
+
+ private:
+  SimulatedPhantom& site_;
+  StageTarget target_;
+};
+
+class ListRecorder final : public record::Recorder {
+ public:
+  bool record(const record::Record& record) noexcept override {
+    records.push_back(record);
+    return true;
+  }
+  template <class T>
+  [[nodiscard]] std::vector<T> all() const {
+    std::vector<T> found;
+    for (const record::Record& record : records) {
+      if (const T* one = std::get_if<T>(&record)) found.push_back(*one);
+    }
+    return found;
+  }
+  std::vector<record::Record> records;
+};
+
+/// A patient site with everything, and the surgeon's end of the link in the hands of the test.
+struct World {
+  link::TestPipe pipe;
+  Phantom phantom{*make_phantom("paper-10mm")};
+  SimulatedPhantom plant{phantom, {}};
+  FaultySite site{plant};
+  coupling::PatientCoupling law{*coupling::make_patient_coupling({})};
+  link::Link patient_link{{}, link::Couple::make_codec(false)};
+  link::Link surgeon_link{{}, link::Couple::make_codec(false)};
+  ListRecorder recorder;
+  SpscQueue<ContactSample> contact{1 << 15};
+  Mailbox<DepthEstimate> depth;
+  PatientNode node{{}, {site, site, law, patient_link, recorder, contact, depth}};
+  link::Telegram say;  ///< the surgeon's
+  link::Arrivals heard;
+  TimePoint now{};
+  bool silent{};
+
+  World() {
+    (void)surgeon_link.adopt(link::Couple::handover(pipe.surgeon_end(), 3, 2, 1), now);
+    (void)patient_link.adopt(link::Couple::handover(pipe.patient_end(), 2, 3, 1), now);
+    say.port.position = -10e-3;
+  }
+  void tick() {
+    now += kTick;
+    heard = surgeon_link.receive(now);
+    if (!silent) surgeon_link.send(say, now);
+    node.tick(now);
+  }
+  void run(Duration span) {
+    for (const TimePoint end = now + span; now < end;) tick();
+  }
+  PatientStatus status() { return node.status().get(); }
+
+  /// Engaged in epoch 1 at the start position.
+  void engage() {
+    say.site.state = SiteState::Clutched;
+    run(std::chrono::milliseconds{200});
+    ASSERT_EQ(status().state, SiteState::Clutched);
+    say.site.state = SiteState::Engaged;
+    say.site.epoch = status().epoch + 1;
+    run(std::chrono::milliseconds{5});
+    ASSERT_EQ(status().state, SiteState::Engaged);
+  }
+  void move(double to, Duration span) {
+    const double from = say.port.position;
+    const auto steps = span / kTick;
+    for (std::int64_t i = 1; i <= steps; ++i) {
+      say.port.position = from + (to - from) * static_cast<double>(i) / static_cast<double>(steps);
+      tick();
+    }
+    run(std::chrono::milliseconds{200});
+  }
+};
+
+using std::chrono::milliseconds;
+
+TEST(PatientNodeTest, FollowsTheHandWhenEngagedAndSaysWhatItFeels) {
+  World world;
+  world.engage();
+  world.move(3e-3, milliseconds{800});
+  EXPECT_NEAR(world.plant.truth().position, 3e-3, 20e-6);
+  const PatientStatus status = world.status();
+  EXPECT_NEAR(status.contact_force, world.phantom.plain.force(3e-3), 0.1);
+  EXPECT_TRUE(status.surface_known);
+  EXPECT_NEAR(status.surface, 0, 0.6e-3);
+  EXPECT_EQ(status.records_lost, 0U);
+}
+
+TEST(PatientNodeTest, SendsItsPositionForceAndState) {
+  World world;
+  world.engage();
+  world.move(2e-3, milliseconds{500});
+  EXPECT_EQ(world.heard.peer.state, SiteState::Engaged);
+  EXPECT_EQ(world.heard.peer.epoch, 1U);
+  ASSERT_FALSE(world.heard.samples.empty());
+  EXPECT_NEAR(world.heard.samples.back().sample.position, 2e-3, 20e-6);
+  EXPECT_GT(world.heard.samples.back().sample.force, 0);
+}
+
+TEST(PatientNodeTest, DoesNotMoveBeforeItIsEngaged) {
+  World world;
+  world.say.site.state = SiteState::Clutched;
+  world.move(3e-3, milliseconds{500});
+  EXPECT_NEAR(world.plant.truth().position, -10e-3, 1e-6);
+}
+
+TEST(PatientNodeTest, GivesTheEstimatorEveryTickOfAnEngagement) {
+  World world;
+  world.engage();
+  world.run(milliseconds{300});
+  ContactSample sample;
+  std::uint64_t count = 0;
+  while (world.contact.try_dequeue(sample)) {
+    ++count;
+    EXPECT_NEAR(sample.position, -10e-3, 20e-6);
+  }
+  EXPECT_EQ(count, world.status().contact_samples);
+  EXPECT_NEAR(static_cast<double>(count), 300, 6);
+}
+
+TEST(PatientNodeTest, CountsSamplesTheEstimatorHasNoRoomFor) {
+  World world;
+  world.engage();
+  world.run(std::chrono::seconds{34});
+  EXPECT_GT(world.status().contact_samples_lost, 0U);
+  EXPECT_EQ(world.status().state, SiteState::Engaged);
+}
+
+TEST(PatientNodeTest, TheNewestDepthRidesOnEveryTelegram) {
+  World world;
+  world.engage();
+  DepthEstimate estimate;
+  estimate.number = 3;
+  estimate.verdict = DepthVerdict::Found;
+  estimate.depth = 10.2e-3;
+  estimate.hash = 0.0689;
+  world.depth.put(estimate);
+  world.run(milliseconds{5});
+  EXPECT_EQ(world.heard.peer.depth.number, 3U);
+  EXPECT_NEAR(world.heard.peer.depth.depth, 10.2e-3, 1e-8);
+  EXPECT_NEAR(world.heard.peer.depth.hash, 0.0689, 1e-7);
+}
+
+TEST(PatientNodeTest, HoldsInAGapAndRetractsWhenTheLinkIsLost) {
+  World world;
+  world.engage();
+  world.move(3e-3, milliseconds{800});
+  world.silent = true;
+  world.run(milliseconds{110});
+  EXPECT_EQ(world.status().state, SiteState::Hold);
+  EXPECT_NEAR(world.plant.truth().position, 3e-3, 20e-6);
+  world.run(milliseconds{400});
+  EXPECT_EQ(world.status().state, SiteState::Retract);
+  world.run(std::chrono::seconds{2});
+  EXPECT_EQ(world.status().state, SiteState::Parked);
+  EXPECT_NEAR(world.plant.truth().position, world.status().surface - 2e-3, 0.1e-3);
+  world.silent = false;
+  world.run(milliseconds{300});
+  EXPECT_EQ(world.status().state, SiteState::Clutched) << "the surgeon must engage again";
+}
+
+TEST(PatientNodeTest, ComesOutOfHoldWithARamp) {
+  World world;
+  world.engage();
+  world.silent = true;
+  world.run(milliseconds{110});
+  ASSERT_EQ(world.status().state, SiteState::Hold);
+  world.silent = false;
+  world.say.port.position = -4e-3;
+  double fastest = 0;
+  for (int i = 0; i < 400; ++i) {
+    world.tick();
+    fastest = std::max(fastest, world.plant.truth().velocity);
+  }
+  EXPECT_EQ(world.status().state, SiteState::Engaged);
+  EXPECT_LT(fastest, 0.05);
+  EXPECT_NEAR(world.plant.truth().position, -4e-3, 20e-6);
+}
+
+TEST(PatientNodeTest, EveryFaultOfADeviceStopsTheSite) {
+  const auto stopped_by = [](auto&& fault) {
+    World world;
+    world.engage();
+    fault(world.site);
+    world.run(milliseconds{60});
+    EXPECT_TRUE(world.site.halted);
+    const auto transitions = world.recorder.all<record::Transition>();
+    EXPECT_EQ(transitions.back().reason, static_cast<std::uint16_t>(NoteCode::DeviceFault));
+    return world.status().state;
+  };
+  EXPECT_EQ(stopped_by([](FaultySite& site) { site.stage_faulted = true; }), SiteState::Stopped);
+  EXPECT_EQ(stopped_by([](FaultySite& site) { site.stage_gives_nan = true; }), SiteState::Stopped);
+  EXPECT_EQ(stopped_by([](FaultySite& site) { site.force = std::nan(""); }), SiteState::Stopped);
+  EXPECT_EQ(stopped_by([](FaultySite& site) { site.saturated = true; }), SiteState::Stopped);
+  EXPECT_EQ(stopped_by([](FaultySite& site) { site.silent = true; }), SiteState::Stopped);
+}
+
+TEST(PatientNodeTest, AShortSilenceOfTheSensorIsNoFault) {
+  World world;
+  world.engage();
+  world.site.silent = true;
+  world.run(milliseconds{50});
+  EXPECT_EQ(world.status().state, SiteState::Engaged);
+  world.run(milliseconds{1});
+  EXPECT_EQ(world.status().state, SiteState::Stopped);
+}
+
+TEST(PatientNodeTest, WalksAwayFromTooMuchForceAndStopsAboveFiveNewton) {
+  World world;
+  world.engage();
+  world.move(3e-3, milliseconds{800});
+  world.site.force = 3.5;
+  world.run(milliseconds{50});
+  EXPECT_EQ(world.status().state, SiteState::Engaged);
+  EXPECT_LT(world.plant.truth().position, 1e-3);
+  world.site.force = 5.0;
+  world.run(milliseconds{2});
+  EXPECT_EQ(world.status().state, SiteState::Engaged);
+  world.site.force = 5.05;
+  world.run(milliseconds{2});
+  EXPECT_EQ(world.status().state, SiteState::Stopped);
+}
+
+TEST(PatientNodeTest, LeavesStoppedByALocalResetOnly) {
+  World world;
+  world.engage();
+  world.node.commands().put({.emergency_stop = true, .resets = 0});
+  world.run(milliseconds{2});
+  EXPECT_EQ(world.status().state, SiteState::Stopped);
+  world.node.commands().put({.emergency_stop = false, .resets = 0});
+  world.run(milliseconds{100});
+  EXPECT_EQ(world.status().state, SiteState::Stopped);
+  world.node.commands().put({.emergency_stop = false, .resets = 1});
+  world.run(milliseconds{1});
+  EXPECT_EQ(world.status().state, SiteState::Parked);
+}
+
+TEST(PatientNodeTest, RefusesToEngageInTissue) {
+  World world;
+  world.engage();
+  world.move(3e-3, milliseconds{800});
+  world.say.site.state = SiteState::Clutched;
+  world.run(milliseconds{10});
+  ASSERT_EQ(world.status().state, SiteState::Clutched);
+  world.say.site.state = SiteState::Engaged;
+  world.say.site.epoch = 2;
+  world.run(milliseconds{10});
+  EXPECT_EQ(world.status().state, SiteState::Clutched);
+  EXPECT_EQ(world.status().epoch, 2U);
+  EXPECT_EQ(world.status().refused, NoteCode::EngageRefusedForce);
+}
+
+TEST(PatientNodeTest, ALawThatGivesNoNumberMovesNothing) {
+  World world;
+  world.engage();
+  coupling::DirectConfig broken;
+  broken.position_scale = std::numeric_limits<double>::quiet_NaN();
+  world.law = coupling::PatientCoupling{coupling::DirectPatient{broken}};
+  world.run(milliseconds{100});
+  EXPECT_NEAR(world.plant.truth().position, -10e-3, 10e-6);
+  bool noted = false;
+  for (const record::Note& note : world.recorder.all<record::Note>()) {
+    noted |= note.code == static_cast<std::uint16_t>(NoteCode::NotFinite);
+  }
+  EXPECT_TRUE(noted);
+}
+
+TEST(PatientNodeTest, ChangesThePlaceWithTheSurgeon) {
+  World world;
+  world.engage();
+  world.say.site.lateral = 10e-3;
+  world.run(milliseconds{10});
+  EXPECT_NEAR(world.status().lateral, 10e-3, 1e-8);
+}
+
+TEST(PatientNodeTest, RecordsEachTickEachArrivalAndTheLinkTenTimesASecond) {
+  World world;
+  world.engage();
+  world.run(std::chrono::seconds{1});
+  const PatientStatus status = world.status();
+  EXPECT_EQ(world.recorder.all<record::SiteTick>().size(), status.ticks);
+  EXPECT_EQ(world.recorder.records.size(), status.records);
+  EXPECT_NEAR(static_cast<double>(world.recorder.all<record::Arrived>().size()),
+              static_cast<double>(status.ticks),
+              110);
+  EXPECT_NEAR(static_cast<double>(world.recorder.all<record::LinkStatus>().size()), 12, 1);
+  const auto transitions = world.recorder.all<record::Transition>();
+  ASSERT_EQ(transitions.size(), 2U);
+  EXPECT_EQ(transitions[0].to, SiteState::Clutched);
+  EXPECT_EQ(transitions[1].to, SiteState::Engaged);
+}
+
+TEST(PatientNodeTest, CountsThePeriodsItMissed) {
+  World world;
+  world.run(milliseconds{10});
+  world.now += milliseconds{4};
+  world.tick();
+  EXPECT_EQ(world.status().ticks_missed, 4U);
+}
+
+// Goal: a tap through the whole site gives the depth. Method: the hand comes as samples over the
+// link, the estimator is drained as the lab does.
+TEST(PatientNodeTest, ATapGivesADepthAtTheSurgeons) {
+  World world;
+  ListRecorder stroke_recorder;
+  EstimatorWorker worker{{}, {world.contact, world.depth, stroke_recorder}};
+  world.engage();
+  world.say.site.lateral = 10e-3;
+  world.move(-3e-3, milliseconds{500});
+  for (int tap = 0; tap < 3; ++tap) {
+    for (int i = 0; i < 1500; ++i) {
+      const double t = std::min(i * 1e-3, 1.0);
+      world.say.port.position = -3e-3 + 3.5e-3 * (1 - std::cos(2 * 3.14159265358979 * t));
+      world.tick();
+      (void)worker.drain();
+    }
+  }
+  EXPECT_EQ(world.heard.peer.depth.number, 3U);
+  EXPECT_EQ(world.heard.peer.depth.verdict, DepthVerdict::Found);
+  EXPECT_NEAR(world.heard.peer.depth.hash, 0.0689, 0.006);
+  EXPECT_EQ(worker.strokes(), 3U);
+}
+
+}  // namespace
+}  // namespace palp::patient

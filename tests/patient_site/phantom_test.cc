@@ -1,0 +1,94 @@
+#include "patient_site/phantom.h"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palp::patient {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(PhantomTest, PaperPhantomsGrowSofterWithDepth) {
+  double above = 1;
+  for (const char* name : {"paper-5mm", "paper-10mm", "paper-15mm", "paper-20mm", "paper-25mm"}) {
+    const auto phantom = make_phantom(name);
+    ASSERT_TRUE(phantom) << phantom.error().text;
+    EXPECT_EQ(phantom->name, name);
+    EXPECT_EQ(phantom->shape, "ball");
+    EXPECT_LT(phantom->over.force(3e-3), above);
+    EXPECT_GT(phantom->over.force(3e-3), phantom->plain.force(3e-3));
+    above = phantom->over.force(3e-3);
+  }
+}
+
+TEST(PhantomTest, SiteAIsThePlainBlockAndSiteBLiesOverTheInclusion) {
+  const auto phantom = make_phantom("paper-5mm");
+  ASSERT_TRUE(phantom);
+  EXPECT_EQ(&phantom->at(0), &phantom->plain);
+  EXPECT_EQ(&phantom->at(4.9e-3), &phantom->plain);
+  EXPECT_EQ(&phantom->at(5e-3), &phantom->over);
+  EXPECT_EQ(*phantom->depth, 5e-3);
+}
+
+TEST(PhantomTest, NoneIsPlainEverywhere) {
+  const auto phantom = make_phantom("none");
+  ASSERT_TRUE(phantom);
+  EXPECT_EQ(phantom->plain.force(2e-3), phantom->over.force(2e-3));
+  EXPECT_FALSE(phantom->depth);
+}
+
+TEST(PhantomTest, ClosedFormIsItsLaw) {
+  const auto phantom = make_phantom("closed-form:10");
+  ASSERT_TRUE(phantom);
+  EXPECT_NEAR(phantom->plain.force(4e-3), 0.480, 0.5e-3);
+  EXPECT_NEAR(phantom->plain.derivative(4e-3), 180, 0.5);
+  EXPECT_NEAR(phantom->over.derivative(4e-3), 292, 0.5);
+  const auto shallow = make_phantom("closed-form");
+  ASSERT_TRUE(shallow);
+  EXPECT_NEAR(shallow->over.force(3e-3), 0.630, 0.5e-3);
+  EXPECT_NEAR(shallow->over.force(3.0033e-3), 0.6309, 1e-3);
+}
+
+TEST(PhantomTest, AFileIsSiteBBesideThePapersBlock) {
+  const std::string path = ::testing::TempDir() + "palp_phantom_test.csv";
+  std::ofstream{path} << "d_mm,F_N\n0,0\n1,0.1\n2,0.3\n4,1\n";
+  const auto phantom = make_phantom("file:" + path);
+  ASSERT_TRUE(phantom) << phantom.error().text;
+  EXPECT_NEAR(phantom->over.force(2e-3), 0.3, 1e-15);
+  EXPECT_EQ(phantom->plain.force(2e-3), make_phantom("none")->plain.force(2e-3));
+  EXPECT_EQ(phantom->shape, "unknown");
+  EXPECT_EQ(phantom->depth_max(), 4e-3);
+  std::remove(path.c_str());
+}
+
+TEST(PhantomTest, UnknownNamesGetOneSentence) {
+  EXPECT_THAT(make_phantom("paper-7mm").error().text, HasSubstr("unknown phantom 'paper-7mm'"));
+  EXPECT_THAT(make_phantom("").error().text, HasSubstr("unknown phantom"));
+  EXPECT_THAT(make_phantom("file:").error().text, HasSubstr("names no file"));
+  EXPECT_THAT(make_phantom("file:no.csv").error().text, HasSubstr("no.csv: the file cannot"));
+  for (const char* bad :
+       {"closed-form:x", "closed-form:1.9", "closed-form:101", "closed-form:nan"}) {
+    EXPECT_THAT(make_phantom(bad).error().text, HasSubstr("from 2 to 100")) << bad;
+  }
+  EXPECT_TRUE(make_phantom("closed-form:2"));
+}
+
+TEST(PhantomTest, TissueTextIsATableThatCanBeReadBack) {
+  const auto phantom = make_phantom("paper-10mm");
+  ASSERT_TRUE(phantom);
+  const std::string text = tissue_csv(*phantom);
+  EXPECT_THAT(text, ::testing::StartsWith("site,d_mm,F_N\nA,0,0\nA,0.25,"));
+  const std::string b = "site,d_mm,F_N\n" + text.substr(text.find("B,"));
+  const auto table = parse_force_table(b, "B");
+  ASSERT_TRUE(table) << table.error().text;
+  for (double d = 0; d < 5e-3; d += 1e-4) {
+    EXPECT_NEAR(table->force(d), phantom->over.force(d), 1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace palp::patient
