@@ -1,0 +1,57 @@
+#include "common/settings/site_settings.h"
+
+#include "common/config/settings_text.h"
+#include "common/core/random.h"
+#include "common/settings/units.h"
+#include "proto/config.pb.h"
+
+namespace palp::settings {
+
+Result<coupling::CouplingConfig> make_coupling(const proto::config::Coupling& message) {
+  const proto::config::Direct& direct = message.direct();
+  coupling::CouplingConfig config{.name = message.name(),
+                                  .direct = {.force_scale = direct.force_scale(),
+                                             .position_scale = direct.position_scale(),
+                                             .spring = direct.spring_n_per_m(),
+                                             .fade_out = direct.fade_out_s(),
+                                             .fade_in = direct.fade_in_s()}};
+  if (const auto law = coupling::make_surgeon_coupling(config); !law) {
+    return fail(law.error().text);
+  }
+  return config;
+}
+
+link::LinkConfig make_link(const proto::config::Link& message, Duration period) {
+  link::LinkConfig config;
+  config.period = period;
+  config.watchdog.hold_after = from_milliseconds(message.hold_after_ms());
+  config.watchdog.lost_after = from_milliseconds(message.lost_after_ms());
+  config.round_trip_max = from_milliseconds(message.round_trip_max_ms());
+  config.closed_after = from_seconds(message.closed_after_s());
+  config.stale_after = from_milliseconds(message.stale_after_ms());
+  return config;
+}
+
+LoopSettings make_loop(const proto::config::Loop& message) {
+  return {.period = std::chrono::microseconds{message.period_us()},
+          .spin = std::chrono::microseconds{message.spin_us()},
+          .priority = static_cast<int>(message.priority()),
+          .lock_memory = message.lock_memory()};
+}
+
+ImpairmentSettings make_impairment(const proto::config::Impairment& message) {
+  return {.spec = message.spec(),
+          .delay = from_milliseconds(message.delay_ms()),
+          .jitter = from_milliseconds(message.jitter_ms()),
+          .loss = message.loss()};
+}
+
+RecordSettings make_record(const proto::config::Record& message) {
+  return {.file = message.file(), .queue_records = message.queue_records()};
+}
+
+std::uint64_t agreement_hash(const proto::config::Coupling& message, Duration period) {
+  return random_bits(config::settings_hash(message), 0, static_cast<std::uint64_t>(period.count()));
+}
+
+}  // namespace palp::settings

@@ -1,0 +1,80 @@
+#include "surgeon_site/settings.h"
+
+#include "common/config/document.h"
+#include "common/settings/units.h"
+#include "proto/config.pb.h"
+
+namespace palp::surgeon {
+namespace {
+
+using settings::from_micro;
+using settings::from_milli;
+
+Result<SimulatedHandConfig> make_hand(const proto::config::Hand& message) {
+  const Result<Grip> grip = grip_named(message.grip());
+  if (!grip) return fail(grip.error().text);
+  SimulatedHandConfig hand;
+  hand.plant.grip = *grip;
+  hand.plant.mass = message.mass_kg();
+  hand.plant.damping = message.damping_n_s_per_m();
+  hand.plant.friction = message.friction_n();
+  hand.person.surface_offset = from_milli(message.surface_offset_mm());
+  hand.person.engage_again = message.engage_again();
+  hand.tremor = from_milli(message.tremor_mm());
+  hand.tremor_frequency = message.tremor_hz();
+  hand.encoder_step = from_micro(message.encoder_um());
+  hand.force_max = message.force_max_n();
+  hand.force_continuous = message.force_continuous_n();
+  return hand;
+}
+
+ForceGateConfig make_gate(const proto::config::ForceGate& message) {
+  ForceGateConfig gate;
+  gate.force_max = message.force_max_n();
+  gate.force_continuous = message.force_continuous_n();
+  gate.fade_slew = message.fade_slew_n_per_s();
+  gate.thermal_time = message.thermal_s();
+  return gate;
+}
+
+SupervisorConfig make_supervisor(const proto::config::Engagement& message,
+                                 const std::string& coupling) {
+  SupervisorConfig supervisor;
+  if (coupling == "direct" && !message.forced()) {
+    supervisor.round_trip_max_to_engage =
+        settings::from_milliseconds(message.direct_round_trip_max_ms());
+  }
+  return supervisor;
+}
+
+}  // namespace
+
+Result<Settings> make_settings(const proto::config::SurgeonConfig& message) {
+  const auto coupling = settings::make_coupling(message.coupling());
+  if (!coupling) return fail(coupling.error().text);
+  const auto hand = make_hand(message.hand());
+  if (!hand) return fail(hand.error().text);
+  Settings made;
+  made.peer = message.peer();
+  made.insecure = message.link().insecure();
+  made.coupling = *coupling;
+  made.loop = settings::make_loop(message.loop());
+  made.agreement = settings::agreement_hash(message.coupling(), made.loop.period);
+  made.link = settings::make_link(message.link(), made.loop.period);
+  made.node.period = made.loop.period;
+  made.node.supervisor = make_supervisor(message.engagement(), coupling->name);
+  made.node.gate = make_gate(message.force_gate());
+  made.master = message.hand().master();
+  made.hand = *hand;
+  made.impairment = settings::make_impairment(message.impairment());
+  made.record = settings::make_record(message.record());
+  made.duration = from_seconds(message.duration_s());
+  made.seed = message.seed();
+  return made;
+}
+
+Result<Settings> make_settings(const config::Document& document) {
+  return make_settings(document.as<proto::config::SurgeonConfig>());
+}
+
+}  // namespace palp::surgeon

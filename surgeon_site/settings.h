@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/core/result.h"
+#include "common/settings/site_settings.h"
+#include "surgeon_site/simulated_hand.h"
+#include "surgeon_site/surgeon_node.h"
+
+namespace palp::config {
+class Document;
+}  // namespace palp::config
+namespace palp::proto::config {
+class SurgeonConfig;
+}  // namespace palp::proto::config
+
+namespace palp::surgeon {
+
+/// All that a surgeon site is made of, frozen: one struct per part. Without a file or a flag each
+/// part has its own defaults.
+struct Settings {
+  std::string peer;  ///< HOST:PORT; a program needs one, virtual time does not
+  bool insecure{};   ///< plain datagrams are accepted
+  coupling::CouplingConfig coupling;
+  std::uint64_t agreement{};  ///< both sites must have the same
+  link::LinkConfig link;
+  SurgeonConfig node;  ///< `direct` does not engage above a round trip of 20 ms, unless forced
+  std::string master{"script:standard"};
+  SimulatedHandConfig hand;
+  settings::LoopSettings loop;
+  settings::ImpairmentSettings impairment;
+  settings::RecordSettings record;
+  Duration duration{};  ///< 0: until the script ends
+  std::uint64_t seed{1};
+};
+
+/// The document must have passed its check(). The sentence names what does not exist.
+[[nodiscard]] Result<Settings> make_settings(const config::Document& document);
+[[nodiscard]] Result<Settings> make_settings(const proto::config::SurgeonConfig& message);
+
+}  // namespace palp::surgeon

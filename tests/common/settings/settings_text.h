@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "common/settings/site_settings.h"
+
+/// Settings as text, every field of them: equal texts are equal settings, up to
+/// the last bit of a changed unit.
+namespace palp::settings_test {
+
+class FieldList {
+ public:
+  FieldList() { text_.precision(15); }
+  template <class Value>
+  FieldList& add(std::string_view name, const Value& value) {
+    text_ << name << " = ";
+    if constexpr (requires { value.count(); }) {
+      text_ << value.count();
+    } else {
+      text_ << value;
+    }
+    text_ << '\n';
+    return *this;
+  }
+  [[nodiscard]] std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_;
+};
+
+inline void add(FieldList& list, const coupling::CouplingConfig& config) {
+  list.add("coupling.name", config.name)
+      .add("coupling.direct.force_scale", config.direct.force_scale)
+      .add("coupling.direct.position_scale", config.direct.position_scale)
+      .add("coupling.direct.spring", config.direct.spring)
+      .add("coupling.direct.fade_out", config.direct.fade_out)
+      .add("coupling.direct.fade_in", config.direct.fade_in);
+}
+
+inline void add(FieldList& list, const link::LinkConfig& config) {
+  list.add("link.period", config.period)
+      .add("link.hold_after", config.watchdog.hold_after)
+      .add("link.lost_after", config.watchdog.lost_after)
+      .add("link.closed_after", config.closed_after)
+      .add("link.sync_time", config.sync_time)
+      .add("link.sync_exchanges", config.sync_exchanges)
+      .add("link.round_trip_max", config.round_trip_max)
+      .add("link.stale_after", config.stale_after);
+}
+
+inline void add(FieldList& list, const settings::LoopSettings& loop) {
+  list.add("loop.period", loop.period)
+      .add("loop.spin", loop.spin)
+      .add("loop.priority", loop.priority)
+      .add("loop.lock_memory", loop.lock_memory);
+}
+
+inline void add(FieldList& list, const settings::ImpairmentSettings& impairment) {
+  list.add("impairment.spec", impairment.spec)
+      .add("impairment.delay", impairment.delay)
+      .add("impairment.jitter", impairment.jitter)
+      .add("impairment.loss", impairment.loss);
+}
+
+inline void add(FieldList& list, const settings::RecordSettings& record) {
+  list.add("record.file", record.file).add("record.queue_records", record.queue_records);
+}
+
+}  // namespace palp::settings_test

@@ -1,0 +1,120 @@
+#include "surgeon_site/settings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/config/document.h"
+#include "tests/common/settings/knob_walk.h"
+#include "tests/common/settings/settings_text.h"
+
+namespace palp::surgeon {
+namespace {
+
+using testing::HasSubstr;
+
+std::string text_of(const Settings& settings) {
+  settings_test::FieldList list;
+  list.add("peer", settings.peer).add("insecure", settings.insecure);
+  add(list, settings.coupling);
+  add(list, settings.link);
+  list.add("node.period", settings.node.period)
+      .add("retract_after_gap", settings.node.supervisor.retract_after_gap)
+      .add("retract_span", settings.node.supervisor.retract_span)
+      .add("follow_within", settings.node.supervisor.follow_within)
+      .add("round_trip_max_to_engage", settings.node.supervisor.round_trip_max_to_engage)
+      .add("gate.force_max", settings.node.gate.force_max)
+      .add("gate.force_continuous", settings.node.gate.force_continuous)
+      .add("gate.thermal_time", settings.node.gate.thermal_time)
+      .add("gate.fade_slew", settings.node.gate.fade_slew)
+      .add("gate.fade_guard", settings.node.gate.fade_guard)
+      .add("link_status_every", settings.node.link_status_every)
+      .add("master", settings.master)
+      .add("grip.mass", settings.hand.plant.grip.mass)
+      .add("grip.damping", settings.hand.plant.grip.damping)
+      .add("grip.stiffness", settings.hand.plant.grip.stiffness)
+      .add("plant.mass", settings.hand.plant.mass)
+      .add("plant.damping", settings.hand.plant.damping)
+      .add("plant.friction", settings.hand.plant.friction)
+      .add("plant.friction_speed", settings.hand.plant.friction_speed)
+      .add("plant.step", settings.hand.plant.step)
+      .add("person.surface_offset", settings.hand.person.surface_offset)
+      .add("person.start", settings.hand.person.start)
+      .add("person.engage_again", settings.hand.person.engage_again)
+      .add("hand.tremor", settings.hand.tremor)
+      .add("hand.tremor_frequency", settings.hand.tremor_frequency)
+      .add("hand.encoder_step", settings.hand.encoder_step)
+      .add("hand.velocity_cut_off", settings.hand.velocity_cut_off)
+      .add("hand.force_max", settings.hand.force_max)
+      .add("hand.force_continuous", settings.hand.force_continuous);
+  add(list, settings.loop);
+  add(list, settings.impairment);
+  add(list, settings.record);
+  list.add("duration", settings.duration).add("seed", settings.seed);
+  return list.text();
+}
+
+Settings settings_with(const std::vector<std::string>& assignments) {
+  config::Document document = config::surgeon_document();
+  for (const std::string& assignment : assignments) EXPECT_TRUE(document.set(assignment));
+  EXPECT_TRUE(document.check());
+  return make_settings(document).value();
+}
+
+TEST(SurgeonSettingsTest, AnEmptyDocumentGivesTheDefaultsOfTheParts) {
+  Settings defaults;
+  defaults.node.supervisor.round_trip_max_to_engage = std::chrono::milliseconds{20};
+  EXPECT_EQ(text_of(settings_with({})), text_of(defaults));
+}
+
+TEST(SurgeonSettingsTest, EveryKnobIsRead) {
+  const std::string before = text_of(settings_with({}));
+  settings_test::for_each_knob(
+      *proto::config::SurgeonConfig::descriptor(),
+      "",
+      [&before](const std::string& path, const std::string& value) {
+        config::Document document = config::surgeon_document();
+        ASSERT_TRUE(document.set(path, value, path)) << path << " = " << value;
+        const auto made = make_settings(document);
+        EXPECT_TRUE(!made || text_of(*made) != before) << "nobody reads " << path;
+      });
+}
+
+TEST(SurgeonSettingsTest, UnitsChangeAtTheBorder) {
+  const Settings made = settings_with({"link.hold_after_ms=40",
+                                       "loop.period_us=500",
+                                       "hand.tremor_mm=0.5",
+                                       "hand.encoder_um=10",
+                                       "impairment.loss=5%",
+                                       "duration_s=1.5"});
+  EXPECT_EQ(made.link.watchdog.hold_after, std::chrono::milliseconds{40});
+  EXPECT_EQ(made.loop.period, std::chrono::microseconds{500});
+  EXPECT_EQ(made.node.period, made.loop.period);
+  EXPECT_EQ(made.link.period, made.loop.period);
+  EXPECT_EQ(made.hand.tremor, 0.5e-3);
+  EXPECT_EQ(made.hand.encoder_step, 10e-6);
+  EXPECT_EQ(made.impairment.loss, 0.05);
+  EXPECT_EQ(made.duration, std::chrono::milliseconds{1500});
+}
+
+TEST(SurgeonSettingsTest, AnUnknownCouplingIsAnErrorThatListsTheKnownOnes) {
+  config::Document document = config::surgeon_document();
+  ASSERT_TRUE(document.set("coupling.name=springy"));
+  const auto made = make_settings(document);
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error().text, HasSubstr("unknown coupling 'springy'; there are: direct"));
+}
+
+TEST(SurgeonSettingsTest, ForcedEngagementLiftsTheLimitOfTheRoundTrip) {
+  EXPECT_EQ(settings_with({"engagement.forced=true"}).node.supervisor.round_trip_max_to_engage,
+            Duration{0});
+}
+
+TEST(SurgeonSettingsTest, TheAgreementIsOnTheLawAndThePeriodAlone) {
+  const std::uint64_t agreement = settings_with({}).agreement;
+  EXPECT_EQ(settings_with({"seed=2", "loop.priority=0", "hand.grip=firm"}).agreement, agreement);
+  EXPECT_NE(settings_with({"coupling.direct.spring_n_per_m=100"}).agreement, agreement);
+  EXPECT_NE(settings_with({"loop.period_us=500"}).agreement, agreement);
+}
+
+}  // namespace
+}  // namespace palp::surgeon
