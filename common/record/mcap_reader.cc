@@ -4,6 +4,24 @@
 #include <utility>
 
 namespace palp::record {
+namespace {
+
+/// Kinds of record that stand before DataEnd only.
+bool is_data(McapOpcode opcode) noexcept {
+  switch (opcode) {
+    case McapOpcode::Message:
+    case McapOpcode::Chunk:
+    case McapOpcode::MessageIndex:
+    case McapOpcode::Attachment:
+    case McapOpcode::Metadata:
+    case McapOpcode::DataEnd:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
 
 McapReader::McapReader(std::span<const std::byte> file, const McapLimits& limits)
     : file_{file}, limits_{limits}, decompressor_{limits.chunk_size_max} {
@@ -87,6 +105,10 @@ std::optional<McapItem> McapReader::next_in_file() {
 }
 
 std::optional<McapItem> McapReader::interpret(const RawRecord& record) {
+  if (data_ended_ && is_data(record.opcode)) {
+    fault(record.offset, "a record that holds data stands behind the end of the data");
+    return std::nullopt;
+  }
   switch (record.opcode) {
     case McapOpcode::Schema:
       return read_schema(record);

@@ -71,8 +71,8 @@ std::uint16_t McapWriter::add_channel(std::uint16_t schema,
                                       std::string_view topic,
                                       std::string_view message_encoding,
                                       const McapMap& metadata) {
-  const auto id = static_cast<std::uint16_t>(channels_.size());
   channels_.emplace_back();
+  const auto id = static_cast<std::uint16_t>(channels_.size());
   const std::size_t at = channel_records_.size();
   {
     const RecordScope channel{channel_records_, McapOpcode::Channel};
@@ -143,7 +143,7 @@ std::byte* McapWriter::add_message(const McapStamp& stamp, std::size_t payload_s
   } else {
     flush_if_due(stamp.log_time);
   }
-  if (failed_ || closed_ || stamp.channel >= channels_.size()) {
+  if (failed_ || closed_ || stamp.channel == 0 || stamp.channel > channels_.size()) {
     ++counts_.lost;
     return nullptr;
   }
@@ -156,7 +156,7 @@ std::byte* McapWriter::add_message(const McapStamp& stamp, std::size_t payload_s
   place = store(place, stamp.sequence);
   place = store(place, stamp.log_time);
   place = store(place, stamp.publish_time);
-  Channel& channel = channels_[stamp.channel];
+  Channel& channel = channels_[stamp.channel - 1u];
   channel.waiting.push_back({.log_time = stamp.log_time, .offset = at});
   waiting_span_.add(stamp.log_time);
   ++waiting_messages_;
@@ -228,8 +228,8 @@ void McapWriter::append_message_indexes(std::uint64_t chunk_offset, std::uint64_
   const std::uint64_t compressed_size = chunk_size - kMcapPrefixSize - 40 - (zstd ? 4 : 0);
   Bytes offsets;
   if (options_.message_index) {
-    for (std::size_t id = 0; id < channels_.size(); ++id) {
-      const auto& waiting = channels_[id].waiting;
+    for (std::size_t id = 1; id <= channels_.size(); ++id) {
+      const auto& waiting = channels_[id - 1].waiting;
       if (waiting.empty()) {
         continue;
       }
@@ -283,10 +283,10 @@ void McapWriter::append_statistics(Bytes& out) const {
   append(out, span_.begin);
   append(out, span_.end);
   Bytes per_channel;
-  for (std::size_t id = 0; id < channels_.size(); ++id) {
-    if (channels_[id].messages > 0) {
+  for (std::size_t id = 1; id <= channels_.size(); ++id) {
+    if (channels_[id - 1].messages > 0) {
       append(per_channel, static_cast<std::uint16_t>(id));
-      append(per_channel, channels_[id].messages);
+      append(per_channel, channels_[id - 1].messages);
     }
   }
   append(out, static_cast<std::uint32_t>(per_channel.size()));

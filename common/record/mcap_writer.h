@@ -21,7 +21,7 @@ enum class McapCompression : std::uint8_t { None, Zstd };
 /// What a file contains besides its messages. The defaults are those of a session file; switching
 /// parts off is for the public conformance cases.
 struct McapOptions {
-  std::string profile;
+  std::string profile{};
   std::string library{"palp"};
   McapCompression compression{McapCompression::Zstd};
   int zstd_level{1};
@@ -68,7 +68,7 @@ class McapWriter {
   std::uint16_t add_schema(std::string_view name,
                            std::string_view encoding,
                            std::span<const std::byte> data);
-  /// @returns the new id, 0, 1, ...
+  /// @returns the new id, 1, 2, ...
   std::uint16_t add_channel(std::uint16_t schema,
                             std::string_view topic,
                             std::string_view message_encoding,
@@ -123,9 +123,9 @@ class McapWriter {
   Bytes waiting_;  ///< records of the chunk being filled
   std::uint64_t waiting_messages_{};
   TimeSpan waiting_span_;
-  Bytes output_;  ///< of one flush
-  std::vector<Channel> channels_;
-  Bytes schema_records_;  ///< kept for the summary, as are the following
+  Bytes output_;                   ///< of one flush
+  std::vector<Channel> channels_;  ///< id 1 first
+  Bytes schema_records_;           ///< kept for the summary, as are the following
   Bytes channel_records_;
   Bytes chunk_indexes_;
   Bytes attachment_indexes_;

@@ -1,5 +1,7 @@
 #include "common/record/session_encoder.h"
 
+#include <set>
+
 #include <google/protobuf/descriptor.pb.h>
 
 #include "common/record/notes.h"
@@ -178,6 +180,40 @@ void put(const link::DepthReport& report, session::DepthReport& out) {
   out.set_depth_high_m(report.depth_high);
 }
 
+/// Copies `type` and what its fields need into `file`, each once.
+void add_type(const google::protobuf::Descriptor& type,
+              std::set<std::string>& added,
+              google::protobuf::FileDescriptorProto& file) {
+  if (!added.insert(type.full_name()).second) {
+    return;
+  }
+  type.CopyTo(file.add_message_type());
+  for (int k = 0; k < type.field_count(); ++k) {
+    const auto& field = *type.field(k);
+    if (field.message_type() != nullptr) {
+      add_type(*field.message_type(), added, file);
+    }
+    const auto* enumeration = field.enum_type();
+    if (enumeration != nullptr && enumeration->containing_type() == nullptr &&
+        added.insert(enumeration->full_name()).second) {
+      enumeration->CopyTo(file.add_enum_type());
+    }
+  }
+}
+
+Bytes descriptor_set(const google::protobuf::Descriptor& type) {
+  google::protobuf::FileDescriptorSet set;
+  auto& file = *set.add_file();
+  file.set_name(type.file()->name());
+  file.set_package(type.file()->package());
+  file.set_syntax("proto3");
+  std::set<std::string> added;
+  add_type(type, added, file);
+  Bytes bytes(set.ByteSizeLong());
+  set.SerializeToArray(bytes.data(), static_cast<int>(bytes.size()));
+  return bytes;
+}
+
 }  // namespace
 
 std::string_view site_name(Role site) noexcept {
@@ -188,7 +224,10 @@ std::vector<TopicFormat> topics_of(Role site) {
   const bool surgeon = site == Role::Surgeon;
   const std::string prefix{std::string{site_name(site)} + '/'};
   const auto topic = [&](Topic which, const char* name, const google::protobuf::Descriptor* type) {
-    return TopicFormat{.topic = which, .name = prefix + name, .schema = type->full_name()};
+    return TopicFormat{.topic = which,
+                       .name = prefix + name,
+                       .schema = type->full_name(),
+                       .descriptors = descriptor_set(*type)};
   };
   std::vector<TopicFormat> topics{
       topic(Topic::Tick,
@@ -209,14 +248,6 @@ std::vector<TopicFormat> topics_of(Role site) {
             "depth",
             surgeon ? session::DepthReport::descriptor() : session::DepthEstimate::descriptor()));
   return topics;
-}
-
-Bytes session_descriptor_set() {
-  google::protobuf::FileDescriptorSet set;
-  session::SurgeonTick::descriptor()->file()->CopyTo(set.add_file());  // it imports nothing
-  Bytes bytes(set.ByteSizeLong());
-  set.SerializeToArray(bytes.data(), static_cast<int>(bytes.size()));
-  return bytes;
 }
 
 struct SessionEncoder::Messages {

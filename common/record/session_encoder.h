@@ -23,6 +23,7 @@ struct TopicFormat {
   Topic topic{};
   std::string name;    ///< "surgeon/tick"
   std::string schema;  ///< full name of the message, "palp.session.SurgeonTick"
+  Bytes descriptors;   ///< FileDescriptorSet: the message and the types it uses, no others
 };
 
 /// The topics of one site's file, in the order of the enumeration.
@@ -30,9 +31,6 @@ struct TopicFormat {
 
 /// "surgeon" or "patient".
 [[nodiscard]] std::string_view site_name(link::Role site) noexcept;
-
-/// The FileDescriptorSet that decodes every topic.
-[[nodiscard]] Bytes session_descriptor_set();
 
 struct Prepared {
   Topic topic{};

@@ -30,9 +30,8 @@ SessionWriter::SessionWriter(ByteSink& sink, const SessionInfo& info, const Mcap
                          attachment.media_type,
                          std::as_bytes(std::span{attachment.content}));
   }
-  const Bytes descriptors = session_descriptor_set();
   for (const TopicFormat& format : topics_of(info.site)) {
-    const auto schema = mcap_.add_schema(format.schema, "protobuf", descriptors);
+    const auto schema = mcap_.add_schema(format.schema, "protobuf", format.descriptors);
     channels_[static_cast<std::size_t>(format.topic)].id =
         mcap_.add_channel(schema, format.name, "protobuf");
   }

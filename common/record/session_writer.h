@@ -25,8 +25,8 @@ struct SessionInfo {
   link::Role site{};
   /// Program, version, git commit, protocol version, seed, host kernel, real or virtual time, ...:
   /// becomes the metadata record `palp`.
-  McapMap metadata;
-  std::vector<SessionAttachment> attachments;
+  McapMap metadata{};
+  std::vector<SessionAttachment> attachments{};
   TimePoint opened_at{};
 };
 

@@ -1,0 +1,233 @@
+#include "common/record/mcap_reader.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "common/record/mcap_writer.h"
+#include "tests/common/record/record_samples.h"
+
+namespace palp::record {
+namespace {
+
+using test::small_session;
+
+McapReadReport read_all(std::span<const std::byte> file) {
+  McapReader reader{file};
+  while (reader.next()) {
+  }
+  return reader.report();
+}
+
+/// Ends of the chunks in a sound file, with the messages read up to there.
+std::map<std::size_t, std::uint64_t> messages_at_chunk_ends(std::span<const std::byte> file) {
+  std::map<std::size_t, std::uint64_t> ends;
+  std::size_t offset = kMcapMagic.size();
+  while (offset + kMcapPrefixSize <= file.size()) {
+    ByteCursor cursor{file.subspan(offset)};
+    const auto opcode = static_cast<McapOpcode>(cursor.read<std::uint8_t>());
+    offset += kMcapPrefixSize + static_cast<std::size_t>(cursor.read<std::uint64_t>());
+    if (opcode == McapOpcode::Chunk) {
+      ends[offset] = read_all(file.first(offset)).messages;
+    }
+    if (opcode == McapOpcode::Footer) {
+      break;
+    }
+  }
+  return ends;
+}
+
+TEST(McapReaderTest, SoundFileHasNoFault) {
+  const auto report = read_all(small_session(95, 20));
+  EXPECT_TRUE(report.closed);
+  EXPECT_EQ(report.fault_count, 0u);
+  EXPECT_EQ(report.chunks, 5u);
+  EXPECT_EQ(report.attachments, 1u);
+  EXPECT_EQ(report.metadata, 2u);
+}
+
+TEST(McapReaderTest, FileCutAtAnyByteGivesAllWholeChunksAndNeverLess) {
+  const auto file = small_session(60, 15);
+  const auto ends = messages_at_chunk_ends(file);
+  ASSERT_EQ(ends.size(), 5u);
+  std::uint64_t before = 0;
+  for (std::size_t size = 0; size <= file.size(); ++size) {
+    const auto report = read_all(std::span{file}.first(size));
+    ASSERT_GE(report.messages, before) << "cut at " << size;
+    ASSERT_EQ(report.closed, size == file.size()) << "cut at " << size;
+    ASSERT_EQ(report.fault_count, 0u) << "cut at " << size << ": a cut is no damage";
+    const auto end = ends.upper_bound(size);
+    ASSERT_EQ(report.messages, end == ends.begin() ? 0 : std::prev(end)->second)
+        << "cut at " << size;
+    before = report.messages;
+  }
+}
+
+TEST(McapReaderTest, AnyFlippedBitIsSurvivedAndAnyInAChunkIsNoticed) {
+  const auto file = small_session(40, 15);
+  const auto ends = messages_at_chunk_ends(file);
+  const std::uint64_t total = read_all(file).messages;
+  for (std::size_t at = 0; at < file.size(); ++at) {
+    auto damaged = file;
+    damaged[at] ^= static_cast<std::byte>(1u << (at * 5 % 8));
+    const auto report = read_all(damaged);
+    ASSERT_LE(report.messages, total + 1) << "byte " << at;  // another record may pass for one
+    if (at >= kMcapMagic.size() && at < ends.rbegin()->first) {
+      ASSERT_TRUE(report.fault_count > 0 || !report.closed) << "byte " << at;
+    }
+  }
+}
+
+TEST(McapReaderTest, DamagedChunkIsSkippedAndTheOthersAreKept) {
+  auto file = small_session(60, 15);
+  const auto ends = messages_at_chunk_ends(file);
+  const std::size_t second_end = std::next(ends.begin())->first;
+  file[second_end - 5] ^= std::byte{0x10};
+  const auto report = read_all(file);
+  const std::uint64_t in_second = std::next(ends.begin())->second - ends.begin()->second;
+  EXPECT_TRUE(report.closed);
+  EXPECT_EQ(report.chunks_damaged, 1u);
+  EXPECT_EQ(report.messages, ends.rbegin()->second - in_second);
+}
+
+/// A file of hand-made records behind the magic and a header.
+class RawFile {
+ public:
+  RawFile() : bytes_{kMcapMagic.begin(), kMcapMagic.end()} {
+    const RecordScope header{bytes_, McapOpcode::Header};
+    append(bytes_, std::string_view{});
+    append(bytes_, std::string_view{});
+  }
+  template <class Fill>
+  RawFile& add(McapOpcode opcode, Fill fill) {
+    const RecordScope record{bytes_, opcode};
+    fill(bytes_);
+    return *this;
+  }
+  RawFile& add_channel(std::uint16_t id, std::uint16_t schema) {
+    return add(McapOpcode::Channel, [&](Bytes& out) {
+      append(out, id);
+      append(out, schema);
+      append(out, std::string_view{"topic"});
+      append(out, std::string_view{});
+      append(out, McapMap{});
+    });
+  }
+  RawFile& add_message(std::uint16_t channel) {
+    return add(McapOpcode::Message, [&](Bytes& out) {
+      append(out, channel);
+      append(out, std::uint32_t{0});
+      append(out, std::uint64_t{0});
+      append(out, std::uint64_t{0});
+    });
+  }
+  RawFile& add_chunk(std::uint64_t size, std::string_view compression, const Bytes& records) {
+    return add(McapOpcode::Chunk, [&](Bytes& out) {
+      append(out, std::uint64_t{0});
+      append(out, std::uint64_t{0});
+      append(out, size);
+      append(out, std::uint32_t{0});
+      append(out, compression);
+      append(out, std::uint64_t{records.size()});
+      append(out, records);
+    });
+  }
+  [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
+
+ private:
+  Bytes bytes_;
+};
+
+TEST(McapReaderTest, UnknownOpcodesAreSkipped) {
+  RawFile file;
+  file.add(static_cast<McapOpcode>(0x77), [](Bytes& out) { append(out, std::uint64_t{1}); });
+  file.add_channel(1, 0).add_message(1);
+  EXPECT_EQ(read_all(file.bytes()).messages, 1u);
+  EXPECT_EQ(read_all(file.bytes()).fault_count, 0u);
+}
+
+TEST(McapReaderTest, ChannelThatNamesAMissingSchemaIsAFaultAndSoAreItsMessages) {
+  RawFile file;
+  file.add_channel(1, 9).add_message(1);
+  const auto report = read_all(file.bytes());
+  EXPECT_EQ(report.messages, 0u);
+  EXPECT_EQ(report.fault_count, 2u);
+  EXPECT_NE(report.faults.front().text.find("schema 9"), std::string::npos);
+}
+
+TEST(McapReaderTest, ChannelDefinedAgainInAnotherWayIsAFault) {
+  RawFile file;
+  file.add_channel(1, 0).add_channel(1, 0);
+  EXPECT_EQ(read_all(file.bytes()).fault_count, 0u);
+  file.add(McapOpcode::Channel, [](Bytes& out) {
+    append(out, std::uint16_t{1});
+    append(out, std::uint16_t{0});
+    append(out, std::string_view{"other topic"});
+    append(out, std::string_view{});
+    append(out, McapMap{});
+  });
+  EXPECT_EQ(read_all(file.bytes()).fault_count, 1u);
+}
+
+TEST(McapReaderTest, ChunkThatClaimsMoreThanTheLimitIsNotOpened) {
+  Bytes zeros(70u << 20);
+  Bytes bomb;
+  ASSERT_TRUE(ChunkCompressor{1}.compress(zeros, bomb));
+  RawFile file;
+  file.add_chunk(zeros.size(), "zstd", bomb);
+  file.add_chunk(1000, "zstd", bomb);  // lies about its size
+  file.add_chunk(~std::uint64_t{0}, "zstd", bomb);
+  const auto report = read_all(file.bytes());
+  EXPECT_EQ(report.chunks_damaged, 3u);
+  EXPECT_EQ(report.fault_count, 3u);
+}
+
+TEST(McapReaderTest, CompressionItDoesNotKnowIsNamedAndSkipped) {
+  RawFile file;
+  file.add_chunk(10, "lz4", Bytes(10)).add_channel(1, 0).add_message(1);
+  const auto report = read_all(file.bytes());
+  EXPECT_EQ(report.chunks_damaged, 1u);
+  EXPECT_EQ(report.messages, 1u);
+}
+
+TEST(McapReaderTest, AttachmentInsideAChunkIsAFault) {
+  Bytes records;
+  { const RecordScope attachment{records, McapOpcode::Attachment}; }
+  RawFile file;
+  file.add_chunk(records.size(), "", records);
+  EXPECT_EQ(read_all(file.bytes()).fault_count, 1u);
+}
+
+TEST(McapReaderTest, RecordThatReachesBeyondTheFileEndsTheReading) {
+  RawFile file;
+  file.add_channel(1, 0).add_message(1);
+  Bytes bytes{file.bytes().begin(), file.bytes().end()};
+  append(bytes, std::uint8_t{5});
+  append(bytes, ~std::uint64_t{0});
+  const auto report = read_all(bytes);
+  EXPECT_EQ(report.messages, 1u);
+  EXPECT_EQ(report.bytes_unread, 9u);
+  EXPECT_FALSE(report.closed);
+}
+
+TEST(McapReaderTest, OtherBytesAreNoMcapFile) {
+  const std::string text = "site,d_mm,F_N";
+  const auto report = read_all(std::as_bytes(std::span{text}));
+  EXPECT_EQ(report.fault_count, 1u);
+}
+
+TEST(McapReaderTest, StatisticsThatCountOtherwiseAreAFault) {
+  RawFile file;
+  file.add_channel(1, 0).add_message(1);
+  file.add(McapOpcode::Statistics, [](Bytes& out) {
+    append(out, std::uint64_t{2});
+    out.resize(out.size() + 2 + 4 * 4 + 16);
+    append(out, std::uint32_t{0});
+  });
+  EXPECT_EQ(read_all(file.bytes()).fault_count, 1u);
+}
+
+}  // namespace
+}  // namespace palp::record

@@ -1,0 +1,334 @@
+#include <limits>
+#include <map>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include "common/record/session_reader.h"
+#include "common/record/session_writer.h"
+#include "tests/common/record/record_samples.h"
+
+namespace palp::record {
+namespace {
+
+using link::Role;
+using test::at_ms;
+using test::fields;
+
+/// Any bit pattern of a double, NaN and -0 among them: the file must not look at values.
+double any_double() { return std::bit_cast<double>(*rc::gen::arbitrary<std::uint64_t>()); }
+TimePoint any_time() { return TimePoint{Duration{*rc::gen::arbitrary<std::int64_t>()}}; }
+Duration any_span() { return Duration{*rc::gen::arbitrary<std::int64_t>()}; }
+template <class Enum>
+Enum any_of(int count) {
+  return static_cast<Enum>(*rc::gen::inRange(0, count));
+}
+template <class T>
+T any() {
+  return *rc::gen::arbitrary<T>();
+}
+
+CouplingPayload any_payload() {
+  switch (*rc::gen::inRange(0, 4)) {
+    case 1:
+      return WavePayload{any_double(), any_double()};
+    case 2:
+      return TdpaPayload{any_double()};
+    case 3:
+      return ModelPayload{any<std::uint32_t>(),
+                          {any_double(), any_double(), any_double()},
+                          any_double(),
+                          any_double(),
+                          any_double()};
+    default:
+      return {};
+  }
+}
+
+PortSample any_sample() { return {any_double(), any_double(), any_double(), any_payload()}; }
+
+LinkStatus any_link_status() {
+  LinkStatus status{.at = any_time(), .health = {}};
+  link::LinkHealth& h = status.health;
+  h.state = any_of<LinkState>(kLinkStateCount);
+  for (Duration* span : {&h.gap, &h.round_trip, &h.round_trip_min, &h.jitter}) {
+    *span = any_span();
+  }
+  for (std::uint64_t* count : {&h.sent,
+                               &h.accepted,
+                               &h.late,
+                               &h.repaired,
+                               &h.lost,
+                               &h.reordered,
+                               &h.stale,
+                               &h.old_epoch,
+                               &h.unsent,
+                               &h.malformed,
+                               &h.foreign,
+                               &h.replayed,
+                               &h.too_old,
+                               &h.forged}) {
+    *count = any<std::uint64_t>();
+  }
+  return status;
+}
+
+SiteTick any_tick() {
+  return {any_time(),
+          any_of<SiteState>(kSiteStateCount),
+          any<std::uint32_t>(),
+          any_double(),
+          any_double(),
+          any_double(),
+          any_double(),
+          any_double(),
+          any<bool>(),
+          any_span(),
+          any_sample()};
+}
+
+DepthEstimate any_estimate() {
+  return {any<std::uint32_t>(),
+          any_time(),
+          any_time(),
+          any_double(),
+          any_double(),
+          any_double(),
+          any_double(),
+          any_of<DepthVerdict>(kDepthVerdictCount),
+          any_of<DepthReason>(kDepthReasonCount),
+          any_double(),
+          any_double(),
+          any_double(),
+          any_double(),
+          any_double(),
+          any_double()};
+}
+
+Record any_record(Role site) {
+  const bool surgeon = site == Role::Surgeon;
+  switch (*rc::gen::inRange(0, surgeon ? 6 : 7)) {
+    case 0:
+      return any_tick();
+    case 1:
+      return Arrived{any_time(),
+                     {any_sample(),
+                      any<std::uint64_t>(),
+                      any<bool>(),
+                      any<bool>(),
+                      PeerTimePoint{any_span()},
+                      any_time()}};
+    case 2:
+      return any_link_status();
+    case 3:
+      return Note{any_time(), any<std::uint16_t>(), any_double()};
+    case 4:
+      return Transition{any_time(),
+                        any_of<SiteState>(kSiteStateCount),
+                        any_of<SiteState>(kSiteStateCount),
+                        any<std::uint16_t>()};
+    case 5:
+      if (surgeon) {
+        return DepthArrived{any_time(),
+                            {any<std::uint32_t>(),
+                             any_of<DepthVerdict>(kDepthVerdictCount),
+                             any_of<DepthReason>(kDepthReasonCount),
+                             any_double(),
+                             any_double(),
+                             any_double(),
+                             any_double(),
+                             any_double()}};
+      }
+      return any_estimate();
+    default:
+      return ContactSample{any_time(), any_double(), any_double(), any_double()};
+  }
+}
+
+std::vector<SessionEntry> read_all(SessionReader& reader) {
+  std::vector<SessionEntry> entries;
+  while (auto entry = reader.next()) {
+    entries.push_back(*entry);
+  }
+  return entries;
+}
+
+RC_GTEST_PROP(SessionTest, WhatIsWrittenIsReadBackBitForBit, ()) {
+  const Role site = *rc::gen::element(Role::Surgeon, Role::Patient);
+  const int count = *rc::gen::inRange(0, 40);
+  std::vector<Record> written;
+  MemorySink sink;
+  {
+    SessionWriter writer{sink, {.site = site}};
+    for (int k = 0; k < count; ++k) {
+      written.push_back(any_record(site));
+      RC_ASSERT(writer.write(written.back(), at_ms(k)));
+    }
+  }
+  SessionReader reader{sink.bytes()};
+  const auto entries = read_all(reader);
+  RC_ASSERT(entries.size() == written.size());
+  for (std::size_t k = 0; k < written.size(); ++k) {
+    RC_ASSERT(fields(entries[k].record) == fields(written[k]));
+    RC_ASSERT(entries[k].site == site);
+    RC_ASSERT(entries[k].logged_at == at_ms(static_cast<std::int64_t>(k)));
+  }
+  RC_ASSERT(reader.malformed() == 0u);
+  RC_ASSERT(reader.report().fault_count == 0u);
+  RC_ASSERT(reader.report().closed);
+}
+
+/// A session of five seconds with all that a patient's site writes.
+struct WrittenSession {
+  MemorySink sink;
+  SessionCounts counts;
+  std::uint64_t messages{};
+};
+
+WrittenSession five_seconds() {
+  WrittenSession session;
+  SessionWriter writer{session.sink,
+                       {.site = Role::Patient,
+                        .metadata = {{"program", "palp-patient"}, {"seed", "42"}},
+                        .attachments = {{"tissue.csv", "text/csv", "site,d_mm,F_N\n"}}}};
+  for (int k = 0; k < 5000; ++k) {
+    writer.write(test::tick(k), at_ms(k + 3));
+    writer.write(Arrived{.at = at_ms(k), .incoming = {}}, at_ms(k + 3));
+    if (k % 100 == 0) {
+      writer.set_dropped(static_cast<std::uint64_t>(k));
+      writer.write(LinkStatus{.at = at_ms(k), .health = {}}, at_ms(k + 3));
+    }
+  }
+  writer.close();
+  session.counts = writer.counts();
+  session.messages = writer.messages();
+  return session;
+}
+
+TEST(SessionTest, StatisticsEqualTheWritersCounters) {
+  const auto session = five_seconds();
+  McapReader reader{session.sink.bytes()};
+  std::optional<McapStatistics> statistics;
+  while (const auto item = reader.next()) {
+    if (const auto* found = std::get_if<McapStatistics>(&*item)) {
+      statistics = *found;
+    }
+  }
+  ASSERT_TRUE(statistics);
+  EXPECT_EQ(statistics->messages, session.messages);
+  EXPECT_EQ(statistics->messages, session.counts.records() + session.counts.views);
+  EXPECT_EQ(session.counts.records(), 10050u);
+  EXPECT_EQ(statistics->begin, 3'000'000u) << "log time of the first message [ns]";
+  EXPECT_EQ(statistics->chunks, 10u) << "one each half second";
+}
+
+TEST(SessionTest, ViewShowsFiftyPerSecondAndKeepsASpikeOfOneTick) {
+  TickView view;
+  for (int k = 0; k < 20; ++k) {
+    SiteTick tick = test::tick(k);
+    tick.force = k == 7 ? 2.5 : (k == 9 ? -1 : 0.25);
+    view.add(tick);
+  }
+  EXPECT_EQ(view.force.max, 2.5);
+  EXPECT_EQ(view.force.min, -1);
+  EXPECT_EQ(view.force.newest, 0.25);
+
+  const auto session = five_seconds();
+  EXPECT_EQ(session.counts.views, 250u);
+}
+
+TEST(SessionTest, MetadataAndAttachmentsStandBeforeTheFirstMessage) {
+  const auto session = five_seconds();
+  SessionReader reader{session.sink.bytes()};
+  ASSERT_TRUE(reader.next());
+  EXPECT_EQ(reader.metadata("palp", "site"), "patient");
+  EXPECT_EQ(reader.metadata("palp", "seed"), "42");
+  EXPECT_EQ(reader.metadata("palp", "nothing"), std::nullopt);
+  EXPECT_EQ(reader.attachment("tissue.csv"), "site,d_mm,F_N\n");
+  EXPECT_EQ(reader.attachment("other"), std::nullopt);
+  read_all(reader);
+  EXPECT_EQ(reader.metadata("palp.summary", "records_dropped"), "4900");
+  EXPECT_EQ(reader.metadata("palp.summary", "tick"), "5000");
+}
+
+TEST(SessionTest, TopicsCarryTheSamplesOwnInstantAndNoGap) {
+  const auto session = five_seconds();
+  SessionReader reader{session.sink.bytes()};
+  read_all(reader);
+  const TopicCount& ticks = reader.topics().at("patient/tick");
+  EXPECT_EQ(ticks.messages, 5000u);
+  EXPECT_EQ(ticks.first, at_ms(0));
+  EXPECT_EQ(ticks.last, at_ms(4999));
+  EXPECT_EQ(ticks.skipped, 0u);
+  EXPECT_EQ(ticks.schema, "palp.session.PatientTick");
+  EXPECT_EQ(reader.began_at(), at_ms(0));
+}
+
+TEST(SessionTest, DamagedChunkShowsAsAGapOfEachTopic) {
+  auto session = five_seconds();
+  std::vector<std::byte> file{session.sink.bytes().begin(), session.sink.bytes().end()};
+  file[file.size() / 2] ^= std::byte{1};
+  SessionReader reader{file};
+  const auto entries = read_all(reader);
+  EXPECT_EQ(reader.report().chunks_damaged, 1u);
+  EXPECT_LT(entries.size(), 10050u);
+  const TopicCount& ticks = reader.topics().at("patient/tick");
+  EXPECT_EQ(ticks.messages + ticks.skipped, 5000u);
+}
+
+TEST(SessionTest, RecordWithoutATopicAtThisSiteIsCountedNotWritten) {
+  NullSink sink;
+  SessionWriter surgeon{sink, {.site = Role::Surgeon}};
+  EXPECT_FALSE(surgeon.write(ContactSample{}, at_ms(0)));
+  EXPECT_FALSE(surgeon.write(DepthEstimate{}, at_ms(0)));
+  EXPECT_EQ(surgeon.counts().misplaced, 2u);
+  EXPECT_EQ(surgeon.messages(), 0u);
+}
+
+TEST(SessionTest, EveryTopicOfBothSitesHasItsOwnSchemaInTheFile) {
+  for (const Role site : {Role::Surgeon, Role::Patient}) {
+    MemorySink sink;
+    { const SessionWriter writer{sink, {.site = site}}; }
+    std::set<std::string> schemas;
+    std::size_t channels = 0;
+    McapReader reader{sink.bytes()};
+    while (const auto item = reader.next()) {
+      if (const auto* schema = std::get_if<McapSchema>(&*item)) {
+        EXPECT_TRUE(schemas.insert(schema->name).second) << schema->name;
+      }
+      channels += std::holds_alternative<McapChannel>(*item) ? 1u : 0u;
+    }
+    EXPECT_EQ(channels, topics_of(site).size());
+    EXPECT_EQ(schemas.size(), channels);
+  }
+}
+
+TEST(SessionTest, WriteAfterCloseIsRefused) {
+  NullSink sink;
+  SessionWriter writer{sink, {.site = Role::Surgeon}};
+  writer.close();
+  EXPECT_FALSE(writer.write(test::tick(0), at_ms(0)));
+}
+
+TEST(SessionTest, ValueOutsideItsEnumerationIsMalformedNotTrusted) {
+  SessionDecoder decoder;
+  constexpr std::array kStateNine{std::byte{0x08}, std::byte{9}};
+  constexpr std::array kStateTwo{std::byte{0x08}, std::byte{2}};
+  constexpr std::array kCutOff{std::byte{0x08}};
+  using Verdict = SessionDecoder::Verdict;
+  const auto verdict = [&](std::string_view schema, std::span<const std::byte> payload) {
+    return decoder.decode(schema, payload, at_ms(0)).verdict;
+  };
+  EXPECT_EQ(verdict("palp.session.PatientTick", kStateTwo), Verdict::Decoded);
+  EXPECT_EQ(verdict("palp.session.PatientTick", kStateNine), Verdict::Malformed);
+  EXPECT_EQ(verdict("palp.session.PatientTick", kCutOff), Verdict::Malformed);
+  EXPECT_EQ(verdict("palp.session.LinkStatus", kStateNine), Verdict::Malformed);
+  EXPECT_EQ(verdict("palp.session.PatientTickView", kStateTwo), Verdict::View);
+  EXPECT_EQ(verdict("foxglove.Grid", kStateTwo), Verdict::Unknown);
+}
+
+}  // namespace
+}  // namespace palp::record
