@@ -28,7 +28,7 @@ constexpr std::array<Assumption, 4> kAssumptions{{
     {true, 0, {1, 0.1, -0.02, -0.01, 0}, {0.02, 0.3, 0.03, 0.015, 0.01}},
     {false, 12, {1, 0.15, -0.02, -0.01, 0}, {1, 0.3, 0.02, 0.005, 0.0025}},
     {true, 24, {1, 0.1, -0.02, -0.01, 0}, {0.05, 0.6, 0.3, 0.2, 0.05}},
-    {false, 36, {1, 0.1, -0.02, -0.01, 0}, {1, 0.6, 0.3, 0.2, 0.05}},
+    {false, 36, {1, 0.1, -0.02, -0.01, 0}, {1, 0.6, 0.8, 0.56, 0.16}},
 }};
 
 // Even without noise a five-term law misses a tissue by so much: absolute, and of the force.

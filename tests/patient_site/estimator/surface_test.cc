@@ -35,9 +35,9 @@ TEST(SurfaceTest, FindsItInCleanData) {
       const auto law =
           find_surface({.points = points, .first_contact = surface + 0.9e-3, .noise = 1e-5}, {});
       ASSERT_TRUE(law) << name;
-      EXPECT_NEAR(law->surface, surface, 6e-6) << name;
+      EXPECT_NEAR(law->surface, surface, 10e-6) << name;
       for (double d = 0.5e-3; d < 3.9e-3; d += 0.1e-3) {
-        EXPECT_NEAR(law->force(d), phantom->over.force(d), 0.02 * phantom->over.force(d)) << name;
+        EXPECT_NEAR(law->force(d), phantom->over.force(d), 0.03 * phantom->over.force(d)) << name;
       }
     }
   }
