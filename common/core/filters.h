@@ -14,8 +14,8 @@ class LowPass {
   [[nodiscard]] double gain() const noexcept { return gain_; }
 
  private:
-  double gain_;
-  double value_{};
+  double gain_;     ///< [-]
+  double value_{};  ///< [unit of the input]
 };
 
 /// Rate of a sampled position [m] through a low pass: [m/s]. The first sample gives 0.

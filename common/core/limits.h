@@ -30,7 +30,7 @@ class Ramp {
   [[nodiscard]] constexpr double value() const noexcept { return value_; }
 
  private:
-  double value_;
+  double value_;  ///< [-]
 };
 
 }  // namespace palp

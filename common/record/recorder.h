@@ -44,7 +44,7 @@ struct LinkStatus {
 struct Note {
   TimePoint at{};
   std::uint16_t code{};
-  double detail{};  ///< meaning and unit depend on the code
+  double detail{};  ///< [by code], as notes.h says
 };
 
 /// A change of the site's state.

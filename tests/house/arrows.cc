@@ -1,0 +1,220 @@
+#include "tests/house/arrows.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include <fnmatch.h>
+
+namespace palp::house {
+namespace {
+
+/// Rooms, the longer name first where one lies in another.
+constexpr std::array<std::string_view, 16> kRooms{"common/core",
+                                                  "common/coupling",
+                                                  "common/link",
+                                                  "common/config",
+                                                  "common/record",
+                                                  "common/io",
+                                                  "netem",
+                                                  "surgeon_site/devices",
+                                                  "surgeon_site",
+                                                  "patient_site/devices",
+                                                  "patient_site/estimator",
+                                                  "patient_site",
+                                                  "lab",
+                                                  "review",
+                                                  "proto",
+                                                  "tests"};
+
+/// What files may include besides their own room and core: rooms, or single headers.
+struct Arrow {
+  std::string_view from;  ///< pattern of paths; the first row that matches counts
+  std::vector<std::string_view> to;
+};
+
+const std::vector<Arrow>& arrows() {
+  static const std::vector<Arrow> table{
+      {"common/core/*", {}},
+      {"common/coupling/*", {}},
+      {"common/link/*", {}},
+      {"common/config/*", {}},
+      {"common/record/*", {"common/link"}},
+      {"common/io/*", {"common/link"}},
+      // The emulator as a program; its library sees nothing but the seam.
+      {"netem/relay*", {"common/link/transport.h", "common/io", "common/config"}},
+      {"netem/main.cc", {"common/link/transport.h", "common/io", "common/config"}},
+      {"netem/*", {"common/link/transport.h"}},
+      // A site: main puts it together, settings reads its configuration, devices are adapters.
+      {"surgeon_site/main.cc",
+       {"surgeon_site/devices",
+        "common/coupling",
+        "common/link",
+        "common/record",
+        "common/config",
+        "common/io",
+        "netem"}},
+      {"surgeon_site/devices/*", {"surgeon_site/haptic_device.h", "common/io"}},
+      {"surgeon_site/settings.*",
+       {"common/coupling", "common/link", "common/record", "common/config"}},
+      {"surgeon_site/*", {"common/coupling", "common/link", "common/record"}},
+      {"patient_site/main.cc",
+       {"patient_site/devices",
+        "patient_site/estimator",
+        "common/coupling",
+        "common/link",
+        "common/record",
+        "common/config",
+        "common/io",
+        "netem"}},
+      {"patient_site/devices/*",
+       {"patient_site/stage.h", "patient_site/force_sensor.h", "common/io"}},
+      {"patient_site/estimator/*", {}},
+      {"patient_site/settings.*",
+       {"patient_site/estimator",
+        "common/coupling",
+        "common/link",
+        "common/record",
+        "common/config"}},
+      {"patient_site/*",
+       {"patient_site/estimator", "common/coupling", "common/link", "common/record"}},
+      {"lab/*",
+       {"surgeon_site",
+        "patient_site",
+        "patient_site/estimator",
+        "netem",
+        "common/coupling",
+        "common/link",
+        "common/record",
+        "common/config"}},
+      {"review/*", {"common/record", "common/coupling", "patient_site/estimator", "common/config"}},
+  };
+  return table;
+}
+
+/// A library and the files that may see it.
+struct Fence {
+  std::string_view library;  ///< beginning of the include
+  std::vector<std::string_view> only_in;
+};
+
+/// The files that speak protobuf: schema in, plain structs out.
+const std::vector<std::string_view>& protobuf_files() {
+  static const std::vector<std::string_view> files{"common/link/codec*.cc",
+                                                   "common/config/*.cc",
+                                                   "common/record/*.cc",
+                                                   "surgeon_site/settings*.cc",
+                                                   "patient_site/settings*.cc",
+                                                   "lab/scenario*.cc"};
+  return files;
+}
+
+const std::vector<Fence>& fences() {
+  static const std::vector<Fence> table{
+      {"boost/", {"common/io/*.cc"}},
+      {"google/protobuf/", protobuf_files()},
+      {"zstd", {"common/record/mcap_*.cc"}},
+      {"zlib.h", {"common/record/mcap_*.cc"}},
+      {"CLI/", {"common/config/command_line.cc"}},
+      {"spdlog/", {"common/io/diagnostics.cc", "*/main.cc"}},
+      {"fmt/", {"common/io/diagnostics.cc", "*/main.cc"}},
+      {"readerwriterqueue/", {"common/core/spsc_queue.h"}},
+      {"tl/expected.hpp", {"common/core/result.h"}},
+      {"nlohmann/",
+       {"surgeon_site/*.cc", "patient_site/*.cc", "netem/*.cc", "lab/*.cc", "review/*.cc"}},
+      {"gtest/", {}},
+      {"gmock/", {}},
+      {"rapidcheck", {}},
+      {"benchmark/", {}},
+  };
+  return table;
+}
+
+/// Of the system and the C library; the standard library's headers have no '.' and no '/'.
+constexpr std::array<std::string_view, 22> kSystemHeaders{
+    "sys/",     "netinet/", "arpa/",       "net/",       "linux/",      "unistd.h",
+    "fcntl.h",  "poll.h",   "pthread.h",   "sched.h",    "signal.h",    "time.h",
+    "errno.h",  "dlfcn.h",  "fnmatch.h",   "termios.h",  "semaphore.h", "execinfo.h",
+    "cxxabi.h", "netdb.h",  "immintrin.h", "xmmintrin.h"};
+
+bool matches_any(std::string_view path, const std::vector<std::string_view>& patterns) {
+  return std::ranges::any_of(patterns, [&](auto pattern) { return matches(path, pattern); });
+}
+
+bool arrow_allowed(const Source& source, const std::string& target) {
+  const std::string_view from = room_of(source.path);
+  const std::string_view to = room_of(target);
+  if (from == "tests" || to == from || to == "common/core") return true;
+  for (const Arrow& arrow : arrows()) {
+    if (!matches(source.path, arrow.from)) continue;
+    return std::ranges::any_of(arrow.to, [&](auto one) { return one == to || one == target; });
+  }
+  return false;
+}
+
+}  // namespace
+
+bool matches(std::string_view path, std::string_view pattern) {
+  return fnmatch(std::string{pattern}.c_str(), std::string{path}.c_str(), FNM_PATHNAME) == 0;
+}
+
+std::string_view room_of(std::string_view path) {
+  for (const std::string_view room : kRooms) {
+    if (path.size() > room.size() && path.starts_with(room) && path[room.size()] == '/') {
+      return room;
+    }
+  }
+  return {};
+}
+
+Violations forbidden_arrows(const Source& source) {
+  Violations found;
+  const std::string_view from = room_of(source.path);
+  if (from.empty()) {
+    if (source.is_code()) found.push_back({source.path, 0, "lies in no room of the table"});
+    return found;
+  }
+  for (const Include& include : includes(source)) {
+    if (!include.quoted || include.target.ends_with(".pb.h")) continue;
+    const std::string_view to = room_of(include.target);
+    if (to.empty()) {
+      found.push_back({source.path,
+                       include.line,
+                       "\"" + include.target + "\" is in no room: include from the root"});
+    } else if (!arrow_allowed(source, include.target)) {
+      found.push_back(
+          {source.path, include.line, std::string{from} + " may not include " + include.target});
+    }
+  }
+  return found;
+}
+
+Violations broken_fences(const Source& source) {
+  Violations found;
+  if (room_of(source.path) == "tests") return found;
+  for (const Include& include : includes(source)) {
+    const std::string& target = include.target;
+    const auto tell = [&](const std::string& sentence) {
+      found.push_back({source.path, include.line, sentence});
+    };
+    if (target.ends_with(".pb.h")) {
+      if (!matches_any(source.path, protobuf_files())) tell(target + " is protobuf: behind a .cc");
+      continue;
+    }
+    if (include.quoted) continue;
+    const auto fence = std::ranges::find_if(
+        fences(), [&](const Fence& one) { return target.starts_with(one.library); });
+    if (fence != fences().end()) {
+      if (!matches_any(source.path, fence->only_in)) tell("<" + target + "> is outside its fence");
+      continue;
+    }
+    const bool standard = target.find_first_of("./") == std::string::npos;
+    const bool system = std::ranges::any_of(
+        kSystemHeaders, [&](auto beginning) { return target.starts_with(beginning); });
+    if (!standard && !system) tell("<" + target + "> belongs to a library without a fence");
+  }
+  return found;
+}
+
+}  // namespace palp::house

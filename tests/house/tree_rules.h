@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "tests/house/source.h"
+
+/// Rules that need the whole tree. Pure. A room exists once it has a CMakeLists.txt; the files of
+/// others are not judged.
+namespace palp::house {
+
+using Tree = std::vector<Source>;
+
+/// Headers that no test reads: neither included by a test, nor by what the tests of the same room
+/// include.
+[[nodiscard]] Violations untested_headers(const Tree& tree);
+
+/// .cc files that stand in no CMakeLists.txt.
+[[nodiscard]] Violations unlisted_sources(const Tree& tree);
+
+/// Mentions of pages that are not here. Pages in capitals (WIRE.md) may come later than those who
+/// cite them.
+[[nodiscard]] Violations missing_pages(const Tree& tree);
+
+}  // namespace palp::house
