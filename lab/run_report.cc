@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdarg>
 #include <cstdio>
 #include <span>
 
@@ -99,10 +100,13 @@ std::string hexadecimal(std::uint64_t value) {
   return text.data();
 }
 
-template <class... Arguments>
-void append(std::string& text, const char* format, Arguments... arguments) {
+/// printf at the end of a text; a line is never longer than 239 characters.
+[[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...) {
   std::array<char, 240> line{};
-  std::snprintf(line.data(), line.size(), format, arguments...);
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line.data(), line.size(), format, arguments);
+  va_end(arguments);
   text += line.data();
 }
 

@@ -1,0 +1,124 @@
+/// palp-lab: whole sessions in virtual time.
+
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <string>
+
+#include "common/config/command_line.h"
+#include "common/config/exit_code.h"
+#include "common/config/report.h"
+#include "common/io/process_time.h"
+#include "lab/run_report.h"
+#include "lab/scenario_file.h"
+#include "lab/trial.h"
+
+namespace palp::lab {
+namespace {
+
+using config::Ending;
+using config::ExitCode;
+
+struct Arguments {
+  std::string scenario;
+  std::optional<std::uint64_t> seed;
+  std::string coupling;
+  std::string phantom;
+  std::string report;
+  std::string session_files;
+  bool bare{};
+};
+
+Ending bad_input(const Error& error) { return {ExitCode::BadInput, "palp-lab: " + error.text}; }
+
+Result<Scenario> scenario_of(const Arguments& arguments) {
+  auto document = load_scenario(arguments.scenario);
+  if (!document) return tl::unexpected(document.error());
+  const auto set = [&](const std::string& path, const std::string& value, const char* flag) {
+    return value.empty() ? Result<void>{} : document->set(path, value, flag);
+  };
+  const std::string seed = arguments.seed ? std::to_string(*arguments.seed) : "";
+  for (const auto& done :
+       {set("seed", seed, "--seed"),
+        set("surgeon.coupling.name", arguments.coupling, "--coupling"),
+        set("patient.coupling.name", arguments.coupling, "--coupling"),
+        set("patient.simulated_phantom.phantom", arguments.phantom, "--phantom")}) {
+    if (!done) return tl::unexpected(done.error());
+  }
+  if (auto checked = document->check(); !checked) return tl::unexpected(checked.error());
+  auto scenario = make_scenario(arguments.scenario, *document);
+  if (scenario) scenario->bare = arguments.bare;
+  return scenario;
+}
+
+/// Both files, or none.
+struct SessionFiles {
+  std::optional<record::FileSink> surgeon;
+  std::optional<record::FileSink> patient;
+};
+
+Result<SessionFiles> open_files(const std::string& prefix) {
+  SessionFiles files;
+  if (prefix.empty()) return files;
+  auto surgeon = record::FileSink::create(prefix + "surgeon.mcap");
+  if (!surgeon) return tl::unexpected(surgeon.error());
+  auto patient = record::FileSink::create(prefix + "patient.mcap");
+  if (!patient) return tl::unexpected(patient.error());
+  files.surgeon = std::move(*surgeon);
+  files.patient = std::move(*patient);
+  return files;
+}
+
+Ending run(const Arguments& arguments) {
+  const auto scenario = scenario_of(arguments);
+  if (!scenario) return bad_input(scenario.error());
+  auto files = open_files(arguments.session_files);
+  if (!files) return {ExitCode::CannotOpen, "palp-lab: " + files.error().text};
+
+  const io::ProcessTime begin = io::process_time();
+  const TrialResult result = run_trial(*scenario,
+                                       {.surgeon = files->surgeon ? &*files->surgeon : nullptr,
+                                        .patient = files->patient ? &*files->patient : nullptr});
+  const io::ProcessTime end = io::process_time();
+  const RunAccount account{.scenario = arguments.scenario,
+                           .cpu = seconds(end.cpu - begin.cpu),
+                           .wall = seconds(end.wall - begin.wall)};
+  if (!arguments.report.empty()) {
+    const auto written =
+        config::write_whole_file(arguments.report, run_report(*scenario, result, account));
+    if (!written) return {ExitCode::CannotOpen, "palp-lab: " + written.error().text};
+  }
+  return {ExitCode::Done, run_summary(*scenario, result, account)};
+}
+
+}  // namespace
+}  // namespace palp::lab
+
+int main(int argc, char** argv) {
+  using palp::config::leave;
+  palp::lab::Arguments arguments;
+  palp::config::CommandLine line{"palp-lab",
+                                 "Whole sessions in virtual time, repeatable to the bit."};
+  auto& run = line.verb("run", "one scenario");
+  run.argument("SCENARIO", arguments.scenario, "name (palp-lab scenarios) or text file");
+  run.required();
+  run.whole("--seed", arguments.seed, {.min = 0, .max = 9007199254740991}, "of everything random");
+  run.text("--coupling", arguments.coupling, "NAME", "instead of the scenario's");
+  run.text("--phantom", arguments.phantom, "P", "instead of the scenario's");
+  run.toggle("--bare", arguments.bare, "raw telegrams, no session log: the laws alone");
+  run.text("--session-files",
+           arguments.session_files,
+           "PREFIX",
+           "keep the session files: PREFIXsurgeon.mcap, PREFIXpatient.mcap");
+  run.text("--report", arguments.report, "FILE", "report as JSON");
+  line.verb("scenarios", "lists the scenarios that come with the lab");
+  if (const auto ending = line.parse(argc, argv)) return leave(*ending);
+  try {
+    if (line.chosen_verb() == "scenarios") {
+      return leave({palp::config::ExitCode::Done, palp::lab::describe_scenarios()});
+    }
+    return leave(palp::lab::run(arguments));
+  } catch (const std::exception& failure) {
+    return leave({palp::config::ExitCode::CannotOpen, std::string{"palp-lab: "} + failure.what()});
+  }
+}

@@ -1,0 +1,120 @@
+#include "patient_site/settings.h"
+
+#include <algorithm>
+
+#include "common/config/document.h"
+#include "common/settings/units.h"
+#include "proto/config.pb.h"
+
+namespace palp::patient {
+namespace {
+
+using settings::from_micro;
+using settings::from_milli;
+
+/// The stage's servo runs past its target, and rounds to its encoder.
+constexpr double kTableMargin = 0.1e-3;  // [m]
+
+Result<void> check_device(const std::string& name, const char* what) {
+  if (name == "sim") return {};
+  return fail("unknown " + std::string{what} + " '" + name + "'; there are: sim");
+}
+
+MotionGateConfig make_gate(const proto::config::MotionGate& message) {
+  MotionGateConfig gate;
+  gate.travel_min = from_milli(message.travel_min_mm());
+  gate.travel_max = from_milli(message.travel_max_mm());
+  gate.depth_max = from_milli(message.depth_max_mm());
+  gate.speed_max = message.speed_max_m_per_s();
+  gate.speed_near = message.speed_near_surface_m_per_s();
+  gate.near_distance = from_milli(message.near_surface_mm());
+  gate.speed_resync = message.speed_resync_m_per_s();
+  gate.resync_distance = from_milli(message.resync_within_mm());
+  gate.acceleration_max = message.acceleration_max_m_per_s2();
+  gate.force_limit = message.force_limit_n();
+  gate.force_stop = message.force_stop_n();
+  gate.retreat_speed = message.withdraw_speed_m_per_s();
+  gate.retract_speed = message.retract_speed_m_per_s();
+  gate.clearance = from_milli(message.retract_clear_mm());
+  return gate;
+}
+
+SimulatedPhantomConfig make_simulation(const proto::config::SimulatedPhantom& message,
+                                       std::uint64_t seed) {
+  SimulatedPhantomConfig simulation;
+  simulation.servo_frequency = message.servo_hz();
+  simulation.servo_damping = message.servo_damping();
+  simulation.acceleration_max = message.acceleration_max_m_per_s2();
+  simulation.speed_max = message.speed_max_m_per_s();
+  simulation.encoder_step = from_micro(message.encoder_um());
+  simulation.surface_offset = from_milli(message.surface_offset_mm());
+  simulation.breathing_amplitude = from_milli(message.breathing_mm());
+  simulation.breathing_frequency = message.breathing_hz();
+  simulation.viscous_factor = message.viscous_s_per_m();
+  simulation.sensor_cut_off = message.sensor_pole_hz();
+  simulation.force_noise = from_milli(message.sensor_noise_mn());
+  simulation.force_quantum = from_milli(message.sensor_quantum_mn());
+  simulation.seed = seed;
+  return simulation;
+}
+
+Result<estimator::PaperEstimatorConfig> make_estimator(const proto::config::Estimator& message,
+                                                       Duration period) {
+  if (message.kind() != "paper") {
+    return fail("unknown estimator '" + message.kind() + "'; there are: paper");
+  }
+  estimator::PaperEstimatorConfig config;
+  config.sensor_cut_off = message.sensor_pole_hz();
+  config.filter_cut_off = message.filter_hz();
+  config.period = seconds(period);
+  config.fit_range = from_milli(message.indentation_max_mm());
+  return config;
+}
+
+}  // namespace
+
+Result<Settings> make_settings(const proto::config::PatientConfig& message) {
+  const auto coupling = settings::make_coupling(message.coupling());
+  if (!coupling) return fail(coupling.error().text);
+  if (const auto known = check_device(message.stage(), "stage"); !known) {
+    return fail(known.error().text);
+  }
+  if (const auto known = check_device(message.force(), "force sensor"); !known) {
+    return fail(known.error().text);
+  }
+  Settings made;
+  made.loop = settings::make_loop(message.loop());
+  const auto estimator = make_estimator(message.estimator(), made.loop.period);
+  if (!estimator) return fail(estimator.error().text);
+  made.listen = message.listen();
+  made.insecure = message.link().insecure();
+  made.coupling = *coupling;
+  made.agreement = settings::agreement_hash(message.coupling(), made.loop.period);
+  made.link = settings::make_link(message.link(), made.loop.period);
+  made.node.period = made.loop.period;
+  made.node.gate = make_gate(message.motion_gate());
+  made.node.sensor_cut_off = message.estimator().sensor_pole_hz();
+  made.stage = message.stage();
+  made.force = message.force();
+  made.phantom = message.simulated_phantom().phantom();
+  made.simulation = make_simulation(message.simulated_phantom(), message.seed());
+  made.estimator = *estimator;
+  made.impairment = settings::make_impairment(message.impairment());
+  made.record = settings::make_record(message.record());
+  made.duration = from_seconds(message.duration_s());
+  made.seed = message.seed();
+  return made;
+}
+
+Result<Settings> make_settings(const config::Document& document) {
+  return make_settings(document.as<proto::config::PatientConfig>());
+}
+
+MotionGateConfig within_tables(MotionGateConfig gate,
+                               double surface_offset,
+                               double depth_max) noexcept {
+  gate.travel_max = std::min(gate.travel_max, surface_offset + depth_max - kTableMargin);
+  return gate;
+}
+
+}  // namespace palp::patient

@@ -1,0 +1,119 @@
+#include "lab/trial.h"
+
+
+#include <gtest/gtest.h>
+
+#include "lab/scenario_file.h"
+
+// Goal: a whole session in virtual time is a palpation, repeats to the bit, and notices every
+// change. Method: the lab's own scenarios, shortened where the length does not matter.
+
+namespace palp::lab {
+namespace {
+
+Scenario scenario(const std::string& name, const std::vector<std::string>& settings = {}) {
+  auto document = load_scenario(name).value();
+  for (const std::string& setting : settings) {
+    const auto done = document.set(setting);
+    EXPECT_TRUE(done) << (done ? "" : done.error().text);
+  }
+  return make_scenario(name, document).value();
+}
+
+/// Four seconds: engagement, free air, no contact yet.
+Scenario short_scenario() {
+  Scenario quick = scenario("metro");
+  quick.duration = std::chrono::seconds{4};
+  quick.bare = true;
+  return quick;
+}
+
+std::uint64_t digest_of(const Scenario& scenario) { return run_trial(scenario).digest; }
+
+TEST(TrialTest, EveryScenarioOfTheLabIsReadable) {
+  for (const char* name : {"standard", "metro", "rough", "blackout", "far"}) {
+    EXPECT_EQ(scenario(name).name, name);
+  }
+  EXPECT_FALSE(load_scenario("no-such-scenario"));
+}
+
+TEST(TrialTest, APalpationIsPerformedToItsEndAndFindsTheInclusion) {
+  const TrialResult result = run_trial(scenario("metro"));
+  EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Completed);
+  EXPECT_FALSE(result.metrics.unstable) << result.metrics.unstable_reason;
+  ASSERT_EQ(result.metrics.taps.size(), 8U);
+  ASSERT_GE(result.depths.size(), 8U);
+  for (std::size_t k = 0; k < 4; ++k) {  // beside the inclusion
+    EXPECT_EQ(result.depths[k].verdict, DepthVerdict::None) << k << " h " << result.depths[k].hash;
+  }
+  int found = 0;
+  for (const DepthEstimate& estimate : result.depths) {
+    if (estimate.verdict == DepthVerdict::Found) {
+      ++found;
+      EXPECT_NEAR(estimate.depth, 0.010, 0.002);  // the paper's own accuracy is 2 to 12 %
+    }
+  }
+  EXPECT_GE(found, 4);
+}
+
+TEST(TrialTest, HardTissueFeelsHarder) {
+  const TrialResult result =
+      run_trial(scenario("metro", {"patient.simulated_phantom.phantom=paper-5mm"}));
+  const auto& taps = result.metrics.taps;
+  ASSERT_EQ(taps.size(), 8U);
+  EXPECT_GT(taps[5].stiffness_felt, 1.2 * taps[1].stiffness_felt);
+  EXPECT_GT(taps[5].stiffness_true, 1.2 * taps[1].stiffness_true);
+}
+
+TEST(TrialTest, TheSameSeedGivesTheSameBits) {
+  EXPECT_EQ(digest_of(short_scenario()), digest_of(short_scenario()));
+}
+
+TEST(TrialTest, AnotherNoiseDrawGainOrPacketFateGivesAnotherDigest) {
+  const std::uint64_t reference = digest_of(short_scenario());
+  Scenario noise = short_scenario();
+  noise.tissue.force_noise *= 1 + 1e-12;
+  EXPECT_NE(digest_of(noise), reference);
+  Scenario gain = short_scenario();
+  gain.coupling.direct.spring += 1e-9;
+  EXPECT_NE(digest_of(gain), reference);
+  Scenario fate = short_scenario();
+  fate.up.blackouts.push_back({std::chrono::milliseconds{3000}, std::chrono::milliseconds{1}});
+  EXPECT_NE(digest_of(fate), reference);
+  Scenario seed = short_scenario();
+  ++seed.seed;
+  EXPECT_NE(digest_of(seed), reference);
+}
+
+TEST(TrialTest, TheSessionLogDoesNotChangeTheSession) {
+  // Telegrams round some numbers to float, so the bare run differs by a little; files must not
+  // matter at all.
+  Scenario with_log = short_scenario();
+  with_log.bare = false;
+  record::MemorySink surgeon;
+  record::MemorySink patient;
+  const TrialResult kept = run_trial(with_log, {.surgeon = &surgeon, .patient = &patient});
+  EXPECT_EQ(kept.digest, digest_of(with_log));
+  EXPECT_GT(surgeon.bytes().size(), 10'000U);
+  EXPECT_GT(kept.records, 2U * 4000U);
+}
+
+TEST(TrialTest, ABlackoutIsSurvivedAndThePedalEngagesAgain) {
+  const TrialResult result = run_trial(scenario("blackout"));
+  EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Completed);
+  EXPECT_LE(result.metrics.force_step_10ms, 0.5);
+  EXPECT_LE(result.metrics.contact_force_max, 3.3);
+}
+
+TEST(TrialTest, TheSurfaceIsFoundWhereverItLies) {
+  const TrialResult result = run_trial(scenario(
+      "metro",
+      {"patient.simulated_phantom.surface_offset_mm=1.7", "surgeon.hand.surface_offset_mm=1.7"}));
+  ASSERT_GE(result.depths.size(), 8U);
+  for (const DepthEstimate& estimate : result.depths) {
+    EXPECT_NEAR(estimate.surface, 0.0017, 0.0001);
+  }
+}
+
+}  // namespace
+}  // namespace palp::lab
