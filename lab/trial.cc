@@ -108,6 +108,7 @@ class Witness {
                                tissue.position,
                                tissue.velocity,
                                tissue.contact_force,
+                               tissue.noisy_force,
                                tissue.tissue_energy}) {
       digest.add(state);
     }

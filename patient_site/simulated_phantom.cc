@@ -56,12 +56,12 @@ void SimulatedPhantom::halt() noexcept { target_.position = position_; }
 
 std::optional<ForceSample> SimulatedPhantom::sample(TimePoint now) noexcept {
   advance(now);
-  double force = sensed_force_;
+  noisy_force_ = sensed_force_;
   if (config_.force_noise > 0) {
-    force += config_.force_noise * random_normal(config_.seed, kForceNoiseStream, steps_);
+    noisy_force_ += config_.force_noise * random_normal(config_.seed, kForceNoiseStream, steps_);
   }
   return ForceSample{
-      .sampled_at = now, .force = rounded(force, config_.force_quantum), .saturated = false};
+      .sampled_at = now, .force = rounded(noisy_force_, config_.force_quantum), .saturated = false};
 }
 
 void SimulatedPhantom::advance(TimePoint now) noexcept {
@@ -102,6 +102,7 @@ PhantomTruth SimulatedPhantom::truth() const noexcept {
           .velocity = velocity_,
           .surface = surface_,
           .contact_force = contact_force_,
+          .noisy_force = noisy_force_,
           .tissue_energy = tissue_energy_};
 }
 

@@ -32,6 +32,7 @@ struct PhantomTruth {
   double velocity{};       ///< [m/s]
   double surface{};        ///< [m], where the surface is now (breathing)
   double contact_force{};  ///< [N]
+  double noisy_force{};    ///< [N], the transducer's last reading before its rounding
   double tissue_energy{};  ///< [J], integral of F_c dx_s since the start
 };
 
@@ -70,6 +71,7 @@ class SimulatedPhantom final : public Stage, public ForceSensor {
   double lateral_{};        ///< [m]
   double surface_{};        ///< [m]
   double contact_force_{};  ///< [N]
+  double noisy_force_{};    ///< [N], the last reading before its rounding
   double sensed_force_{};   ///< [N], behind the transducer's pole
   double tissue_energy_{};  ///< [J]
 };
