@@ -80,4 +80,17 @@ std::string status_line(const SurgeonStatus& status) {
          progress_text(status.script);
 }
 
+std::optional<std::string> delay_advice(const SurgeonStatus& status,
+                                        Duration round_trip_max,
+                                        bool engagement_forced) {
+  const link::LinkHealth& link = status.link;
+  if (link.state != LinkState::Live || link.round_trip <= round_trip_max) return std::nullopt;
+  return number("the round trip is ", milliseconds(link.round_trip), 1, " ms: ") +
+         number("above ", milliseconds(round_trip_max), 0, " ms ") +
+         "coupling direct is not stable, tissue feels too soft or too stiff and a light hand is "
+         "shaken; it " +
+         (engagement_forced ? "engages here because --force-engage was given"
+                            : "does not engage here unless --force-engage is given");
+}
+
 }  // namespace palp::surgeon

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "surgeon_site/surgeon_status.h"
@@ -9,5 +10,10 @@ namespace palp::surgeon {
 /// The site in one line for a terminal, without newline: state and its cue, round trip, loss,
 /// force, depth, progress. Pure. Thread: the display's; allocates.
 [[nodiscard]] std::string status_line(const SurgeonStatus& status);
+
+/// What coupling direct does at the present round trip, if that is above `round_trip_max`.
+[[nodiscard]] std::optional<std::string> delay_advice(const SurgeonStatus& status,
+                                                      Duration round_trip_max,
+                                                      bool engagement_forced);
 
 }  // namespace palp::surgeon

@@ -37,16 +37,6 @@ ForceGateConfig make_gate(const proto::config::ForceGate& message) {
   return gate;
 }
 
-SupervisorConfig make_supervisor(const proto::config::Engagement& message,
-                                 const std::string& coupling) {
-  SupervisorConfig supervisor;
-  if (coupling == "direct" && !message.forced()) {
-    supervisor.round_trip_max_to_engage =
-        settings::from_milliseconds(message.direct_round_trip_max_ms());
-  }
-  return supervisor;
-}
-
 }  // namespace
 
 Result<Settings> make_settings(const proto::config::SurgeonConfig& message) {
@@ -62,7 +52,12 @@ Result<Settings> make_settings(const proto::config::SurgeonConfig& message) {
   made.agreement = settings::agreement_hash(message.coupling(), made.loop.period);
   made.link = settings::make_link(message.link(), made.loop.period);
   made.node.period = made.loop.period;
-  made.node.supervisor = make_supervisor(message.engagement(), coupling->name);
+  made.direct_round_trip_max =
+      settings::from_milliseconds(message.engagement().direct_round_trip_max_ms());
+  made.engagement_forced = message.engagement().forced();
+  if (coupling->name == "direct" && !made.engagement_forced) {
+    made.node.supervisor.round_trip_max_to_engage = made.direct_round_trip_max;
+  }
   made.node.gate = make_gate(message.force_gate());
   made.master = message.hand().master();
   made.hand = *hand;

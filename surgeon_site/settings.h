@@ -25,7 +25,10 @@ struct Settings {
   coupling::CouplingConfig coupling;
   std::uint64_t agreement{};  ///< both sites must have the same
   link::LinkConfig link;
-  SurgeonConfig node;  ///< `direct` does not engage above a round trip of 20 ms, unless forced
+  SurgeonConfig node;
+  /// Coupling direct is not meant for longer ones, and engages there only if forced.
+  Duration direct_round_trip_max{std::chrono::milliseconds{20}};
+  bool engagement_forced{};
   std::string master{"script:standard"};
   SimulatedHandConfig hand;
   settings::LoopSettings loop;

@@ -47,6 +47,18 @@ std::uint16_t Endpoint::port() const noexcept {
   return 0;
 }
 
+bool Endpoint::loopback() const noexcept {
+  if (family() == AF_INET) {
+    const auto& ipv4 = reinterpret_cast<const sockaddr_in&>(storage_);
+    return ntohl(ipv4.sin_addr.s_addr) >> IN_CLASSA_NSHIFT == IN_LOOPBACKNET;
+  }
+  if (family() == AF_INET6) {
+    const auto& ipv6 = reinterpret_cast<const sockaddr_in6&>(storage_);
+    return std::memcmp(&ipv6.sin6_addr, &in6addr_loopback, sizeof in6addr_loopback) == 0;
+  }
+  return false;
+}
+
 std::string Endpoint::to_string() const {
   if (!valid()) {
     return "no address";

@@ -24,6 +24,8 @@ class Endpoint {
   [[nodiscard]] int family() const noexcept { return address()->sa_family; }
   [[nodiscard]] std::uint16_t port() const noexcept;
   [[nodiscard]] bool valid() const noexcept { return size_ != 0; }
+  /// 127.0.0.0/8 or ::1: nothing leaves this machine.
+  [[nodiscard]] bool loopback() const noexcept;
   /// `127.0.0.1:9000`, `[::1]:9000`.
   [[nodiscard]] std::string to_string() const;
   /// The same address and port; flow labels do not count.

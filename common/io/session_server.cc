@@ -306,6 +306,9 @@ Result<std::unique_ptr<link::Transport>> SessionServer::Io::way_to(const Endpoin
       early_.push_back({stranger->from, {buffer_.begin(), buffer_.begin() + size}});
     }
   }
+  if (config_.wrap_transport) {
+    return config_.wrap_transport(std::move(*socket));
+  }
   return std::move(*socket);
 }
 

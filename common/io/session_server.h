@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,14 +11,20 @@
 #include "common/io/handover_desk.h"
 #include "common/io/udp_socket.h"
 #include "common/link/session.h"
+#include "common/link/transport.h"
 
 namespace palp::io {
+
+/// Puts something between a connected socket and the link, for good; called on the io thread.
+using TransportWrap =
+    std::function<std::unique_ptr<link::Transport>(std::unique_ptr<link::Transport>)>;
 
 struct SessionServerConfig {
   link::SessionConfig session;
   HostAndPort address;  ///< patient: where to listen, port 0: any; surgeon: the patient site
   UdpSocketConfig socket;
-  int priority{};  ///< SCHED_FIFO of the io thread, below rt's; 0: leave as it is
+  TransportWrap wrap_transport;  ///< empty: the link gets the socket itself
+  int priority{};                ///< SCHED_FIFO of the io thread, below rt's; 0: leave as it is
 };
 
 /// What people are told of sessions.

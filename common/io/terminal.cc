@@ -7,6 +7,7 @@
 
 #include <poll.h>
 #include <pthread.h>
+#include <sys/ioctl.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
@@ -97,5 +98,10 @@ std::optional<StopCause> Terminal::wait_for_stop(Duration span) {
 }
 
 bool Terminal::output_is_terminal() noexcept { return isatty(STDOUT_FILENO) == 1; }
+
+std::size_t Terminal::output_columns() noexcept {
+  winsize size{};
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
 
 }  // namespace palp::io

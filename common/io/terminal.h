@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -29,6 +30,8 @@ class Terminal {
   [[nodiscard]] std::optional<StopCause> wait_for_stop(Duration span);
   /// Whether standard output is one (and a line may be written over).
   [[nodiscard]] static bool output_is_terminal() noexcept;
+  /// How wide it is now; 0: unknown, or standard output is none.
+  [[nodiscard]] static std::size_t output_columns() noexcept;
   [[nodiscard]] bool reads_keys() const noexcept { return keys_; }
 
  private:

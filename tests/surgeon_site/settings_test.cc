@@ -22,6 +22,8 @@ std::string text_of(const Settings& settings) {
       .add("retract_span", settings.node.supervisor.retract_span)
       .add("follow_within", settings.node.supervisor.follow_within)
       .add("round_trip_max_to_engage", settings.node.supervisor.round_trip_max_to_engage)
+      .add("direct_round_trip_max", settings.direct_round_trip_max)
+      .add("engagement_forced", settings.engagement_forced)
       .add("gate.force_max", settings.node.gate.force_max)
       .add("gate.force_continuous", settings.node.gate.force_continuous)
       .add("gate.thermal_time", settings.node.gate.thermal_time)
@@ -62,7 +64,7 @@ Settings settings_with(const std::vector<std::string>& assignments) {
 
 TEST(SurgeonSettingsTest, AnEmptyDocumentGivesTheDefaultsOfTheParts) {
   Settings defaults;
-  defaults.node.supervisor.round_trip_max_to_engage = std::chrono::milliseconds{20};
+  defaults.node.supervisor.round_trip_max_to_engage = defaults.direct_round_trip_max;
   EXPECT_EQ(text_of(settings_with({})), text_of(defaults));
 }
 

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/core/time.h"
+#include "common/link/telegram.h"
+#include "common/site_program/ending.h"
+
+namespace palp::site_program {
+
+struct PeerWatchConfig {
+  std::string peer;                             ///< as people know it: "127.0.0.1:9000"
+  Duration patience{std::chrono::seconds{30}};  ///< without a working link
+  Duration round_trip_max{std::chrono::milliseconds{2500}};  ///< above it no link comes about
+};
+
+/// When to give up on the peer: no link worked for too long. Told the time. Thread: main.
+class PeerWatch {
+ public:
+  PeerWatch(const PeerWatchConfig& config, TimePoint began_at)
+      : config_{config}, worked_at_{began_at} {}
+
+  /// nullopt: go on.
+  [[nodiscard]] std::optional<Ending> judge(const link::LinkHealth& link, TimePoint now);
+
+ private:
+  PeerWatchConfig config_;
+  TimePoint worked_at_;  ///< last, or since when one is waited for
+  bool ever_{};
+};
+
+}  // namespace palp::site_program

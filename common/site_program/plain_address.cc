@@ -1,0 +1,38 @@
+#include "common/site_program/plain_address.h"
+
+namespace palp::site_program {
+
+tl::expected<io::HostAndPort, Ending> plain_address(const std::string& flag,
+                                                    const std::string& text,
+                                                    bool insecure,
+                                                    std::uint16_t port_min) {
+  if (text.empty()) {
+    return tl::unexpected{bad_input(flag + " is missing, an address such as 127.0.0.1:9000")};
+  }
+  const Result<io::HostAndPort> place = io::parse_host_and_port(text);
+  if (!place) {
+    return tl::unexpected{bad_input(flag + ": " + place.error().text)};
+  }
+  if (place->port < port_min) {
+    return tl::unexpected{bad_input(flag + " " + text + " has the port 0; expected " +
+                                    std::to_string(port_min) + " to 65535")};
+  }
+  if (!insecure) {
+    return tl::unexpected{
+        bad_input("datagrams are neither encrypted nor authenticated yet: --insecure permits that, "
+                  "on loopback addresses only")};
+  }
+  const Result<io::Endpoint> found = io::resolve(*place);
+  if (!found) {
+    return tl::unexpected{cannot_start(flag + ": " + found.error().text)};
+  }
+  if (!found->loopback()) {
+    return tl::unexpected{
+        bad_input(flag + " " + text +
+                  " is not a loopback address, and --insecure is refused anywhere else: everybody "
+                  "on the way could move the stage")};
+  }
+  return *place;
+}
+
+}  // namespace palp::site_program

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/config/exit_code.h"
+#include "common/io/endpoint.h"
+#include "common/site_program/ending.h"
+
+namespace palp::site_program {
+
+/// Where to listen or whom to call with datagrams that are neither encrypted nor authenticated:
+/// only as --insecure, and only within this machine. `flag` is what the sentence calls the address.
+/// `port_min`: 1 where one calls. May ask the resolver.
+[[nodiscard]] tl::expected<io::HostAndPort, Ending> plain_address(const std::string& flag,
+                                                                  const std::string& text,
+                                                                  bool insecure,
+                                                                  std::uint16_t port_min);
+
+}  // namespace palp::site_program

@@ -1,0 +1,74 @@
+#include "common/site_program/runner.h"
+
+#include <utility>
+
+namespace palp::site_program {
+namespace {
+
+/// Of the io thread, below rt, which it must never keep waiting.
+int io_priority(int rt_priority) noexcept { return rt_priority > 10 ? rt_priority - 10 : 0; }
+
+}  // namespace
+
+Runner::Runner(const RunnerConfig& config,
+               link::Link& link,
+               std::function<void(TimePoint now)> tick)
+    : loop_{config.loop} {
+  io::SessionServerConfig server;
+  server.session = config.session;
+  server.address = config.address;
+  server.wrap_transport = config.wrap_transport;
+  server.priority = io_priority(loop_.priority);
+  server_ = std::make_unique<io::SessionServer>(server, desk_);
+  const io::LoopConfig loop{.period = loop_.period,
+                            .spin = loop_.spin,
+                            .priority = loop_.priority,
+                            .lock_memory = loop_.lock_memory};
+  rt_ = std::make_unique<io::PeriodicThread>(
+      "palp-rt", loop, [this, &link, tick = std::move(tick)](TimePoint now) {
+        desk_.serve(link, now);
+        tick(now);
+      });
+}
+
+Runner::~Runner() {
+  rt_.reset();
+  server_.reset();
+}
+
+std::vector<std::string> Runner::shortcomings() const {
+  const io::RealtimeGrant& grant = rt_->grant();
+  std::vector<std::string> sentences;
+  if (grant.priority < loop_.priority) sentences.push_back(grant.scheduling);
+  if (loop_.lock_memory && !grant.memory_locked) sentences.push_back(grant.memory);
+  return sentences;
+}
+
+std::optional<std::string> Runner::tell_news(StatusLine& line) {
+  using Kind = io::SessionNews::Kind;
+  std::optional<std::string> hopeless;
+  while (const auto news = server_->news()) {
+    if (news->kind == Kind::Established) ++sessions_;
+    if (news->final) {
+      hopeless = news->sentence;
+    } else if (news->kind == Kind::Refused) {
+      line.warn(news->sentence);
+    } else {
+      line.info(news->sentence);
+    }
+  }
+  return hopeless;
+}
+
+void Runner::stop(const std::string& why) {
+  server_->close(why);
+  rt_->stop();
+}
+
+void Runner::account(SiteReport& report) {
+  report.loop = rt_->stop();
+  report.noise = server_->noise();
+  report.sessions = sessions_;
+}
+
+}  // namespace palp::site_program

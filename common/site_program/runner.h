@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/io/handover_desk.h"
+#include "common/io/periodic_thread.h"
+#include "common/io/session_server.h"
+#include "common/link/link.h"
+#include "common/settings/site_settings.h"
+#include "common/site_program/site_report.h"
+#include "common/site_program/status_line.h"
+
+namespace palp::site_program {
+
+struct RunnerConfig {
+  link::SessionConfig session;
+  io::HostAndPort address;
+  io::TransportWrap wrap_transport;
+  settings::LoopSettings loop;
+};
+
+/// Runs a site in real time: the threads rt and io, and what lies between them. Make it last: all
+/// that `tick` refers to, and the link, must outlive it. Thread: its maker's.
+class Runner {
+ public:
+  /// Listens or calls, and ticks. @throws std::runtime_error with one sentence.
+  Runner(const RunnerConfig& config, link::Link& link, std::function<void(TimePoint now)> tick);
+  ~Runner();
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
+
+  [[nodiscard]] std::string local() const { return server_->local().to_string(); }
+  /// What of real time was asked for and not granted, in sentences.
+  [[nodiscard]] std::vector<std::string> shortcomings() const;
+  /// Tells people of sessions. @returns the sentence if there will never be one.
+  std::optional<std::string> tell_news(StatusLine& line);
+  [[nodiscard]] std::uint64_t sessions() const noexcept { return sessions_; }
+  /// Says goodbye to the peer, then ends both threads. Idempotent.
+  void stop(const std::string& why);
+  /// After stop(): loop and sessions.
+  void account(SiteReport& report);
+
+ private:
+  settings::LoopSettings loop_;
+  io::HandoverDesk desk_;
+  std::unique_ptr<io::SessionServer> server_;
+  std::unique_ptr<io::PeriodicThread> rt_;
+  std::uint64_t sessions_{};
+};
+
+}  // namespace palp::site_program

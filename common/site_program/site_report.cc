@@ -1,0 +1,112 @@
+#include "common/site_program/site_report.h"
+
+#include <algorithm>
+#include <array>
+
+#include <nlohmann/json.hpp>
+
+#include "common/config/report.h"
+#include "common/io/diagnostics.h"
+
+namespace palp::site_program {
+namespace {
+
+using nlohmann::ordered_json;
+
+double microseconds(Duration span) { return static_cast<double>(span.count()) * 1e-3; }
+
+ordered_json milliseconds(const std::optional<Duration>& span) {
+  if (!span) return nullptr;
+  return static_cast<double>(span->count()) * 1e-6;
+}
+
+constexpr std::array<const char*, std::variant_size_v<record::Record>> kRecordNames{
+    "tick", "arrived", "link", "note", "transition", "contact", "depth_estimate", "depth_arrived"};
+
+ordered_json records_json(const RecordAccount& account) {
+  ordered_json json;
+  for (std::size_t type = 0; type < kRecordNames.size(); ++type) {
+    json[kRecordNames[type]] = account.counts.by_type[type];
+  }
+  return json;
+}
+
+/// On the link and beside it, in one: datagrams that were of no use to this site.
+ordered_json rejected_json(const link::LinkHealth& link, const link::SessionCounters& noise) {
+  return {{"malformed", link.malformed + noise.malformed},
+          {"foreign", link.foreign + noise.foreign},
+          {"replayed", link.replayed},
+          {"too_old", link.too_old},
+          {"forged", link.forged}};
+}
+
+}  // namespace
+
+void RoundTrips::add(const link::LinkHealth& link) noexcept {
+  if (link.state != LinkState::Live || link.round_trip <= Duration{0}) return;
+  all_.add(link.round_trip);
+  least_ = std::min(least_.value_or(Duration::max()), link.round_trip_min);
+}
+
+std::optional<Duration> RoundTrips::median() const noexcept {
+  if (all_.total() == 0) return std::nullopt;
+  return all_.quantile(0.5);
+}
+
+std::string to_json(const SiteReport& report) {
+  const io::LoopStats& loop = report.loop;
+  const link::LinkHealth& link = report.link;
+  ordered_json json;
+  json["schema"] = "palp.site/1";
+  json["site"] = report.site;
+  json["outcome"] = report.ending.outcome;
+  json["reason"] = report.ending.reason;
+  json["exit_code"] = config::exit_status(report.ending.code);
+  json["seed"] = report.seed;
+  json["coupling"] = report.coupling;
+  json["session_file"] =
+      report.session_file.empty() ? ordered_json(nullptr) : ordered_json(report.session_file);
+  json["ticks"] = loop.ticks;
+  json["missed_ticks"] = loop.missed;
+  json["lateness_p50_us"] = microseconds(loop.lateness_p50);
+  json["lateness_p999_us"] = microseconds(loop.lateness_p999);
+  json["lateness_max_us"] = microseconds(loop.lateness_max);
+  json["realtime"] = {{"priority", loop.grant.priority},
+                      {"memory_locked", loop.grant.memory_locked}};
+  json["records_written"] = report.records.counts.records();
+  json["records_dropped"] = report.records.dropped;
+  json["records"] = records_json(report.records);
+  json["tick_views"] = report.records.counts.views;
+  json["messages"] = report.records.messages;
+  json["sent"] = link.sent;
+  json["accepted"] = link.accepted;
+  json["late"] = link.late;
+  json["lost"] = link.lost;
+  json["repaired"] = link.repaired;
+  json["reordered"] = link.reordered;
+  json["stale"] = link.stale;
+  json["old_epoch"] = link.old_epoch;
+  json["unsent"] = link.unsent;
+  json["rejected"] = rejected_json(link, report.noise);
+  json["round_trip_p50_ms"] = milliseconds(report.round_trips.median());
+  json["round_trip_min_ms"] = milliseconds(report.round_trips.least());
+  json["sessions"] = report.sessions;
+  if (report.estimates) json["estimates"] = *report.estimates;
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+int finish(const SiteReport& report, const std::string& path) {
+  if (report.ending.code != config::ExitCode::Done) {
+    io::error(report.ending.reason.empty() ? report.ending.outcome : report.ending.reason);
+  }
+  config::ExitCode code = report.ending.code;
+  if (!path.empty()) {
+    if (const auto written = config::write_whole_file(path, to_json(report)); !written) {
+      io::error("--report: " + written.error().text);
+      if (code == config::ExitCode::Done) code = config::ExitCode::CannotOpen;
+    }
+  }
+  return config::exit_status(code);
+}
+
+}  // namespace palp::site_program

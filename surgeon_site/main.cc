@@ -1,0 +1,246 @@
+// palp-surgeon: the surgeon's site in real time.
+#include <chrono>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "common/config/command_line.h"
+#include "common/config/document.h"
+#include "common/config/number.h"
+#include "common/io/diagnostics.h"
+#include "common/io/steady_clock.h"
+#include "common/io/terminal.h"
+#include "common/link/codec_protobuf.h"
+#include "common/site_program/build_info.h"
+#include "common/site_program/ending.h"
+#include "common/site_program/impaired_reception.h"
+#include "common/site_program/peer_watch.h"
+#include "common/site_program/plain_address.h"
+#include "common/site_program/recording.h"
+#include "common/site_program/runner.h"
+#include "common/site_program/session_info.h"
+#include "common/site_program/site_report.h"
+#include "common/site_program/status_line.h"
+#include "surgeon_site/display.h"
+#include "surgeon_site/script_reader.h"
+#include "surgeon_site/settings.h"
+#include "surgeon_site/simulated_hand.h"
+#include "surgeon_site/surgeon_node.h"
+
+namespace palp::surgeon {
+namespace {
+
+using config::ExitCode;
+using site_program::bad_input;
+using site_program::Ending;
+
+constexpr Duration kDisplayPeriod = std::chrono::milliseconds{100};
+
+void declare_flags(config::CommandLine& line, config::Document& document, std::string& report) {
+  line.text("--report", report, "FILE", "JSON report, written also when the run fails");
+  line.settings(document);
+  line.knob("--peer", "peer");
+  line.knob("--coupling", "coupling.name");
+  line.knob("--master", "hand.master");
+  line.knob("--grip", "hand.grip");
+  line.knob("--surface-offset-mm", "hand.surface_offset_mm");
+  line.knob("--session-file", "record.file");
+  line.knob("--duration-s", "duration_s");
+  line.knob("--delay-ms", "impairment.delay_ms");
+  line.knob("--jitter-ms", "impairment.jitter_ms");
+  line.knob("--loss", "impairment.loss");
+  line.knob("--impair", "impairment.spec");
+  line.knob("--seed", "seed");
+  line.knob("--insecure", "link.insecure");
+  line.knob("--force-engage", "engagement.forced");
+}
+
+std::optional<Ending> end_of_script(const SurgeonStatus& status) {
+  if (!status.script.finished) return std::nullopt;
+  const std::string outcome{to_string(status.script.outcome)};
+  switch (status.script.outcome) {
+    case ScriptOutcome::None:
+    case ScriptOutcome::Completed:
+      return Ending{ExitCode::Done, outcome, ""};
+    case ScriptOutcome::Interrupted:
+      return Ending{ExitCode::CutShort, outcome, "the link was lost and the script ends there"};
+    case ScriptOutcome::Refused:
+      return Ending{ExitCode::CutShort,
+                    outcome,
+                    "the site would not engage: " + std::string{record::to_string(status.refused)}};
+    case ScriptOutcome::Stopped:
+      return Ending{ExitCode::CutShort,
+                    outcome,
+                    "the site was stopped: " + std::string{record::to_string(status.reason)}};
+  }
+  return std::nullopt;
+}
+
+/// What the parts are made of, all checked.
+struct Plan {
+  Settings settings;
+  GestureScript script;
+  coupling::SurgeonCoupling law;
+  site_program::RunnerConfig runner;
+  record::SessionInfo info;
+};
+
+tl::expected<Plan, Ending> make_plan(const config::Document& document) {
+  const auto bad = [](const Error& error) { return tl::unexpected{bad_input(error.text)}; };
+  auto settings = make_settings(document);
+  if (!settings) return bad(settings.error());
+  const auto address = site_program::plain_address("--peer", settings->peer, settings->insecure, 1);
+  if (!address) return tl::unexpected{address.error()};
+  auto script = load_script(settings->master, {settings->hand.plant.grip.stiffness, {}});
+  if (!script) return bad(script.error());
+  auto law = coupling::make_surgeon_coupling(settings->coupling);
+  if (!law) return bad(law.error());
+  auto wrap = site_program::impaired_reception(
+      settings->impairment, netem::Direction::Down, settings->seed, io::SteadyClock{}.now());
+  if (!wrap) return bad(wrap.error());
+  site_program::RunnerConfig runner;
+  runner.session = {.role = link::Role::Surgeon,
+                    .settings_hash = settings->agreement,
+                    .coupling = settings->coupling.name,
+                    .git = std::string{site_program::git_commit()}};
+  runner.address = *address;
+  runner.wrap_transport = std::move(*wrap);
+  runner.loop = settings->loop;
+  auto info =
+      site_program::session_info(link::Role::Surgeon, "palp-surgeon", settings->seed, document);
+  return Plan{std::move(*settings),
+              std::move(*script),
+              std::move(*law),
+              std::move(runner),
+              std::move(info)};
+}
+
+/// A surgeon site in real time, its parts in the order in which they need each other.
+/// Thread: main.
+class Program {
+ public:
+  explicit Program(Plan plan)
+      : settings_{std::move(plan.settings)},
+        device_{settings_.hand, std::move(plan.script)},
+        law_{std::move(plan.law)},
+        link_{settings_.link, std::make_unique<link::ProtobufCodec>()},
+        recording_{settings_.record, std::move(plan.info), 1},
+        node_{settings_.node, {device_, law_, link_, recording_.recorder(0)}},
+        began_at_{clock_.now()},
+        watch_{{.peer = settings_.peer,
+                .patience = settings_.link.closed_after,
+                .round_trip_max = settings_.link.round_trip_max},
+               began_at_},
+        runner_{plan.runner, link_, [this](TimePoint now) { node_.tick(now); }} {}
+
+  /// Shows how it goes until there is a reason to end.
+  Ending run(io::Terminal& terminal);
+  /// Says goodbye and ends all threads; then the account is complete.
+  void stop(site_program::SiteReport& report);
+
+ private:
+  [[nodiscard]] std::optional<Ending> look(TimePoint now);
+
+  const Settings settings_;
+  SimulatedHand device_;
+  coupling::SurgeonCoupling law_;
+  link::Link link_;
+  site_program::Recording recording_;
+  SurgeonNode node_;
+  io::SteadyClock clock_;
+  TimePoint began_at_;
+  site_program::PeerWatch watch_;
+  site_program::StatusLine line_;
+  site_program::RoundTrips round_trips_;
+  bool advised_{};
+  site_program::Runner runner_;
+};
+
+Ending Program::run(io::Terminal& terminal) {
+  for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
+  line_.info("calling " + settings_.peer + (terminal.reads_keys() ? "; any key stops" : ""));
+  while (true) {
+    const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
+    if (const auto ending = look(clock_.now())) return *ending;
+    if (stop) return {ExitCode::CutShort, "aborted", "aborted by the user"};
+  }
+}
+
+std::optional<Ending> Program::look(TimePoint now) {
+  const SurgeonStatus& status = node_.status().get();
+  round_trips_.add(status.link);
+  const std::optional<std::string> hopeless = runner_.tell_news(line_);
+  recording_.tell_news(line_);
+  if (!advised_ && settings_.coupling.name == "direct") {
+    const auto advice =
+        delay_advice(status, settings_.direct_round_trip_max, settings_.engagement_forced);
+    if (advice) line_.warn(*advice);
+    advised_ = advice.has_value();
+  }
+  line_.show(status_line(status), now);
+  if (hopeless) return Ending{ExitCode::CannotOpen, "refused", *hopeless};
+  if (const auto ending = end_of_script(status)) return ending;
+  if (settings_.duration > Duration{0} && now - began_at_ >= settings_.duration) {
+    return Ending{ExitCode::Done, "duration reached", ""};
+  }
+  return watch_.judge(status.link, now);
+}
+
+void Program::stop(site_program::SiteReport& report) {
+  runner_.stop(report.ending.reason.empty()
+                   ? "the surgeon site has ended"
+                   : "the surgeon site has ended: " + report.ending.reason);
+  const SurgeonStatus& status = node_.status().get();
+  line_.show(status_line(status), clock_.now());
+  report.records = recording_.stop();
+  recording_.tell_news(line_);
+  line_.end();
+  report.link = status.link;
+  report.round_trips = round_trips_;
+  runner_.account(report);
+}
+
+Ending run(const config::Document& document, site_program::SiteReport& report) {
+  auto plan = make_plan(document);
+  if (!plan) return plan.error();
+  report.seed = plan->settings.seed;
+  report.coupling = plan->settings.coupling.name;
+  report.session_file = plan->settings.record.file;
+  io::Terminal terminal;
+  io::warn("datagrams are neither encrypted nor authenticated: they stay on this machine");
+  Program program{std::move(*plan)};
+  report.ending = program.run(terminal);
+  program.stop(report);
+  return report.ending;
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  config::Document document = config::surgeon_document();
+  config::CommandLine line{"palp-surgeon", "The surgeon's site: a haptic device, a hand, a link."};
+  std::string report_file;
+  declare_flags(line, document, report_file);
+  site_program::SiteReport report;
+  report.site = "surgeon";
+  if (const auto ending = line.parse(argc, argv)) {
+    if (ending->code == ExitCode::Done || report_file.empty()) return config::leave(*ending);
+    report.ending = {ending->code, "bad input", ending->text};
+    return site_program::finish(report, report_file);
+  }
+  try {
+    report.ending = run(document, report);
+  } catch (const std::exception& error) {
+    report.ending = site_program::cannot_start(error.what());
+  }
+  return site_program::finish(report, report_file);
+}
+
+}  // namespace palp::surgeon
+
+int main(int argc, char** argv) {
+  palp::io::start_diagnostics("palp-surgeon");
+  return palp::surgeon::run(argc, argv);
+}
