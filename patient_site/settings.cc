@@ -55,6 +55,7 @@ SimulatedPhantomConfig make_simulation(const proto::config::SimulatedPhantom& me
   simulation.force_noise = from_milli(message.sensor_noise_mn());
   simulation.force_quantum = from_milli(message.sensor_quantum_mn());
   simulation.seed = seed;
+  simulation.start_position += std::min(0.0, simulation.surface_offset);  // never in the tissue
   return simulation;
 }
 

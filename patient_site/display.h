@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "patient_site/patient_status.h"
+
+namespace palp::patient {
+
+/// The site in one line for a terminal, without newline: state and its cue, round trip, loss, tip,
+/// contact force, depth. Pure. Thread: the display's; allocates.
+[[nodiscard]] std::string status_line(const PatientStatus& status);
+
+}  // namespace palp::patient

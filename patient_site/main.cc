@@ -1,0 +1,269 @@
+// palp-patient: the patient's site in real time.
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "common/config/command_line.h"
+#include "common/config/document.h"
+#include "common/config/number.h"
+#include "common/core/conventions.h"
+#include "common/io/background_loop.h"
+#include "common/io/diagnostics.h"
+#include "common/io/steady_clock.h"
+#include "common/io/terminal.h"
+#include "common/link/codec_protobuf.h"
+#include "common/site_program/build_info.h"
+#include "common/site_program/ending.h"
+#include "common/site_program/impaired_reception.h"
+#include "common/site_program/plain_address.h"
+#include "common/site_program/recording.h"
+#include "common/site_program/runner.h"
+#include "common/site_program/session_info.h"
+#include "common/site_program/site_report.h"
+#include "common/site_program/status_line.h"
+#include "patient_site/display.h"
+#include "patient_site/estimator_worker.h"
+#include "patient_site/patient_node.h"
+#include "patient_site/phantom.h"
+#include "patient_site/settings.h"
+#include "patient_site/simulated_phantom.h"
+
+namespace palp::patient {
+namespace {
+
+using config::ExitCode;
+using site_program::bad_input;
+using site_program::Ending;
+
+constexpr Duration kDisplayPeriod = std::chrono::milliseconds{100};
+constexpr Duration kEstimatorPause = std::chrono::milliseconds{5};
+constexpr std::size_t kContactSamples = 8192;  ///< 8 s: what a slow fit may take and far more
+
+void declare_flags(config::CommandLine& line, config::Document& document, std::string& report) {
+  line.text("--report", report, "FILE", "JSON report, written also when the run fails");
+  line.settings(document);
+  line.knob("--listen", "listen");
+  line.knob("--coupling", "coupling.name");
+  line.knob("--stage", "stage");
+  line.knob("--force", "force");
+  line.knob("--phantom", "simulated_phantom.phantom");
+  line.knob("--surface-offset-mm", "simulated_phantom.surface_offset_mm");
+  line.knob("--session-file", "record.file");
+  line.knob("--duration-s", "duration_s");
+  line.knob("--delay-ms", "impairment.delay_ms");
+  line.knob("--jitter-ms", "impairment.jitter_ms");
+  line.knob("--loss", "impairment.loss");
+  line.knob("--impair", "impairment.spec");
+  line.knob("--seed", "seed");
+  line.knob("--insecure", "link.insecure");
+}
+
+/// What the parts are made of, all checked.
+struct Plan {
+  Settings settings;
+  Phantom phantom;
+  coupling::PatientCoupling law;
+  site_program::RunnerConfig runner;
+  record::SessionInfo info;
+};
+
+/// The truth about the tissue, for whoever judges the session afterwards.
+void describe_tissue(const Phantom& phantom,
+                     double surface_offset,  // [m]
+                     record::SessionInfo& info) {
+  const auto millimetres = [](double length) { return config::number_text(length / kMillimetre); };
+  const auto optional_text = [](const std::optional<double>& value, double unit) {
+    return value ? config::number_text(*value / unit) : std::string{};
+  };
+  info.metadata.emplace_back("surface_offset_mm", millimetres(surface_offset));
+  info.metadata.emplace_back("phantom_name", phantom.name);
+  info.metadata.emplace_back("phantom_depth_mm", optional_text(phantom.depth, kMillimetre));
+  info.metadata.emplace_back("phantom_radius_mm", optional_text(phantom.radius, kMillimetre));
+  info.metadata.emplace_back("phantom_ratio", optional_text(phantom.ratio, 1));
+  info.metadata.emplace_back("phantom_shape", phantom.shape);
+  info.attachments.push_back({"tissue.csv", "text/csv", tissue_csv(phantom)});
+}
+
+tl::expected<Plan, Ending> make_plan(const config::Document& document) {
+  const auto bad = [](const Error& error) { return tl::unexpected{bad_input(error.text)}; };
+  auto settings = make_settings(document);
+  if (!settings) return bad(settings.error());
+  const auto address =
+      site_program::plain_address("--listen", settings->listen, settings->insecure, 0);
+  if (!address) return tl::unexpected{address.error()};
+  auto phantom = make_phantom(settings->phantom);
+  if (!phantom) return bad(phantom.error());
+  auto law = coupling::make_patient_coupling(settings->coupling);
+  if (!law) return bad(law.error());
+  auto wrap = site_program::impaired_reception(
+      settings->impairment, netem::Direction::Up, settings->seed, io::SteadyClock{}.now());
+  if (!wrap) return bad(wrap.error());
+  const SimulatedPhantomConfig& simulation = settings->simulation;
+  settings->node.gate = within_tables(settings->node.gate,
+                                      simulation.surface_offset - simulation.breathing_amplitude,
+                                      phantom->depth_max());
+  site_program::RunnerConfig runner;
+  runner.session = {.role = link::Role::Patient,
+                    .settings_hash = settings->agreement,
+                    .coupling = settings->coupling.name,
+                    .git = std::string{site_program::git_commit()}};
+  runner.address = *address;
+  runner.wrap_transport = std::move(*wrap);
+  runner.loop = settings->loop;
+  auto info =
+      site_program::session_info(link::Role::Patient, "palp-patient", settings->seed, document);
+  describe_tissue(*phantom, simulation.surface_offset, info);
+  return Plan{std::move(*settings),
+              std::move(*phantom),
+              std::move(*law),
+              std::move(runner),
+              std::move(info)};
+}
+
+/// A patient site in real time, its parts in the order in which they need each other.
+/// Thread: main.
+class Program {
+ public:
+  explicit Program(Plan plan)
+      : settings_{std::move(plan.settings)},
+        phantom_{std::move(plan.phantom)},
+        device_{phantom_, settings_.simulation},
+        law_{std::move(plan.law)},
+        link_{settings_.link, std::make_unique<link::ProtobufCodec>()},
+        recording_{settings_.record, std::move(plan.info), 2},
+        worker_{settings_.estimator, {contact_, depth_, recording_.recorder(1)}},
+        node_{settings_.node,
+              {device_, device_, law_, link_, recording_.recorder(0), contact_, depth_}},
+        began_at_{clock_.now()},
+        estimator_{"palp-estimator", kEstimatorPause, [this](TimePoint) { worker_.drain(); }},
+        runner_{plan.runner, link_, [this](TimePoint now) { node_.tick(now); }} {}
+
+  /// Shows how it goes until there is a reason to end.
+  Ending run(io::Terminal& terminal);
+  /// Says goodbye and ends all threads; then the account is complete.
+  void stop(site_program::SiteReport& report);
+
+ private:
+  void look(TimePoint now);
+  [[nodiscard]] Ending told_to_stop();
+
+  const Settings settings_;
+  const Phantom phantom_;
+  SimulatedPhantom device_;
+  coupling::PatientCoupling law_;
+  link::Link link_;
+  site_program::Recording recording_;
+  SpscQueue<ContactSample> contact_{kContactSamples};  ///< writer: rt, reader: estimator
+  Mailbox<DepthEstimate> depth_;                       ///< writer: estimator, reader: rt
+  EstimatorWorker worker_;
+  PatientNode node_;
+  io::SteadyClock clock_;
+  TimePoint began_at_;
+  site_program::StatusLine line_;
+  site_program::RoundTrips round_trips_;
+  io::BackgroundLoop estimator_;
+  site_program::Runner runner_;
+};
+
+Ending Program::run(io::Terminal& terminal) {
+  std::printf("listening on %s\n", runner_.local().c_str());
+  std::fflush(stdout);
+  for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
+  while (true) {
+    const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
+    const TimePoint now = clock_.now();
+    look(now);
+    if (stop) return told_to_stop();
+    if (settings_.duration > Duration{0} && now - began_at_ >= settings_.duration) {
+      return {ExitCode::Done, "duration reached", ""};
+    }
+  }
+}
+
+void Program::look(TimePoint now) {
+  const PatientStatus& status = node_.status().get();
+  round_trips_.add(status.link);
+  runner_.tell_news(line_);
+  recording_.tell_news(line_);
+  line_.show(status_line(status), now);
+}
+
+/// A patient site waits for surgeons until it is told to stop, so that is its normal end; but not
+/// in the middle of a palpation, and not once it has stopped itself.
+Ending Program::told_to_stop() {
+  const PatientStatus& status = node_.status().get();
+  switch (status.state) {
+    case SiteState::Stopped:
+      return {ExitCode::CutShort,
+              "stopped",
+              "the site had stopped itself: " + std::string{record::to_string(status.reason)}};
+    case SiteState::Engaged:
+    case SiteState::Hold:
+      return {ExitCode::CutShort, "aborted", "aborted by the user in the middle of a palpation"};
+    case SiteState::Parked:
+    case SiteState::Clutched:
+    case SiteState::Retract:
+      break;
+  }
+  return {ExitCode::Done, runner_.sessions() > 0 ? "completed" : "no session", ""};
+}
+
+void Program::stop(site_program::SiteReport& report) {
+  runner_.stop("the patient site has ended");
+  estimator_.stop();
+  const PatientStatus& status = node_.status().get();
+  report.records = recording_.stop();
+  recording_.tell_news(line_);
+  line_.show(status_line(status), clock_.now());
+  line_.end();
+  report.link = status.link;
+  report.round_trips = round_trips_;
+  report.estimates = worker_.strokes();
+  runner_.account(report);
+}
+
+Ending run(const config::Document& document, site_program::SiteReport& report) {
+  auto plan = make_plan(document);
+  if (!plan) return plan.error();
+  report.seed = plan->settings.seed;
+  report.coupling = plan->settings.coupling.name;
+  report.session_file = plan->settings.record.file;
+  io::Terminal terminal;
+  io::warn("datagrams are neither encrypted nor authenticated: they stay on this machine");
+  Program program{std::move(*plan)};
+  report.ending = program.run(terminal);
+  program.stop(report);
+  return report.ending;
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  config::Document document = config::patient_document();
+  config::CommandLine line{"palp-patient", "The patient's site: a stage, a force sensor, a link."};
+  std::string report_file;
+  declare_flags(line, document, report_file);
+  site_program::SiteReport report;
+  report.site = "patient";
+  if (const auto ending = line.parse(argc, argv)) {
+    if (ending->code == ExitCode::Done || report_file.empty()) return config::leave(*ending);
+    report.ending = {ending->code, "bad input", ending->text};
+    return site_program::finish(report, report_file);
+  }
+  try {
+    report.ending = run(document, report);
+  } catch (const std::exception& error) {
+    report.ending = site_program::cannot_start(error.what());
+  }
+  return site_program::finish(report, report_file);
+}
+
+}  // namespace palp::patient
+
+int main(int argc, char** argv) {
+  palp::io::start_diagnostics("palp-patient");
+  return palp::patient::run(argc, argv);
+}

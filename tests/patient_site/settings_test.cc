@@ -1,0 +1,143 @@
+#include "patient_site/settings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/config/document.h"
+#include "surgeon_site/settings.h"
+#include "tests/common/settings/knob_walk.h"
+#include "tests/common/settings/settings_text.h"
+
+namespace palp::patient {
+namespace {
+
+using testing::HasSubstr;
+
+void add(settings_test::FieldList& list, const MotionGateConfig& gate) {
+  list.add("gate.travel_min", gate.travel_min)
+      .add("gate.travel_max", gate.travel_max)
+      .add("gate.lateral_max", gate.lateral_max)
+      .add("gate.depth_max", gate.depth_max)
+      .add("gate.speed_max", gate.speed_max)
+      .add("gate.speed_near", gate.speed_near)
+      .add("gate.near_distance", gate.near_distance)
+      .add("gate.speed_resync", gate.speed_resync)
+      .add("gate.resync_distance", gate.resync_distance)
+      .add("gate.acceleration_max", gate.acceleration_max)
+      .add("gate.step_free", gate.step_free)
+      .add("gate.force_limit", gate.force_limit)
+      .add("gate.force_stop", gate.force_stop)
+      .add("gate.retreat_speed", gate.retreat_speed)
+      .add("gate.retract_speed", gate.retract_speed)
+      .add("gate.clearance", gate.clearance)
+      .add("gate.contact_force", gate.contact_force);
+}
+
+void add(settings_test::FieldList& list, const SimulatedPhantomConfig& simulation) {
+  list.add("servo_frequency", simulation.servo_frequency)
+      .add("servo_damping", simulation.servo_damping)
+      .add("acceleration_max", simulation.acceleration_max)
+      .add("speed_max", simulation.speed_max)
+      .add("encoder_step", simulation.encoder_step)
+      .add("start_position", simulation.start_position)
+      .add("start_lateral", simulation.start_lateral)
+      .add("surface_offset", simulation.surface_offset)
+      .add("breathing_amplitude", simulation.breathing_amplitude)
+      .add("breathing_frequency", simulation.breathing_frequency)
+      .add("viscous_factor", simulation.viscous_factor)
+      .add("sensor_cut_off", simulation.sensor_cut_off)
+      .add("force_noise", simulation.force_noise)
+      .add("force_quantum", simulation.force_quantum)
+      .add("simulation.seed", simulation.seed);
+}
+
+std::string text_of(const Settings& settings) {
+  settings_test::FieldList list;
+  list.add("listen", settings.listen).add("insecure", settings.insecure);
+  add(list, settings.coupling);
+  add(list, settings.link);
+  list.add("node.period", settings.node.period)
+      .add("node.sensor_cut_off", settings.node.sensor_cut_off)
+      .add("node.sensor_stale", settings.node.sensor_stale)
+      .add("node.link_status_every", settings.node.link_status_every);
+  add(list, settings.node.gate);
+  list.add("stage", settings.stage)
+      .add("force", settings.force)
+      .add("phantom", settings.phantom)
+      .add("estimator.sensor_cut_off", settings.estimator.sensor_cut_off)
+      .add("estimator.filter_cut_off", settings.estimator.filter_cut_off)
+      .add("estimator.period", settings.estimator.period)
+      .add("estimator.force_quantum", settings.estimator.force_quantum)
+      .add("estimator.fit_range", settings.estimator.fit_range);
+  add(list, settings.simulation);
+  add(list, settings.loop);
+  add(list, settings.impairment);
+  add(list, settings.record);
+  list.add("duration", settings.duration).add("seed", settings.seed);
+  return list.text();
+}
+
+Settings settings_with(const std::vector<std::string>& assignments) {
+  config::Document document = config::patient_document();
+  for (const std::string& assignment : assignments) EXPECT_TRUE(document.set(assignment));
+  EXPECT_TRUE(document.check());
+  return make_settings(document).value();
+}
+
+TEST(PatientSettingsTest, AnEmptyDocumentGivesTheDefaultsOfTheParts) {
+  EXPECT_EQ(text_of(settings_with({})), text_of(Settings{}));
+}
+
+TEST(PatientSettingsTest, EveryKnobIsRead) {
+  const std::string before = text_of(settings_with({}));
+  settings_test::for_each_knob(
+      *proto::config::PatientConfig::descriptor(),
+      "",
+      [&before](const std::string& path, const std::string& value) {
+        config::Document document = config::patient_document();
+        ASSERT_TRUE(document.set(path, value, path)) << path << " = " << value;
+        const auto made = make_settings(document);
+        EXPECT_TRUE(!made || text_of(*made) != before) << "nobody reads " << path;
+      });
+}
+
+TEST(PatientSettingsTest, UnknownDevicesAreErrorsThatListTheKnownOnes) {
+  config::Document document = config::patient_document();
+  ASSERT_TRUE(document.set("stage=robot"));
+  EXPECT_THAT(make_settings(document).error().text,
+              HasSubstr("unknown stage 'robot'; there are: sim"));
+  document = config::patient_document();
+  ASSERT_TRUE(document.set("force=kistler"));
+  EXPECT_THAT(make_settings(document).error().text,
+              HasSubstr("unknown force sensor 'kistler'; there are: sim"));
+}
+
+TEST(PatientSettingsTest, TheEstimatorSharesTheSensorsPole) {
+  const Settings made = settings_with({"estimator.sensor_pole_hz=15", "loop.period_us=500"});
+  EXPECT_EQ(made.estimator.sensor_cut_off, 15);
+  EXPECT_EQ(made.node.sensor_cut_off, 15);
+  EXPECT_EQ(made.estimator.period, 0.5e-3);
+}
+
+TEST(PatientSettingsTest, BothSitesAgreeByDefault) {
+  EXPECT_EQ(settings_with({}).agreement,
+            surgeon::make_settings(config::surgeon_document()).value().agreement);
+}
+
+TEST(PatientSettingsTest, TheStageStartsClearOfTheSurfaceWhereverThatLies) {
+  for (const std::string offset : {"-10", "-3", "0", "4"}) {
+    const auto simulation =
+        settings_with({"simulated_phantom.surface_offset_mm=" + offset}).simulation;
+    EXPECT_LE(simulation.start_position, simulation.surface_offset - 9.99e-3) << offset;
+  }
+}
+
+TEST(PatientSettingsTest, TheTipStopsShortOfTheTablesEnd) {
+  const MotionGateConfig gate = within_tables({}, 1.7e-3, 6e-3);
+  EXPECT_LT(gate.travel_max, 7.7e-3);
+  EXPECT_GT(gate.travel_max, 7.5e-3);
+  EXPECT_EQ(within_tables({}, 0, 1).travel_max, MotionGateConfig{}.travel_max);
+}
+
+}  // namespace
+}  // namespace palp::patient
