@@ -86,6 +86,11 @@ std::optional<std::string> SessionReader::metadata(std::string_view record,
   return entry == found->second.end() ? std::nullopt : std::optional{entry->second};
 }
 
+McapMap SessionReader::metadata(std::string_view record) const {
+  const auto found = metadata_.find(record);
+  return found == metadata_.end() ? McapMap{} : found->second;
+}
+
 std::optional<std::string_view> SessionReader::attachment(std::string_view name) const {
   const auto found = attachments_.find(name);
   return found == attachments_.end() ? std::nullopt : std::optional{found->second};

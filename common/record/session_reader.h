@@ -44,6 +44,8 @@ class SessionReader {
   /// A value of a metadata record ("palp", "program"), or nullopt.
   [[nodiscard]] std::optional<std::string> metadata(std::string_view record,
                                                     std::string_view key) const;
+  /// All of it; empty if there is none.
+  [[nodiscard]] McapMap metadata(std::string_view record) const;
   /// The content, or nullopt; valid as long as the file's bytes.
   [[nodiscard]] std::optional<std::string_view> attachment(std::string_view name) const;
   [[nodiscard]] std::uint64_t unknown() const noexcept { return unknown_; }

@@ -330,5 +330,19 @@ TEST(SessionTest, ValueOutsideItsEnumerationIsMalformedNotTrusted) {
   EXPECT_EQ(verdict("foxglove.Grid", kStateTwo), Verdict::Unknown);
 }
 
+RC_GTEST_PROP(SessionTest, AnyBytesAreDecodedOrRefusedNeverTrusted, ()) {
+  const auto bytes = *rc::gen::arbitrary<std::vector<std::uint8_t>>();
+  SessionDecoder decoder;
+  for (const Role site : {Role::Surgeon, Role::Patient}) {
+    SessionEncoder encoder{site};
+    for (const TopicFormat& format : topics_of(site)) {
+      const auto answer = decoder.decode(format.schema, std::as_bytes(std::span{bytes}), at_ms(5));
+      if (answer.verdict == SessionDecoder::Verdict::Decoded) {
+        RC_ASSERT(encoder.prepare(answer.record, 0)->topic == format.topic);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace palp::record

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace palp::review {
+
+/// The first fault of a session file in one sentence; nullopt: it is whole, closed, and every
+/// message decodes.
+[[nodiscard]] std::optional<std::string> first_fault(std::span<const std::byte> file);
+
+}  // namespace palp::review

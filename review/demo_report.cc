@@ -1,0 +1,218 @@
+#include "review/demo_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "common/record/notes.h"
+#include "common/record/session_encoder.h"
+
+namespace palp::review {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json value(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+Json value(const std::optional<double>& number) { return number ? value(*number) : Json(nullptr); }
+Json value(const std::optional<std::string>& text) { return text ? Json(*text) : Json(nullptr); }
+Json millimetres(const std::optional<double>& metres) {
+  return metres ? value(*metres * 1e3) : Json(nullptr);
+}
+
+/// Null for text that is absent or no JSON object.
+Json parsed(const std::string& text) {
+  Json document = Json::parse(text, nullptr, false);
+  return document.is_object() ? document : Json(nullptr);
+}
+
+/// The member of an object, or null: reports of other versions may lack it.
+Json member(const Json& object, const char* key) {
+  return object.is_object() && object.contains(key) ? object[key] : Json(nullptr);
+}
+
+Json first_known(std::initializer_list<Json> candidates) {
+  const auto known = std::find_if(
+      candidates.begin(), candidates.end(), [](const Json& json) { return !json.is_null(); });
+  return known == candidates.end() ? Json(nullptr) : *known;
+}
+
+Json whole_number(const std::optional<std::string>& text) {
+  const Json number = text ? Json::parse(*text, nullptr, false) : Json(nullptr);
+  return number.is_number_unsigned() ? number : value(text);
+}
+
+Json phantom_json(const SiteData& patient) {
+  return {{"name", value(patient.entry("phantom_name"))},
+          {"depth_mm", value(patient.number("phantom_depth_mm"))},
+          {"radius_mm", value(patient.number("phantom_radius_mm"))},
+          {"ratio", value(patient.number("phantom_ratio"))},
+          {"shape", value(patient.entry("phantom_shape"))}};
+}
+
+std::optional<double> round_trip_median_ms(const SiteData& site) {
+  std::vector<double> values;
+  for (const Duration span : site.round_trips) {
+    values.push_back(seconds(span) * 1e3);
+  }
+  return median(values);
+}
+
+Json direction_json(const Json& relay, const char* direction) {
+  const Json from = member(relay, direction);
+  if (from.is_null()) {
+    return nullptr;
+  }
+  Json to;
+  for (const char* key :
+       {"delay_p50_ms", "delay_p99_ms", "sent", "received", "lost", "reordered", "duplicated"}) {
+    to[key] = member(from, key);
+  }
+  return to;
+}
+
+Json link_json(const Asked& asked, const SiteData& surgeon, const Json& report, const Json& relay) {
+  Json link;
+  link["asked"] = {{"rtt_ms", value(asked.rtt_ms)},
+                   {"jitter_ms", value(asked.jitter_ms)},
+                   {"loss", value(asked.loss)}};
+  link["achieved"]["rtt_p50_ms"] =
+      first_known({member(report, "round_trip_p50_ms"), value(round_trip_median_ms(surgeon))});
+  link["achieved"]["up"] = direction_json(relay, "up");
+  link["achieved"]["down"] = direction_json(relay, "down");
+  return link;
+}
+
+Json tap_json(const Tap& tap, const SiteData& patient) {
+  const DepthEstimate& estimate = tap.estimate;
+  const bool found = estimate.verdict == DepthVerdict::Found;
+  const bool interval = has_interval(estimate);
+  const auto when = [](bool known, double metres) {
+    return millimetres(known ? std::optional{metres} : std::nullopt);
+  };
+  Json json;
+  json["site"] = to_string(tap.place);
+  json["index"] = tap.index;
+  json["kind"] = to_string(tap.kind);
+  json["number"] = estimate.number;
+  json["t_s"] = value(seconds(estimate.stroke_began_at - patient.began_at));
+  json["lateral_mm"] = value(estimate.lateral * 1e3);
+  json["indentation_max_mm"] = value(estimate.indentation_max * 1e3);
+  json["force_max_n"] = value(estimate.force_max);
+  json["stiffness_felt_n_per_m"] = value(tap.stiffness.felt);
+  json["stiffness_true_n_per_m"] = value(tap.stiffness.truth);
+  Json& depth = json["depth"];
+  depth["verdict"] = to_string(estimate.verdict);
+  depth["depth_mm"] = when(found, estimate.depth);
+  depth["low_mm"] = when(interval, estimate.depth_low);
+  depth["high_mm"] = when(interval, estimate.depth_high);
+  depth["stddev_mm"] = when(found && estimate.depth_stddev > 0, estimate.depth_stddev);
+  depth["h_n"] = value(estimate.hash);
+  depth["reason"] = to_string(estimate.reason);
+  depth["estimator"] = value(patient.entry("estimator"));
+  return json;
+}
+
+Json depth_json(const OverallDepth& depth) {
+  Json json;
+  json["verdict"] = depth.verdict ? Json(to_string(*depth.verdict)) : Json(nullptr);
+  json["depth_mm"] = millimetres(depth.depth);
+  json["low_mm"] = millimetres(depth.low);
+  json["high_mm"] = millimetres(depth.high);
+  return json;
+}
+
+Json rejected_json(const SiteData& site, const Json& report) {
+  const Json told = member(report, "rejected");
+  if (!told.is_null() || !site.last_link) {
+    return told;
+  }
+  const link::LinkHealth& health = site.last_link->health;
+  return {{"malformed", health.malformed},
+          {"foreign", health.foreign},
+          {"replayed", health.replayed},
+          {"too_old", health.too_old},
+          {"forged", health.forged}};
+}
+
+Json site_json(const SiteData& site, const Json& report, const std::string& path) {
+  Json json;
+  json["session_file"] = first_known({member(report, "session_file"), path});
+  json["closed"] = site.report.closed;
+  json["messages"] = site.report.messages;
+  json["ticks"] = first_known({member(report, "ticks"), site.motion.size()});
+  json["missed_ticks"] = member(report, "missed_ticks");
+  json["lateness_p999_us"] = member(report, "lateness_p999_us");
+  json["records_written"] = first_known({member(report, "records_written"), site.report.messages});
+  json["records_dropped"] =
+      first_known({member(report, "records_dropped"), whole_number(site.records_dropped)});
+  json["rejected"] = rejected_json(site, report);
+  Json late;
+  Json repaired;
+  if (site.last_link) {
+    late = site.last_link->health.late;
+    repaired = site.last_link->health.repaired;
+  }
+  json["late"] = first_known({member(report, "late"), late});
+  json["repaired"] = first_known({member(report, "repaired"), repaired});
+  return json;
+}
+
+Json transitions_json(const SiteData& surgeon, const SiteData& patient) {
+  struct Entry {
+    double t{};  ///< [s]
+    const SiteData* site{};
+    const record::Transition* transition{};
+  };
+  std::vector<Entry> entries;
+  for (const SiteData* site : {&surgeon, &patient}) {
+    for (const record::Transition& transition : site->transitions) {
+      entries.push_back({seconds(transition.at - site->began_at), site, &transition});
+    }
+  }
+  std::stable_sort(
+      entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.t < b.t; });
+  Json list = Json::array();
+  for (const Entry& entry : entries) {
+    list.push_back({{"site", record::site_name(entry.site->site)},
+                    {"t_s", value(entry.t)},
+                    {"from", to_string(entry.transition->from)},
+                    {"to", to_string(entry.transition->to)},
+                    {"reason", record::note_text(entry.transition->reason)}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string demo_report(const SiteData& surgeon,
+                        const SiteData& patient,
+                        const std::vector<Tap>& taps,
+                        const Asked& asked,
+                        const ProgramReports& reports,
+                        const SessionPaths& paths) {
+  const Json surgeon_report = parsed(reports.surgeon);
+  const Json patient_report = parsed(reports.patient);
+  Json json;
+  json["schema"] = "palp.demo/1";
+  json["outcome"] = first_known(
+      {value(asked.outcome), member(surgeon_report, "outcome"), member(patient_report, "outcome")});
+  json["seed"] = first_known({member(surgeon_report, "seed"), whole_number(surgeon.entry("seed"))});
+  json["coupling"] =
+      first_known({member(surgeon_report, "coupling"), value(surgeon.entry("coupling"))});
+  json["preset"] = value(asked.preset);
+  json["grip"] = first_known({value(asked.grip), value(surgeon.entry("grip"))});
+  json["phantom"] = phantom_json(patient);
+  json["link"] = link_json(asked, surgeon, surgeon_report, parsed(reports.relay));
+  json["taps"] = Json::array();
+  for (const Tap& tap : taps) {
+    json["taps"].push_back(tap_json(tap, patient));
+  }
+  json["depth"] = depth_json(judge_depth(taps));
+  json["sites"]["surgeon"] = site_json(surgeon, surgeon_report, paths.surgeon);
+  json["sites"]["patient"] = site_json(patient, patient_report, paths.patient);
+  json["transitions"] = transitions_json(surgeon, patient);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace palp::review

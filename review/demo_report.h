@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "review/site_data.h"
+#include "review/taps.h"
+
+namespace palp::review {
+
+/// What the caller of a session asked for; a session file cannot know it.
+struct Asked {
+  std::optional<std::string> outcome{};
+  std::optional<std::string> preset{};
+  std::optional<std::string> grip{};
+  std::optional<double> rtt_ms{};
+  std::optional<double> jitter_ms{};
+  std::optional<double> loss{};
+};
+
+/// Texts of the reports that the programs of a session wrote; empty: absent. What they would have
+/// said is then taken from the session files where these know it, else null.
+struct ProgramReports {
+  std::string surgeon;  ///< palp.site/1
+  std::string patient;  ///< palp.site/1
+  std::string relay;    ///< palp.relay/1
+};
+
+struct SessionPaths {
+  std::string surgeon;
+  std::string patient;
+};
+
+/// The JSON document `palp.demo/1`.
+[[nodiscard]] std::string demo_report(const SiteData& surgeon,
+                                      const SiteData& patient,
+                                      const std::vector<Tap>& taps,
+                                      const Asked& asked,
+                                      const ProgramReports& reports,
+                                      const SessionPaths& paths);
+
+}  // namespace palp::review

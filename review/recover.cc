@@ -1,0 +1,111 @@
+#include "review/recover.h"
+
+#include <cstring>
+#include <utility>
+
+#include "common/record/mcap_writer.h"
+#include "review/text.h"
+
+namespace palp::review {
+namespace {
+
+/// Copies items one by one; ids may change on the way.
+class Copy {
+ public:
+  explicit Copy(record::ByteSink& out) : writer_{out, {.library = "palp-review recover"}} {}
+
+  void operator()(const record::McapSchema& schema) {
+    schemas_[schema.id] = writer_.add_schema(schema.name, schema.encoding, schema.data);
+  }
+  void operator()(const record::McapChannel& channel) {
+    const std::uint16_t schema = channel.schema == 0 ? std::uint16_t{0} : schemas_[channel.schema];
+    channels_[channel.id] =
+        writer_.add_channel(schema, channel.topic, channel.message_encoding, channel.metadata);
+  }
+  void operator()(const record::McapMessage& message) {
+    std::byte* place = writer_.add_message({.channel = channels_[message.channel->id],
+                                            .sequence = message.sequence,
+                                            .log_time = message.log_time,
+                                            .publish_time = message.publish_time},
+                                           message.payload.size());
+    if (place != nullptr && !message.payload.empty()) {
+      std::memcpy(place, message.payload.data(), message.payload.size());
+    }
+    count_gap(message);
+  }
+  void operator()(const record::McapAttachment& attachment) {
+    writer_.add_attachment(
+        attachment.log_time, attachment.name, attachment.media_type, attachment.data);
+  }
+  void operator()(const record::McapMetadata& metadata) {
+    writer_.add_metadata(metadata.name, metadata.entries);
+  }
+  void operator()(const record::McapStatistics&) {}
+
+  record::McapWriter& writer() { return writer_; }
+  [[nodiscard]] const std::map<std::string, TopicLoss>& losses() const { return losses_; }
+
+ private:
+  struct Last {
+    std::uint32_t sequence{};
+    std::uint64_t log_time{};  ///< [ns]
+  };
+
+  void count_gap(const record::McapMessage& message) {
+    const auto [last, first] = last_.try_emplace(message.channel->id);
+    const std::uint32_t expected = first ? 0 : last->second.sequence + 1;
+    if (const std::uint32_t gap = message.sequence - expected; gap != 0) {
+      TopicLoss& loss = losses_[message.channel->topic];
+      loss.after = loss.messages == 0 ? last->second.log_time : loss.after;
+      loss.messages += gap;
+    }
+    last->second = {.sequence = message.sequence, .log_time = message.log_time};
+  }
+
+  record::McapWriter writer_;
+  std::map<std::uint16_t, std::uint16_t> schemas_;   ///< old id to new
+  std::map<std::uint16_t, std::uint16_t> channels_;  ///< old id to new
+  std::map<std::uint16_t, Last> last_;
+  std::map<std::string, TopicLoss> losses_;
+};
+
+}  // namespace
+
+Result<Recovery> recover(std::span<const std::byte> file, record::ByteSink& out) {
+  record::McapReader reader{file};
+  Copy copy{out};
+  while (const auto item = reader.next()) {
+    std::visit(copy, *item);
+  }
+  const record::McapReadReport& report = reader.report();
+  copy.writer().add_metadata("palp.recovered",
+                             {{"chunks_damaged", std::to_string(report.chunks_damaged)},
+                              {"bytes_unread", std::to_string(report.bytes_unread)},
+                              {"faults", std::to_string(report.fault_count)}});
+  copy.writer().close();
+  if (copy.writer().failed()) {
+    return fail("the recovered file could not be written whole: is the disk full?");
+  }
+  return Recovery{
+      .report = report, .messages = copy.writer().counts().messages, .losses = copy.losses()};
+}
+
+std::string describe(const Recovery& recovery) {
+  const record::McapReadReport& report = recovery.report;
+  std::string text{std::to_string(recovery.messages) + " messages saved, the last one logged at " +
+                   fixed(1e-9 * static_cast<double>(report.last_log_time), 3) +
+                   " s on the site's clock\n"};
+  text += report.closed ? "the file was closed in order\n"
+                        : "the file was not closed; what came after the last message is lost, " +
+                              std::to_string(report.bytes_unread) + " bytes of it are there\n";
+  for (const record::McapFault& fault : report.faults) {
+    text += "fault at byte " + std::to_string(fault.offset) + ": " + fault.text + '\n';
+  }
+  for (const auto& [topic, loss] : recovery.losses) {
+    text += topic + ": " + std::to_string(loss.messages) + " messages lost, first after " +
+            fixed(1e-9 * static_cast<double>(loss.after), 3) + " s\n";
+  }
+  return text;
+}
+
+}  // namespace palp::review

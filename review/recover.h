@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+
+#include "common/core/result.h"
+#include "common/record/byte_sink.h"
+#include "common/record/mcap_reader.h"
+
+namespace palp::review {
+
+struct TopicLoss {
+  std::uint64_t messages{};  ///< gaps in the topic's sequence
+  std::uint64_t after{};     ///< [ns], log time of the last message before the first gap
+};
+
+/// What a recovery saved and what was lost.
+struct Recovery {
+  record::McapReadReport report;
+  std::uint64_t messages{};                 ///< written again
+  std::map<std::string, TopicLoss> losses;  ///< topics with a gap
+};
+
+/// Writes all that can be read of `file` again, with index and summary.
+[[nodiscard]] Result<Recovery> recover(std::span<const std::byte> file, record::ByteSink& out);
+
+/// For people.
+[[nodiscard]] std::string describe(const Recovery& recovery);
+
+}  // namespace palp::review

@@ -1,0 +1,102 @@
+#include "review/site_data.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "common/record/mapped_file.h"
+#include "common/record/session_encoder.h"
+#include "common/record/session_reader.h"
+
+namespace palp::review {
+namespace {
+
+/// Sorts records into SiteData.
+struct Collector {
+  SiteData& data;
+
+  void operator()(const record::SiteTick& tick) const {
+    data.motion.push_back({.at = tick.at,
+                           .position = tick.position,
+                           .velocity = tick.velocity,
+                           .force = tick.force,
+                           .lateral = tick.lateral});
+  }
+  void operator()(const record::Arrived& arrived) const {
+    const Duration difference{arrived.incoming.arrived_at.time_since_epoch() -
+                              arrived.incoming.sent_at.time_since_epoch()};
+    if (!arrived.incoming.repaired) {
+      data.stamp_difference_min =
+          std::min(data.stamp_difference_min.value_or(difference), difference);
+    }
+  }
+  void operator()(const record::LinkStatus& status) const {
+    data.last_link = status;
+    if (status.health.state == LinkState::Live && status.health.round_trip > Duration{0}) {
+      data.round_trips.push_back(status.health.round_trip);
+    }
+  }
+  void operator()(const record::Transition& transition) const {
+    data.transitions.push_back(transition);
+  }
+  void operator()(const DepthEstimate& estimate) const { data.estimates.push_back(estimate); }
+  void operator()(const record::Note&) const {}
+  void operator()(const ContactSample&) const {}
+  void operator()(const record::DepthArrived&) const {}
+};
+
+}  // namespace
+
+std::optional<std::string> SiteData::entry(const std::string& key) const {
+  const auto found = std::find_if(
+      metadata.begin(), metadata.end(), [&](const auto& pair) { return pair.first == key; });
+  return found == metadata.end() ? std::nullopt : std::optional{found->second};
+}
+
+std::optional<double> SiteData::number(const std::string& key) const {
+  const auto text = entry(key);
+  double value{};
+  if (!text ||
+      std::from_chars(text->data(), text->data() + text->size(), value).ec != std::errc{}) {
+    return std::nullopt;
+  }
+  return std::isfinite(value) ? std::optional{value} : std::nullopt;
+}
+
+Result<SiteData> load_site(const std::string& path, link::Role site) {
+  const auto file = record::MappedFile::open(path);
+  if (!file) {
+    return fail(file.error().text);
+  }
+  return load_site(file->bytes(), path, site);
+}
+
+Result<SiteData> load_site(std::span<const std::byte> file,
+                           const std::string& name,
+                           link::Role site) {
+  SiteData data;
+  data.site = site;
+  record::SessionReader reader{file};
+  while (const auto entry = reader.next()) {
+    if (entry->site != site) {
+      return fail(name + " is the session file of the " +
+                  std::string{record::site_name(entry->site)} + ", not of the " +
+                  std::string{record::site_name(site)});
+    }
+    ++data.records;
+    std::visit(Collector{data}, entry->record);
+  }
+  data.report = reader.report();
+  if (data.report.messages == 0 && !data.report.faults.empty()) {
+    return fail(name + ": " + data.report.faults.front().text);
+  }
+  data.began_at = reader.began_at().value_or(TimePoint{});
+  data.metadata = reader.metadata("palp");
+  data.records_dropped = reader.metadata("palp.summary", "records_dropped");
+  if (const auto csv = reader.attachment("tissue.csv")) {
+    data.tissue_csv = std::string{*csv};
+  }
+  return data;
+}
+
+}  // namespace palp::review

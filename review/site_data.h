@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/result.h"
+#include "common/record/mcap_reader.h"
+#include "common/record/recorder.h"
+
+namespace palp::review {
+
+/// The part of a tick that metrics look at.
+struct Motion {
+  TimePoint at{};
+  double position{};  ///< [m], hand or tip
+  double velocity{};  ///< [m/s]
+  double force{};     ///< [N], surgeon: applied to the hand, patient: contact
+  double lateral{};   ///< [m]
+};
+
+/// What one session file says, in memory.
+struct SiteData {
+  link::Role site{};
+  TimePoint began_at{};  ///< the earliest sample
+  std::vector<Motion> motion;
+  std::vector<record::Transition> transitions;
+  std::vector<DepthEstimate> estimates;
+  std::vector<Duration> round_trips;  ///< of the link's statuses, where measured
+  std::optional<record::LinkStatus> last_link;
+  /// Smallest arrival minus sending stamp: clock offset plus the fastest way.
+  std::optional<Duration> stamp_difference_min;
+  record::McapMap metadata;                    ///< of the record `palp`
+  std::optional<std::string> tissue_csv;       ///< attachment tissue.csv
+  std::uint64_t records{};                     ///< decoded
+  std::optional<std::string> records_dropped;  ///< from the summary
+  record::McapReadReport report;
+
+  [[nodiscard]] std::optional<std::string> entry(const std::string& key) const;
+  /// nullopt: absent, or not a finite number.
+  [[nodiscard]] std::optional<double> number(const std::string& key) const;
+};
+
+/// Fails if the file cannot be opened, is none, or is the other site's.
+[[nodiscard]] Result<SiteData> load_site(const std::string& path, link::Role site);
+[[nodiscard]] Result<SiteData> load_site(std::span<const std::byte> file,
+                                         const std::string& name,
+                                         link::Role site);
+
+}  // namespace palp::review

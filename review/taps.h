@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "review/excursions.h"
+#include "review/site_data.h"
+#include "review/tissue_table.h"
+
+namespace palp::review {
+
+enum class StrokeKind : std::uint8_t { Tap, Press };
+inline constexpr Duration kTapMax{std::chrono::milliseconds{1500}};  ///< longer is a press
+
+[[nodiscard]] constexpr const char* to_string(StrokeKind kind) noexcept {
+  return kind == StrokeKind::Tap ? "tap" : "press";
+}
+
+/// One stroke as both sites saw it.
+struct Tap {
+  Place place{};
+  StrokeKind kind{};
+  int index{};  ///< 1, 2, ... among the strokes of its kind at its place
+  DepthEstimate estimate;
+  Stiffness stiffness;
+};
+
+/// The strokes of the patient's file with what the surgeon felt in them. A stroke belongs to the
+/// excursion of the hand that it overlaps most once clock offset and way are taken off (the
+/// smallest difference of the stamps of a sample that arrived); without such stamps the k-th deep
+/// stroke at a place belongs to the k-th excursion there.
+[[nodiscard]] std::vector<Tap> match_taps(const SiteData& surgeon,
+                                          const SiteData& patient,
+                                          const TissueTable* tissue);
+
+/// All taps over the inclusion together.
+struct OverallDepth {
+  std::optional<DepthVerdict> verdict;  ///< nullopt: no tap there
+  std::optional<double> depth;          ///< [m], median of those that found one
+  std::optional<double> low;            ///< [m]
+  std::optional<double> high;           ///< [m]
+};
+/// Found or none, if more than half of the taps at B say so; else invalid.
+[[nodiscard]] OverallDepth judge_depth(const std::vector<Tap>& taps);
+
+/// True if the estimator gave an interval: it does so by low below high.
+[[nodiscard]] inline bool has_interval(const DepthEstimate& estimate) noexcept {
+  return estimate.verdict == DepthVerdict::Found && estimate.depth_low < estimate.depth_high;
+}
+
+/// For people, one line each.
+[[nodiscard]] std::string tap_table(const std::vector<Tap>& taps, const OverallDepth& depth);
+
+/// Middle value, of an even number the mean of both; nullopt: none.
+[[nodiscard]] std::optional<double> median(std::vector<double> values);
+
+}  // namespace palp::review

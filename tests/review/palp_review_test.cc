@@ -1,0 +1,94 @@
+// Goal: the program's verbs, exit codes and report as scripts rely on them.
+// Method: write session files to a temporary folder, run palp-review on them.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+#include "tests/review/session_samples.h"
+
+namespace palp::review {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PalpReviewTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = testing::TempDir() + "palp_review_test_" +
+              testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    const auto files = test::sample_session();
+    save("s.mcap", files.surgeon);
+    save("p.mcap", files.patient);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void save(const std::string& name, std::span<const std::byte> bytes) const {
+    std::ofstream file{folder_ + '/' + name, std::ios::binary};
+    file.write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  }
+  [[nodiscard]] std::string text(const std::string& name) const {
+    std::ifstream file{folder_ + '/' + name, std::ios::binary};
+    return {std::istreambuf_iterator<char>{file}, {}};
+  }
+  /// @returns the exit code; what was printed stands in `output`.
+  [[nodiscard]] int run(const std::string& arguments) const {
+    const int status = std::system(
+        ("cd '" + folder_ + "' && '" PALP_REVIEW_PROGRAM "' " + arguments + " > output 2>&1")
+            .c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  void cut_off(const std::string& name) const {
+    fs::resize_file(folder_ + '/' + name, fs::file_size(folder_ + '/' + name) / 2);
+  }
+
+  std::string folder_;
+};
+
+TEST_F(PalpReviewTest, InfoAndCheckAcceptASoundFile) {
+  EXPECT_EQ(run("info s.mcap"), 0);
+  EXPECT_NE(text("output").find("surgeon/tick"), std::string::npos);
+  EXPECT_EQ(run("check s.mcap"), 0);
+}
+
+TEST_F(PalpReviewTest, CheckFailsOnACutOffFileAndRecoverMendsIt) {
+  cut_off("s.mcap");
+  EXPECT_EQ(run("check s.mcap"), 1);
+  EXPECT_EQ(run("recover s.mcap mended.mcap"), 0);
+  EXPECT_EQ(run("check mended.mcap"), 0);
+  EXPECT_EQ(run("recover s.mcap mended.mcap"), 3) << "never over an existing file";
+  EXPECT_EQ(run("recover s.mcap s.mcap"), 3);
+}
+
+TEST_F(PalpReviewTest, MetricsPrintsTheTapsAndWritesTheReport) {
+  EXPECT_EQ(run("metrics --surgeon s.mcap --patient p.mcap --rtt-ms 20 --report r.json"), 0);
+  EXPECT_NE(text("output").find("tap 3"), std::string::npos);
+  const auto json = nlohmann::json::parse(text("r.json"));
+  EXPECT_EQ(json["schema"], "palp.demo/1");
+  EXPECT_EQ(json["taps"].size(), 6u);
+  EXPECT_EQ(json["link"]["asked"]["rtt_ms"], 20);
+}
+
+TEST_F(PalpReviewTest, MetricsWorksOnCutOffFilesAndWithoutOptionalReports) {
+  cut_off("p.mcap");
+  EXPECT_EQ(run("metrics --surgeon s.mcap --patient p.mcap --relay none.json --report r.json"), 0);
+  EXPECT_EQ(nlohmann::json::parse(text("r.json"))["sites"]["patient"]["closed"], false);
+}
+
+TEST_F(PalpReviewTest, WrongFilesAndFlagsHaveTheirExitCodes) {
+  EXPECT_EQ(run("info nothing.mcap"), 3);
+  EXPECT_EQ(run("metrics --surgeon p.mcap --patient s.mcap"), 2);
+  EXPECT_EQ(run("metrics --surgeon s.mcap"), 2);
+  EXPECT_EQ(run("polish s.mcap"), 2);
+  EXPECT_EQ(run("--help"), 0);
+}
+
+}  // namespace
+}  // namespace palp::review

@@ -1,0 +1,37 @@
+#include "review/site_data.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/review/session_samples.h"
+
+namespace palp::review {
+namespace {
+
+TEST(SiteDataTest, CollectsWhatMetricsNeed) {
+  const auto session = test::load(test::sample_session());
+  EXPECT_EQ(session.surgeon.motion.size(), 6000u);
+  EXPECT_EQ(session.surgeon.round_trips.size(), 60u);
+  EXPECT_EQ(session.surgeon.transitions.size(), 1u);
+  EXPECT_EQ(session.surgeon.began_at, test::at_ms(0));
+  EXPECT_EQ(session.patient.estimates.size(), 6u);
+  EXPECT_EQ(session.patient.stamp_difference_min, test::kClockOffset + test::kWay);
+  EXPECT_EQ(session.patient.number("surface_offset_mm"), 2);
+  EXPECT_EQ(session.patient.number("phantom_name"), std::nullopt);
+  EXPECT_EQ(session.patient.number("absent"), std::nullopt);
+}
+
+TEST(SiteDataTest, FileOfTheOtherSiteIsRefusedByName) {
+  const auto files = test::sample_session();
+  const auto wrong = load_site(files.surgeon, "x.mcap", link::Role::Patient);
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().text.find("x.mcap"), std::string::npos);
+}
+
+TEST(SiteDataTest, OtherFilesAreRefused) {
+  const std::string text{"no session"};
+  EXPECT_FALSE(load_site(std::as_bytes(std::span{text}), "x", link::Role::Surgeon));
+  EXPECT_FALSE(load_site("/nowhere/s.mcap", link::Role::Surgeon));
+}
+
+}  // namespace
+}  // namespace palp::review

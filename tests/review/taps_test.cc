@@ -1,0 +1,100 @@
+#include "review/taps.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/review/session_samples.h"
+
+namespace palp::review {
+namespace {
+
+using test::load;
+using test::sample_session;
+
+std::vector<Tap> taps_of(const test::SampleFiles& files) {
+  const auto session = load(files);
+  const auto tissue = TissueTable::parse(*session.patient.tissue_csv);
+  return match_taps(session.surgeon, session.patient, &*tissue);
+}
+
+TEST(TapsTest, EachStrokeGetsItsPlaceIndexAndStiffness) {
+  const auto taps = taps_of(sample_session());
+  ASSERT_EQ(taps.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_EQ(taps[k].place, k < 3 ? Place::A : Place::B);
+    EXPECT_EQ(taps[k].index, static_cast<int>(k % 3) + 1);
+    EXPECT_EQ(taps[k].kind, StrokeKind::Tap);
+    EXPECT_NEAR(taps[k].stiffness.felt.value(), k < 3 ? test::kFeltA : test::kFeltB, 1e-6);
+    EXPECT_NEAR(taps[k].stiffness.truth.value(), k < 3 ? 100 : 200, 1e-6);
+  }
+}
+
+TEST(TapsTest, StrokeThatThePatientNeverSawDoesNotShiftTheOthers) {
+  // The hand of stroke 1 never became a stroke; make its force one that would be noticed.
+  const auto files = sample_session({.unseen_stroke = 1});
+  auto session = load(files);
+  for (Motion& motion : session.surgeon.motion) {
+    if (motion.at >= test::at_ms(1000) && motion.at < test::at_ms(2000)) {
+      motion.force = 0;
+    }
+  }
+  const auto taps = match_taps(session.surgeon, session.patient, nullptr);
+  ASSERT_EQ(taps.size(), 5u);
+  EXPECT_NEAR(taps[1].stiffness.felt.value(), test::kFeltA, 1e-6);
+  EXPECT_EQ(taps[1].estimate.number, 3u);
+}
+
+TEST(TapsTest, WithoutStampsStrokesAndExcursionsAreCountedPerPlace) {
+  const auto taps = taps_of(sample_session({.stamps = false}));
+  ASSERT_EQ(taps.size(), 6u);
+  EXPECT_NEAR(taps[0].stiffness.felt.value(), test::kFeltA, 1e-6);
+  EXPECT_NEAR(taps[5].stiffness.felt.value(), test::kFeltB, 1e-6);
+}
+
+TEST(TapsTest, LongStrokeIsAPress) {
+  auto session = load(sample_session());
+  auto& estimates = session.patient.estimates;
+  estimates[1].stroke_began_at = estimates[1].stroke_ended_at - kTapMax;
+  estimates[2].stroke_began_at = estimates[2].stroke_ended_at - kTapMax - Duration{1};
+  const auto taps = match_taps(session.surgeon, session.patient, nullptr);
+  EXPECT_EQ(taps[1].kind, StrokeKind::Tap);
+  EXPECT_EQ(taps[2].kind, StrokeKind::Press);
+  EXPECT_EQ(taps[2].index, 1);
+}
+
+TEST(TapsTest, FoundOrNoneNeedMoreThanHalfOfTheTapsOverTheInclusion) {
+  auto taps = taps_of(sample_session({.taps_per_place = 4}));
+  ASSERT_EQ(taps.size(), 8u);
+  EXPECT_EQ(judge_depth(taps).verdict, DepthVerdict::Found);
+  EXPECT_NEAR(judge_depth(taps).depth.value(), 0.0098 + 1e-4 * 5.5, 1e-12);
+  EXPECT_FALSE(judge_depth(taps).low) << "this estimator gives no interval";
+  taps[4].estimate.verdict = DepthVerdict::None;
+  EXPECT_EQ(judge_depth(taps).verdict, DepthVerdict::Found);
+  taps[5].estimate.verdict = DepthVerdict::None;
+  EXPECT_EQ(judge_depth(taps).verdict, DepthVerdict::Invalid);
+  EXPECT_FALSE(judge_depth(taps).depth);
+  taps[6].estimate.verdict = DepthVerdict::None;
+  EXPECT_EQ(judge_depth(taps).verdict, DepthVerdict::None);
+}
+
+TEST(TapsTest, WithoutTapsOverTheInclusionThereIsNoVerdict) {
+  auto taps = taps_of(sample_session());
+  taps.resize(3);
+  EXPECT_FALSE(judge_depth(taps).verdict);
+  EXPECT_NE(tap_table({}, judge_depth({})).find("no stroke"), std::string::npos);
+}
+
+TEST(TapsTest, MedianIsTheMiddleOrTheMeanOfBothMiddles) {
+  EXPECT_EQ(median({}), std::nullopt);
+  EXPECT_EQ(median({3, 1, 2}), 2);
+  EXPECT_EQ(median({4, 1, 2, 3}), 2.5);
+}
+
+TEST(TapsTest, TableHasALineForEachTap) {
+  const auto taps = taps_of(sample_session());
+  const auto table = tap_table(taps, judge_depth(taps));
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 2 + 6 + 1);
+  EXPECT_NE(table.find("tap 3"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace palp::review
