@@ -43,6 +43,16 @@ TEST(TapsTest, StrokeThatThePatientNeverSawDoesNotShiftTheOthers) {
   EXPECT_EQ(taps[1].estimate.number, 3u);
 }
 
+TEST(TapsTest, HandAtAnotherPlaceIsNotTheOneOfTheStroke) {
+  auto session = load(sample_session());
+  for (Motion& motion : session.surgeon.motion) {
+    motion.lateral = 0.010;
+  }
+  const auto taps = match_taps(session.surgeon, session.patient, nullptr);
+  EXPECT_FALSE(taps[0].stiffness.felt) << "A";
+  EXPECT_TRUE(taps[3].stiffness.felt) << "B";
+}
+
 TEST(TapsTest, WithoutStampsStrokesAndExcursionsAreCountedPerPlace) {
   const auto taps = taps_of(sample_session({.stamps = false}));
   ASSERT_EQ(taps.size(), 6u);
