@@ -123,7 +123,7 @@ Json depth_json(const OverallDepth& depth) {
 }
 
 Json rejected_json(const SiteData& site, const Json& report) {
-  const Json told = member(report, "rejected");
+  Json told = member(report, "rejected");
   if (!told.is_null() || !site.last_link) {
     return told;
   }

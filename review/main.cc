@@ -19,9 +19,13 @@
 namespace palp::review {
 namespace {
 
-enum ExitCode { kDone = 0, kMissed = 1, kBadInput = 2, kNotReached = 3 };
+// Exit codes of every program of this house.
+constexpr int kDone = 0;
+constexpr int kMissed = 1;      ///< ran, but a check failed
+constexpr int kBadInput = 2;    ///< flag, field or content
+constexpr int kNotReached = 3;  ///< could not be opened
 
-int complain(ExitCode code, const std::string& text) {
+int complain(int code, const std::string& text) {
   std::cerr << "palp-review: " << text << '\n';
   return code;
 }

@@ -25,7 +25,7 @@ struct McapOptions {
   std::string library{"palp"};
   McapCompression compression{McapCompression::Zstd};
   int zstd_level{1};
-  std::size_t chunk_size_max{256 * 1024};                   ///< [bytes], uncompressed
+  std::size_t chunk_size_max{std::size_t{256} * 1024};      ///< [bytes], uncompressed
   Duration chunk_span_max{std::chrono::milliseconds{500}};  ///< a kill loses at most this much
   bool chunks{true};
   /// Schemas and channels inside chunks; else before them, where no damaged chunk takes them along.
