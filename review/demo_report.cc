@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/core/median.h"
 #include "common/record/notes.h"
 #include "common/record/session_encoder.h"
 

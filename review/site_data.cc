@@ -22,14 +22,7 @@ struct Collector {
                            .force = tick.force,
                            .lateral = tick.lateral});
   }
-  void operator()(const record::Arrived& arrived) const {
-    const Duration difference{arrived.incoming.arrived_at.time_since_epoch() -
-                              arrived.incoming.sent_at.time_since_epoch()};
-    if (!arrived.incoming.repaired) {
-      data.stamp_difference_min =
-          std::min(data.stamp_difference_min.value_or(difference), difference);
-    }
-  }
+  void operator()(const record::Arrived&) const {}
   void operator()(const record::LinkStatus& status) const {
     data.last_link = status;
     if (status.health.state == LinkState::Live && status.health.round_trip > Duration{0}) {
@@ -42,7 +35,7 @@ struct Collector {
   void operator()(const DepthEstimate& estimate) const { data.estimates.push_back(estimate); }
   void operator()(const record::Note&) const {}
   void operator()(const ContactSample&) const {}
-  void operator()(const record::DepthArrived&) const {}
+  void operator()(const record::DepthArrived& arrived) const { data.reports.push_back(arrived); }
 };
 
 }  // namespace

@@ -29,8 +29,7 @@ struct SiteData {
   std::vector<DepthEstimate> estimates;
   std::vector<Duration> round_trips;  ///< of the link's statuses, where measured
   std::optional<record::LinkStatus> last_link;
-  /// Smallest arrival minus sending stamp: clock offset plus the fastest way.
-  std::optional<Duration> stamp_difference_min;
+  std::vector<record::DepthArrived> reports;   ///< surgeon: each estimate as it arrived
   record::McapMap metadata;                    ///< of the record `palp`
   std::optional<std::string> tissue_csv;       ///< attachment tissue.csv
   std::uint64_t records{};                     ///< decoded

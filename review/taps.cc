@@ -3,34 +3,33 @@
 #include <algorithm>
 #include <map>
 
+#include "common/core/median.h"
+#include "patient_site/estimator/depth_summary.h"
 #include "review/text.h"
 
 namespace palp::review {
 namespace {
 
-const Excursion* most_overlapping(const std::vector<Excursion>& excursions,
-                                  TimePoint began_at,
-                                  TimePoint ended_at) {
-  const Excursion* best = nullptr;
-  Duration overlap_max{0};
+/// The stroke an estimate came from: the last one that the surgeon began before the estimate
+/// arrived. The clocks of the sites need not agree for that, and an estimate leaves at the stroke's
+/// reversal, long before the next stroke begins.
+const Excursion* excursion_of(const DepthEstimate& estimate,
+                              const SiteData& surgeon,
+                              const std::vector<Excursion>& excursions) {
+  const auto report = std::find_if(
+      surgeon.reports.begin(), surgeon.reports.end(), [&](const record::DepthArrived& arrived) {
+        return arrived.report.number == estimate.number;
+      });
+  if (report == surgeon.reports.end()) {
+    return nullptr;
+  }
+  const Excursion* last = nullptr;
   for (const Excursion& excursion : excursions) {
-    const Duration overlap =
-        std::min(excursion.ended_at, ended_at) - std::max(excursion.began_at, began_at);
-    if (overlap > overlap_max) {
-      overlap_max = overlap;
-      best = &excursion;
+    if (excursion.began_at < report->at) {
+      last = &excursion;
     }
   }
-  return best;
-}
-
-const Excursion* nth_at(const std::vector<Excursion>& excursions, Place place, int n) {
-  for (const Excursion& excursion : excursions) {
-    if (excursion.place == place && --n == 0) {
-      return &excursion;
-    }
-  }
-  return nullptr;
+  return last != nullptr && last->place == place_at(estimate.lateral) ? last : nullptr;
 }
 
 double surface_of(const SiteData& patient) {
@@ -52,40 +51,25 @@ std::string cell(const std::optional<double>& value, int digits, std::size_t wid
 
 }  // namespace
 
-std::optional<double> median(std::vector<double> values) {
-  if (values.empty()) {
-    return std::nullopt;
-  }
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
 std::vector<Tap> match_taps(const SiteData& surgeon,
                             const SiteData& patient,
                             const TissueTable* tissue) {
   const double surface = surface_of(patient);
   const auto excursions = find_excursions(surgeon.motion, surface);
-  const auto delay = patient.stamp_difference_min;  // clock offset and way, both in one
   std::map<std::pair<Place, StrokeKind>, int> counts;
-  std::map<Place, int> deep;
   std::vector<Tap> taps;
   for (const DepthEstimate& estimate : patient.estimates) {
-    const bool press = estimate.stroke_ended_at - estimate.stroke_began_at > kTapMax;
+    const Excursion* excursion = excursion_of(estimate, surgeon, excursions);
+    const Duration span = excursion != nullptr
+                              ? excursion->ended_at - excursion->began_at
+                              : estimate.stroke_ended_at - estimate.stroke_began_at;
     Tap tap{.place = place_at(estimate.lateral),
-            .kind = press ? StrokeKind::Press : StrokeKind::Tap,
+            .kind = span > kTapMax ? StrokeKind::Press : StrokeKind::Tap,
             .index = 0,
             .estimate = estimate,
             .stiffness = {}};
     tap.index = ++counts[{tap.place, tap.kind}];
-    const Excursion* excursion = nullptr;
-    if (delay) {
-      excursion = most_overlapping(
-          excursions, estimate.stroke_began_at - *delay, estimate.stroke_ended_at - *delay);
-    } else if (estimate.indentation_max > kStrokeDepthMin) {
-      excursion = nth_at(excursions, tap.place, ++deep[tap.place]);
-    }
-    if (excursion != nullptr && excursion->place == tap.place) {
+    if (excursion != nullptr) {
       tap.stiffness = fit_stiffness(*excursion, surface, tissue);
     }
     taps.push_back(tap);
@@ -94,37 +78,23 @@ std::vector<Tap> match_taps(const SiteData& surgeon,
 }
 
 OverallDepth judge_depth(const std::vector<Tap>& taps) {
-  std::map<DepthVerdict, std::size_t> verdicts;
-  std::size_t count = 0;
-  std::vector<double> depths;
-  std::vector<double> lows;
-  std::vector<double> highs;
+  std::vector<DepthEstimate> over;
   for (const Tap& tap : taps) {
-    if (tap.place != Place::B || tap.kind != StrokeKind::Tap) {
-      continue;
-    }
-    ++count;
-    ++verdicts[tap.estimate.verdict];
-    if (tap.estimate.verdict == DepthVerdict::Found) {
-      depths.push_back(tap.estimate.depth);
-    }
-    if (has_interval(tap.estimate)) {
-      lows.push_back(tap.estimate.depth_low);
-      highs.push_back(tap.estimate.depth_high);
+    if (tap.place == Place::B && tap.kind == StrokeKind::Tap) {
+      over.push_back(tap.estimate);
     }
   }
-  OverallDepth overall;
-  if (count == 0) {
-    return overall;
+  if (over.empty()) {
+    return {};
   }
-  overall.verdict = DepthVerdict::Invalid;
-  if (2 * verdicts[DepthVerdict::None] > count) {
-    overall.verdict = DepthVerdict::None;
-  } else if (2 * verdicts[DepthVerdict::Found] > count) {
-    overall = {.verdict = DepthVerdict::Found,
-               .depth = median(depths),
-               .low = median(lows),
-               .high = median(highs)};
+  const DepthEstimate summary = estimator::summarise_depths(over);
+  OverallDepth overall{.verdict = summary.verdict, .depth = {}, .low = {}, .high = {}};
+  if (summary.verdict == DepthVerdict::Found) {
+    overall.depth = summary.depth;
+  }
+  if (has_interval(summary)) {
+    overall.low = summary.depth_low;
+    overall.high = summary.depth_high;
   }
   return overall;
 }

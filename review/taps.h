@@ -27,10 +27,8 @@ struct Tap {
   Stiffness stiffness;
 };
 
-/// The strokes of the patient's file with what the surgeon felt in them. A stroke belongs to the
-/// excursion of the hand that it overlaps most once clock offset and way are taken off (the
-/// smallest difference of the stamps of a sample that arrived); without such stamps the k-th deep
-/// stroke at a place belongs to the k-th excursion there.
+/// The strokes of the patient's file with what the surgeon felt in them: a stroke is the last
+/// excursion of the hand that began before its estimate arrived at the surgeon's.
 [[nodiscard]] std::vector<Tap> match_taps(const SiteData& surgeon,
                                           const SiteData& patient,
                                           const TissueTable* tissue);
@@ -42,7 +40,7 @@ struct OverallDepth {
   std::optional<double> low;            ///< [m]
   std::optional<double> high;           ///< [m]
 };
-/// Found or none, if more than half of the taps at B say so; else invalid.
+/// By estimator::summarise_depths() of the taps at B.
 [[nodiscard]] OverallDepth judge_depth(const std::vector<Tap>& taps);
 
 /// True if the estimator gave an interval: it does so by low below high.
@@ -52,8 +50,5 @@ struct OverallDepth {
 
 /// For people, one line each.
 [[nodiscard]] std::string tap_table(const std::vector<Tap>& taps, const OverallDepth& depth);
-
-/// Middle value, of an even number the mean of both; nullopt: none.
-[[nodiscard]] std::optional<double> median(std::vector<double> values);
 
 }  // namespace palp::review

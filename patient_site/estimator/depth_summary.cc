@@ -4,17 +4,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "common/core/median.h"
+
 namespace palp::estimator {
-namespace {
-
-/// The middle one, or the mean of the two in the middle. `values` is not empty.
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t upper = values.size() / 2;
-  return values.size() % 2 == 1 ? values[upper] : 0.5 * (values[upper - 1] + values[upper]);
-}
-
-}  // namespace
 
 DepthEstimate summarise_depths(std::span<const DepthEstimate> strokes) {
   if (strokes.empty()) return {};
@@ -29,14 +21,14 @@ DepthEstimate summarise_depths(std::span<const DepthEstimate> strokes) {
     summary.indentation_max = std::max(summary.indentation_max, stroke.indentation_max);
     summary.force_max = std::max(summary.force_max, stroke.force_max);
   }
-  if (!hashes.empty()) summary.hash = median(hashes);
+  if (!hashes.empty()) summary.hash = median(hashes).value();
   if (depths.empty() && none == 0) {
     summary.verdict = DepthVerdict::Invalid;
     return summary;
   }
   summary.reason = DepthReason::Ok;
   summary.verdict = depths.size() >= none ? DepthVerdict::Found : DepthVerdict::None;
-  summary.depth = summary.verdict == DepthVerdict::Found ? median(depths) : 0;
+  summary.depth = summary.verdict == DepthVerdict::Found ? median(depths).value_or(0) : 0;
   summary.depth_stddev = 0;
   summary.depth_low = summary.depth;
   summary.depth_high = summary.depth;

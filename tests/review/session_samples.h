@@ -26,7 +26,7 @@ inline const std::string kTissueCsv{"site,d_mm,F_N\nA,0,0\nA,6,0.6\nB,0,0\nB,3,0
 struct SampleOptions {
   int taps_per_place{3};
   int unseen_stroke{-1};  ///< this stroke (0, 1, ...) is missing in the patient's file
-  bool stamps{true};      ///< samples arrive and carry stamps
+  bool reports{true};     ///< the estimates arrive at the surgeon's
 };
 
 struct SampleFiles {
@@ -83,14 +83,6 @@ inline SampleFiles sample_session(const SampleOptions& options = {}) {
       const record::SiteTick tick = hand_tick(ms, options.taps_per_place);
       surgeon.write(tick, tick.at);
       const TimePoint there = tick.at + kClockOffset + kWay;
-      if (options.stamps) {
-        patient.write(
-            record::Arrived{.at = there,
-                            .incoming = {.sample = {},
-                                         .sent_at = PeerTimePoint{tick.at.time_since_epoch()},
-                                         .arrived_at = there}},
-            there);
-      }
       if (ms % 100 == 0) {
         link::LinkHealth health;
         health.state = LinkState::Live;
@@ -102,7 +94,12 @@ inline SampleFiles sample_session(const SampleOptions& options = {}) {
       const int stroke = static_cast<int>(ms / 1000);
       if (ms % 1000 == 400 && stroke != options.unseen_stroke) {
         const bool at_b = stroke >= options.taps_per_place;
-        patient.write(DepthEstimate{.number = static_cast<std::uint32_t>(stroke + 1),
+        const auto number = static_cast<std::uint32_t>(stroke + 1);
+        if (options.reports) {
+          const TimePoint heard = tick.at + 2 * kWay;
+          surgeon.write(record::DepthArrived{.at = heard, .report = {.number = number}}, tick.at);
+        }
+        patient.write(DepthEstimate{.number = number,
                                     .stroke_began_at = there - std::chrono::milliseconds{180},
                                     .stroke_ended_at = there,
                                     .lateral = at_b ? 0.010 : 0,
