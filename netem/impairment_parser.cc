@@ -3,6 +3,8 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 #include <optional>
 
 #include "netem/impairment.h"
@@ -77,6 +79,8 @@ double percent_to_share(std::string_view digits) {
     exponent = std::strtol(text.c_str() + e + 1, nullptr, 10);
     text.erase(e);
   }
+  // strtol stops at its least number, behind which two less would be undefined.
+  exponent = std::max(exponent, std::numeric_limits<long>::min() + 2);
   text += "e" + std::to_string(exponent - 2);
   double share = 0;
   std::from_chars(text.data(), text.data() + text.size(), share);
