@@ -47,6 +47,10 @@ std::string check_row(std::span<const ForceRow> rows, std::size_t index) {
   if (row.force > kForceMax) {
     return "F_N = " + number_text(row.force) + " exceeds " + number_text(kForceMax);
   }
+  if (index == 0 && row.indentation > 0 && row.indentation < kIntervalMin) {
+    return "d_mm = " + indentation_mm + " is neither 0 nor at least " +
+           number_text(kIntervalMin / kMillimetre);
+  }
   if (index > 0 && row.indentation < rows[index - 1].indentation + kIntervalMin) {
     return "d_mm = " + indentation_mm + " does not rise above the row before (" +
            number_text(rows[index - 1].indentation / kMillimetre) + "): d_mm must be monotone";
