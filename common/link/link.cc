@@ -149,6 +149,7 @@ Arrivals Link::receive(TimePoint now) noexcept {
   if (session_id_ != 0) {
     if (gap(now) > config_.closed_after) {
       end_session();
+      samples_.clear();  // what waited for so long belongs to no session any more
     } else {
       synchronise(now);
     }
