@@ -1,0 +1,101 @@
+// Input: one datagram. What follows the 16 header bytes is decoded whatever the header says,
+// because a mutated length would hide it from everything behind the header.
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "common/core/check.h"
+#include "common/link/codec_control.h"
+#include "common/link/codec_protobuf.h"
+#include "common/link/packet_protection.h"
+#include "common/link/transport.h"
+#include "tests/common/link/bytes_equal.h"
+#include "tests/fuzz/fuzz.h"
+
+namespace palp::link {
+namespace {
+
+bool equal(std::span<const std::byte> a, std::span<const std::byte> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+
+void header_laws(std::span<const std::byte> datagram) {
+  const auto header = parse_header(datagram);
+  std::array<std::byte, kDatagramSizeMax> plain{};
+  const auto opened = PlainProtection{}.open(datagram, plain);
+  if (!header) {
+    PALP_CHECK(!opened, "nothing opens without a header");
+    return;
+  }
+  std::array<std::byte, kHeaderSize> packed{};
+  pack_header(*header, packed);
+  PALP_CHECK(equal(packed, datagram.first(kHeaderSize)), "a header packs as it was");
+  if (!opened) return;
+  std::array<std::byte, kHeaderSize + kDatagramSizeMax> sealed{};
+  const std::size_t size = PlainProtection{}.seal(*header, std::span{plain}.first(*opened), sealed);
+  PALP_CHECK(equal(std::span{sealed}.first(size), datagram), "what opens seals as it was");
+}
+
+void telegram_laws(std::span<const std::byte> bytes) {
+  ProtobufCodec codec;
+  const auto telegram = codec.decode(bytes);
+  if (!telegram) return;
+  PALP_CHECK(well_formed(*telegram), "what comes out is well formed");
+  std::array<std::byte, kTelegramSizeMax> first{};
+  const std::size_t first_size = codec.encode(*telegram, first);
+  PALP_CHECK(first_size > 0, "what is well formed encodes");
+  const auto again = codec.decode(std::span{first}.first(first_size));
+  PALP_CHECK(again && same(*telegram, *again), "what was decoded survives the wire exactly");
+  std::array<std::byte, kTelegramSizeMax> second{};
+  const std::size_t second_size = codec.encode(*again, second);
+  PALP_CHECK(equal(std::span{first}.first(first_size), std::span{second}.first(second_size)),
+             "encoding again gives the same bytes");
+}
+
+bool printable(const std::string& text, std::size_t size_max) {
+  return text.size() <= size_max &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+void hello_laws(std::span<const std::byte> bytes) {
+  const auto hello = decode_hello(bytes);
+  if (!hello) return;
+  PALP_CHECK(hello->session_id != 0, "a Hello names its session");
+  PALP_CHECK(printable(hello->coupling, kNameSizeMax) && printable(hello->git, kNameSizeMax),
+             "names are short and printable");
+  const ControlBytes encoded = encode(*hello);
+  const auto again = decode_hello(encoded.view());
+  PALP_CHECK(again.has_value() && equal(encode(*again).view(), encoded.view()) &&
+                 again->role == hello->role && again->session_id == hello->session_id &&
+                 again->peer_session_id == hello->peer_session_id &&
+                 again->connection_id == hello->connection_id &&
+                 again->settings_hash == hello->settings_hash &&
+                 again->protocol_version == hello->protocol_version &&
+                 again->coupling == hello->coupling && again->git == hello->git,
+             "a Hello survives the wire");
+}
+
+void bye_laws(std::span<const std::byte> bytes) {
+  const auto bye = decode_bye(bytes);
+  if (!bye) return;
+  PALP_CHECK(static_cast<int>(bye->reason) < kByeReasonCount, "a reason of ours");
+  PALP_CHECK(printable(bye->text, kTextSizeMax), "a sentence is short and printable");
+  const auto again = decode_bye(encode(*bye).view());
+  PALP_CHECK(again.has_value() && again->session_id == bye->session_id &&
+                 again->peer_session_id == bye->peer_session_id && again->reason == bye->reason &&
+                 again->text == bye->text,
+             "a Bye survives the wire");
+}
+
+}  // namespace
+}  // namespace palp::link
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto datagram = palp::fuzz::as_bytes(data, size);
+  palp::link::header_laws(datagram);
+  const auto content = datagram.subspan(std::min(size, palp::link::kHeaderSize));
+  palp::link::telegram_laws(content);
+  palp::link::hello_laws(content);
+  palp::link::bye_laws(content);
+  return 0;
+}
