@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <string_view>
 
@@ -13,7 +14,8 @@ namespace {
 
 std::string number(const char* before, double value, int decimals, const char* after) {
   std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%s%.*f%s", before, decimals, value, after);
+  const bool zero = std::abs(value) < 0.5 * std::pow(10, -decimals);  // not "-0.00"
+  std::snprintf(text.data(), text.size(), "%s%.*f%s", before, decimals, zero ? 0 : value, after);
   return text.data();
 }
 

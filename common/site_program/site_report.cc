@@ -98,6 +98,11 @@ std::string to_json(const SiteReport& report) {
 int finish(const SiteReport& report, const std::string& path) {
   if (report.ending.code != config::ExitCode::Done) {
     io::error(report.ending.reason.empty() ? report.ending.outcome : report.ending.reason);
+  } else {
+    io::info(report.ending.outcome + (report.session_file.empty()
+                                          ? ""
+                                          : ": " + std::to_string(report.records.messages) +
+                                                " messages in " + report.session_file));
   }
   config::ExitCode code = report.ending.code;
   if (!path.empty()) {
