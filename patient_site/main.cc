@@ -133,13 +133,18 @@ class Program {
         device_{phantom_, settings_.simulation},
         law_{std::move(plan.law)},
         link_{settings_.link, std::make_unique<link::ProtobufCodec>()},
+        runner_{plan.runner},
         recording_{settings_.record, std::move(plan.info), 2},
         worker_{settings_.estimator, {contact_, depth_, recording_.recorder(1)}},
         node_{settings_.node,
               {device_, device_, law_, link_, recording_.recorder(0), contact_, depth_}},
         began_at_{clock_.now()},
-        estimator_{"palp-estimator", kEstimatorPause, [this](TimePoint) { worker_.drain(); }},
-        runner_{plan.runner, link_, [this](TimePoint now) { node_.tick(now); }} {}
+        estimator_{"palp-estimator", kEstimatorPause, [this](TimePoint) { worker_.drain(); }} {
+    runner_.start(link_, [this](TimePoint now) { node_.tick(now); });
+  }
+  ~Program() { runner_.halt(); }
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
 
   /// Shows how it goes until there is a reason to end.
   Ending run(io::Terminal& terminal);
@@ -155,6 +160,7 @@ class Program {
   SimulatedPhantom device_;
   coupling::PatientCoupling law_;
   link::Link link_;
+  site_program::Runner runner_;
   site_program::Recording recording_;
   SpscQueue<ContactSample> contact_{kContactSamples};  ///< writer: rt, reader: estimator
   Mailbox<DepthEstimate> depth_;                       ///< writer: estimator, reader: rt
@@ -165,7 +171,6 @@ class Program {
   site_program::StatusLine line_;
   site_program::RoundTrips round_trips_;
   io::BackgroundLoop estimator_;
-  site_program::Runner runner_;
 };
 
 Ending Program::run(io::Terminal& terminal) {

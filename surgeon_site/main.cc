@@ -126,14 +126,19 @@ class Program {
         device_{settings_.hand, std::move(plan.script)},
         law_{std::move(plan.law)},
         link_{settings_.link, std::make_unique<link::ProtobufCodec>()},
+        runner_{plan.runner},
         recording_{settings_.record, std::move(plan.info), 1},
         node_{settings_.node, {device_, law_, link_, recording_.recorder(0)}},
         began_at_{clock_.now()},
         watch_{{.peer = settings_.peer,
                 .patience = settings_.link.closed_after,
                 .round_trip_max = settings_.link.round_trip_max},
-               began_at_},
-        runner_{plan.runner, link_, [this](TimePoint now) { node_.tick(now); }} {}
+               began_at_} {
+    runner_.start(link_, [this](TimePoint now) { node_.tick(now); });
+  }
+  ~Program() { runner_.halt(); }
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
 
   /// Shows how it goes until there is a reason to end.
   Ending run(io::Terminal& terminal);
@@ -147,6 +152,7 @@ class Program {
   SimulatedHand device_;
   coupling::SurgeonCoupling law_;
   link::Link link_;
+  site_program::Runner runner_;
   site_program::Recording recording_;
   SurgeonNode node_;
   io::SteadyClock clock_;
@@ -155,7 +161,6 @@ class Program {
   site_program::StatusLine line_;
   site_program::RoundTrips round_trips_;
   bool advised_{};
-  site_program::Runner runner_;
 };
 
 Ending Program::run(io::Terminal& terminal) {

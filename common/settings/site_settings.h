@@ -31,7 +31,7 @@ struct LoopSettings {
 
 /// Of what arrives. `spec` in the words of netem; if given, the numbers are unused.
 struct ImpairmentSettings {
-  std::string spec;
+  std::string spec{};
   Duration delay{};
   Duration jitter{};  ///< standard deviation of the delay
   double loss{};      ///< [1]
@@ -42,7 +42,7 @@ struct ImpairmentSettings {
 };
 
 struct RecordSettings {
-  std::string file;  ///< empty: no session file
+  std::string file{};  ///< empty: no session file
   std::size_t queue_records{16384};
 };
 

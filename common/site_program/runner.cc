@@ -10,16 +10,21 @@ int io_priority(int rt_priority) noexcept { return rt_priority > 10 ? rt_priorit
 
 }  // namespace
 
-Runner::Runner(const RunnerConfig& config,
-               link::Link& link,
-               std::function<void(TimePoint now)> tick)
-    : loop_{config.loop} {
+Runner::Runner(const RunnerConfig& config) : loop_{config.loop} {
   io::SessionServerConfig server;
   server.session = config.session;
   server.address = config.address;
   server.wrap_transport = config.wrap_transport;
   server.priority = io_priority(loop_.priority);
   server_ = std::make_unique<io::SessionServer>(server, desk_);
+}
+
+Runner::~Runner() {
+  rt_.reset();
+  server_.reset();
+}
+
+void Runner::start(link::Link& link, std::function<void(TimePoint now)> tick) {
   const io::LoopConfig loop{.period = loop_.period,
                             .spin = loop_.spin,
                             .priority = loop_.priority,
@@ -29,11 +34,6 @@ Runner::Runner(const RunnerConfig& config,
         desk_.serve(link, now);
         tick(now);
       });
-}
-
-Runner::~Runner() {
-  rt_.reset();
-  server_.reset();
 }
 
 std::vector<std::string> Runner::shortcomings() const {
@@ -62,7 +62,7 @@ std::optional<std::string> Runner::tell_news(StatusLine& line) {
 
 void Runner::stop(const std::string& why) {
   server_->close(why);
-  rt_->stop();
+  if (rt_) rt_->stop();
 }
 
 void Runner::account(SiteReport& report) {

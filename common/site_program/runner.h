@@ -23,17 +23,20 @@ struct RunnerConfig {
   settings::LoopSettings loop;
 };
 
-/// Runs a site in real time: the threads rt and io, and what lies between them. Make it last: all
-/// that `tick` refers to, and the link, must outlive it. Thread: its maker's.
+/// Runs a site in real time: the threads rt and io, and what lies between them. Thread: its
+/// maker's.
 class Runner {
  public:
-  /// Listens or calls, and ticks. @throws std::runtime_error with one sentence.
-  Runner(const RunnerConfig& config, link::Link& link, std::function<void(TimePoint now)> tick);
+  /// Listens or calls. @throws std::runtime_error with one sentence.
+  explicit Runner(const RunnerConfig& config);
   ~Runner();
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
   [[nodiscard]] std::string local() const { return server_->local().to_string(); }
+  /// Ticks from now on until stop(), which comes before the end of all that `tick` refers to and of
+  /// the link.
+  void start(link::Link& link, std::function<void(TimePoint now)> tick);
   /// What of real time was asked for and not granted, in sentences.
   [[nodiscard]] std::vector<std::string> shortcomings() const;
   /// Tells people of sessions. @returns the sentence if there will never be one.
@@ -41,6 +44,8 @@ class Runner {
   [[nodiscard]] std::uint64_t sessions() const noexcept { return sessions_; }
   /// Says goodbye to the peer, then ends both threads. Idempotent.
   void stop(const std::string& why);
+  /// The end of the ticks, where stop() was not reached.
+  void halt() noexcept { rt_.reset(); }
   /// After stop(): loop and sessions.
   void account(SiteReport& report);
 

@@ -41,6 +41,17 @@ TEST(EndpointTest, EqualMeansSameAddressAndPort) {
   EXPECT_FALSE(Endpoint{} == Endpoint{});
 }
 
+TEST(EndpointTest, LoopbackIsWhatNeverLeavesTheMachine) {
+  for (const char* text : {"127.0.0.1:1", "127.255.255.254:1", "[::1]:1"}) {
+    EXPECT_TRUE(resolve_endpoint(text)->loopback()) << text;
+  }
+  for (const char* text :
+       {"126.255.255.255:1", "128.0.0.1:1", "0.0.0.0:1", "[::]:1", "[fe80::1]:1"}) {
+    EXPECT_FALSE(resolve_endpoint(text)->loopback()) << text;
+  }
+  EXPECT_FALSE(Endpoint{}.loopback());
+}
+
 TEST(EndpointTest, ForeignFamiliesAndShortAddressesAreNone) {
   sockaddr_in address{};
   address.sin_family = AF_INET;

@@ -3,6 +3,8 @@
 // Method: two servers on loopback with real links; the test's thread is the rt of both.
 #include "common/io/session_server.h"
 
+#include <atomic>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +32,8 @@ SessionServerConfig config_of(Role role, std::uint16_t port, const std::string& 
 class Site {
  public:
   Site(Role role, std::uint16_t port, const std::string& coupling = "direct")
-      : server{config_of(role, port, coupling), desk} {}
+      : Site{config_of(role, port, coupling)} {}
+  explicit Site(const SessionServerConfig& config) : server{config, desk} {}
 
   void tick(TimePoint now) {
     desk.serve(link, now);
@@ -123,6 +126,41 @@ TEST(SessionServerTest, SitesMeetAndTelegramsFlow) {
   EXPECT_GT(surgeon.accepted, 0U);
   EXPECT_GT(patient.server.socket_counts().received, 0U);
   EXPECT_GT(patient.server.socket_counts().sent, 0U);
+}
+
+/// Counts what passes and lets it pass.
+class Counting final : public link::Transport {
+ public:
+  Counting(std::unique_ptr<link::Transport> inner, std::atomic<int>& received)
+      : inner_{std::move(inner)}, received_{received} {}
+  bool send(std::span<const std::byte> datagram, TimePoint now) noexcept override {
+    return inner_->send(datagram, now);
+  }
+  std::optional<link::Datagram> receive(std::span<std::byte, link::kDatagramSizeMax> buffer,
+                                        TimePoint now) noexcept override {
+    const auto datagram = inner_->receive(buffer, now);
+    if (datagram) {
+      ++received_;
+    }
+    return datagram;
+  }
+
+ private:
+  std::unique_ptr<link::Transport> inner_;
+  std::atomic<int>& received_;
+};
+
+TEST(SessionServerTest, WhatIsPutBetweenSocketAndLinkCarriesTheTelegrams) {
+  std::atomic<int> received{0};
+  SessionServerConfig config = config_of(Role::Patient, 0, "direct");
+  config.wrap_transport = [&received](std::unique_ptr<link::Transport> socket) {
+    return std::make_unique<Counting>(std::move(socket), received);
+  };
+  Site patient{config};
+  Site surgeon{Role::Surgeon, patient.server.local().port()};
+  ASSERT_TRUE(meet(surgeon, patient));
+  EXPECT_GE(received, static_cast<int>(patient.accepted));
+  EXPECT_GT(received, 0);
 }
 
 TEST(SessionServerTest, SurgeonMayComeFirst) {

@@ -1,0 +1,55 @@
+#include "common/site_program/peer_watch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palp::site_program {
+namespace {
+
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+constexpr TimePoint kStart{seconds{100}};
+
+link::LinkHealth link_in(LinkState state) {
+  link::LinkHealth link;
+  link.state = state;
+  return link;
+}
+
+PeerWatch watch() { return {{.peer = "127.0.0.1:9000", .patience = seconds{30}}, kStart}; }
+
+TEST(PeerWatchTest, NobodyAnswersIsUnreachableAfterThePatience) {
+  PeerWatch watch_it = watch();
+  EXPECT_FALSE(watch_it.judge(link_in(LinkState::Down), kStart + seconds{30} - Duration{1}));
+  const auto ending = watch_it.judge(link_in(LinkState::Down), kStart + seconds{30});
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, config::ExitCode::CannotOpen);
+  EXPECT_EQ(ending->outcome, "unreachable");
+  EXPECT_EQ(ending->reason, "no session with 127.0.0.1:9000 within 30 s: nobody answers there");
+}
+
+TEST(PeerWatchTest, ALinkThatWorkedAndBrokeIsAPeerLost) {
+  PeerWatch watch_it = watch();
+  EXPECT_FALSE(watch_it.judge(link_in(LinkState::Live), kStart + seconds{50}));
+  EXPECT_FALSE(watch_it.judge(link_in(LinkState::Lost), kStart + seconds{79}));
+  EXPECT_FALSE(watch_it.judge(link_in(LinkState::Live), kStart + seconds{79})) << "it came back";
+  EXPECT_FALSE(watch_it.judge(link_in(LinkState::Lost), kStart + seconds{108}));
+  const auto ending = watch_it.judge(link_in(LinkState::Down), kStart + seconds{109});
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, config::ExitCode::CutShort);
+  EXPECT_EQ(ending->outcome, "peer lost");
+}
+
+TEST(PeerWatchTest, ARoundTripAboveTheLimitIsNamed) {
+  PeerWatch watch_it = watch();
+  link::LinkHealth link = link_in(LinkState::Down);
+  link.round_trip_min = std::chrono::milliseconds{2600};
+  const auto ending = watch_it.judge(link, kStart + seconds{30});
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, config::ExitCode::CannotOpen);
+  EXPECT_THAT(ending->reason, HasSubstr("2600 ms is above the limit of 2500 ms"));
+}
+
+}  // namespace
+}  // namespace palp::site_program
