@@ -21,7 +21,7 @@ std::string number(const char* before, double value, int decimals, const char* a
 std::string link_text(const link::LinkHealth& link) {
   if (link.state == LinkState::Down) return "no link";
   std::string text = number("rtt ", seconds(link.round_trip) * 1e3, 1, " ms");
-  const std::uint64_t all = link.accepted + link.lost;
+  const std::uint64_t all = link.accepted + link.late + link.lost;
   const double lost =
       all == 0 ? 0 : static_cast<double>(link.lost) / static_cast<double>(all) * 100;
   text += number("  loss ", lost, 1, " %");

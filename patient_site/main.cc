@@ -196,22 +196,14 @@ void Program::look(TimePoint now) {
   line_.show(status_line(status), now);
 }
 
-/// A patient site waits for surgeons until it is told to stop, so that is its normal end; but not
-/// in the middle of a palpation, and not once it has stopped itself.
+/// A patient site waits for surgeons until it is told to stop, so that is its normal end, unless it
+/// had stopped itself. A surgeon's goodbye may still be on its way.
 Ending Program::told_to_stop() {
   const PatientStatus& status = node_.status().get();
-  switch (status.state) {
-    case SiteState::Stopped:
-      return {ExitCode::CutShort,
-              "stopped",
-              "the site had stopped itself: " + std::string{record::to_string(status.reason)}};
-    case SiteState::Engaged:
-    case SiteState::Hold:
-      return {ExitCode::CutShort, "aborted", "aborted by the user in the middle of a palpation"};
-    case SiteState::Parked:
-    case SiteState::Clutched:
-    case SiteState::Retract:
-      break;
+  if (status.state == SiteState::Stopped) {
+    return {ExitCode::CutShort,
+            "stopped",
+            "the site had stopped itself: " + std::string{record::to_string(status.reason)}};
   }
   return {ExitCode::Done, runner_.sessions() > 0 ? "completed" : "no session", ""};
 }

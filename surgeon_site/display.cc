@@ -24,7 +24,7 @@ double milliseconds(Duration span) noexcept { return seconds(span) * 1e3; }
 std::string link_text(const link::LinkHealth& link) {
   if (link.state == LinkState::Down) return "no link";
   std::string text = number("rtt ", milliseconds(link.round_trip), 1, " ms");
-  const std::uint64_t all = link.accepted + link.lost;
+  const std::uint64_t all = link.accepted + link.late + link.lost;
   const double lost =
       all == 0 ? 0 : static_cast<double>(link.lost) / static_cast<double>(all) * 100;
   text += number("  loss ", lost, 1, " %");

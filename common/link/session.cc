@@ -136,7 +136,7 @@ std::optional<std::string> Session::mismatch(const Hello& hello) const {
   }
   if (hello.settings_hash != config_.settings_hash) {
     return side_by_side(config_.role,
-                        "the settings that both sites must share differ, by hash",
+                        "the settings of the coupling or the control periods differ, by hash",
                         hexadecimal(config_.settings_hash),
                         hexadecimal(hello.settings_hash));
   }

@@ -65,7 +65,10 @@ void Recording::tell_of(const record::Record& record) {
 }
 
 void Recording::tell_news(StatusLine& line) {
-  for (std::string sentence; news_.try_dequeue(sentence);) line.info(sentence);
+  for (std::string sentence; news_.try_dequeue(sentence);) {
+    if (sentence != told_last_) line.info(sentence);
+    told_last_ = sentence;
+  }
 }
 
 const RecordAccount& Recording::stop() {

@@ -38,7 +38,7 @@ class Recording {
   Recording& operator=(const Recording&) = delete;
 
   [[nodiscard]] record::Recorder& recorder(std::size_t writer) { return *queues_.at(writer); }
-  /// Tells people of changes of state and of notes.
+  /// Tells people of changes of state and of notes; what repeats itself once.
   void tell_news(StatusLine& line);
   /// Once all writers have ended: writes what waits and closes the file. Idempotent.
   const RecordAccount& stop();
@@ -54,6 +54,7 @@ class Recording {
   std::optional<record::SessionWriter> writer_;
   std::vector<std::unique_ptr<record::QueueRecorder>> queues_;
   SpscQueue<std::string> news_{kNewsMax};  ///< writer: record, reader: the maker
+  std::string told_last_;  ///< the maker's
   bool told_of_full_disk_{};
   RecordAccount account_;
   std::optional<io::BackgroundLoop> loop_;

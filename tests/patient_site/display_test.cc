@@ -19,7 +19,8 @@ TEST(PatientDisplayTest, ShowsTheSiteInItsUnits) {
   status.state = SiteState::Engaged;
   status.link.state = LinkState::Live;
   status.link.round_trip = std::chrono::microseconds{5250};
-  status.link.accepted = 90;
+  status.link.accepted = 60;
+  status.link.late = 30;  // they came, and are not lost
   status.link.lost = 10;
   status.position = 3.456e-3;
   status.contact_force = 0.734;

@@ -20,7 +20,8 @@ SurgeonStatus engaged() {
   status.state = SiteState::Engaged;
   status.link.state = LinkState::Live;
   status.link.round_trip = 12300us;
-  status.link.accepted = 980;
+  status.link.accepted = 500;
+  status.link.late = 480;  // they came, and are not lost
   status.link.lost = 20;
   status.force = 0.482;
   status.depth.number = 3;
@@ -71,6 +72,20 @@ TEST(DisplayTest, SaysTheOutcomeOfAFinishedScript) {
   status.script.outcome = ScriptOutcome::Completed;
   EXPECT_THAT(status_line(status),
               AllOf(HasSubstr("[##########] 100 %  completed"), Not(HasSubstr("taps"))));
+}
+
+TEST(DelayAdviceTest, IsGivenAboveTheLimitOnly) {
+  constexpr Duration kLimit = std::chrono::milliseconds{20};
+  SurgeonStatus status;
+  status.link.round_trip = std::chrono::milliseconds{60};
+  EXPECT_FALSE(delay_advice(status, kLimit, false)) << "the link is down";
+  status.link.state = LinkState::Live;
+  EXPECT_THAT(delay_advice(status, kLimit, false).value(),
+              testing::AllOf(testing::HasSubstr("60.0 ms"),
+                             testing::HasSubstr("does not engage here unless --force-engage")));
+  EXPECT_THAT(delay_advice(status, kLimit, true).value(), testing::HasSubstr("engages here"));
+  status.link.round_trip = kLimit;
+  EXPECT_FALSE(delay_advice(status, kLimit, false));
 }
 
 }  // namespace

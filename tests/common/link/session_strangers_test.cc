@@ -63,7 +63,8 @@ TEST(SessionStrangersTest, SitesThatDifferRefuseEachOtherInOneSentence) {
   cases[1].text = "the sites use different couplings: surgeon wave, patient direct";
   cases[2].surgeon.settings_hash = 0xAB;
   cases[2].text =
-      "the settings that both sites must share differ, by hash: surgeon 00000000000000ab, "
+      "the settings of the coupling or the control periods differ, by hash: surgeon "
+      "00000000000000ab, "
       "patient 000000000000004d";
   cases[3].patient = config_of(Role::Surgeon);
   cases[3].patient.git = "other";

@@ -1,5 +1,6 @@
 #include "common/site_program/recording.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
@@ -68,19 +69,32 @@ TEST(RecordingTest, AFullQueueIsCounted) {
   EXPECT_EQ(recording.stop().dropped, refused);
 }
 
+std::string told(Recording& recording) {
+  recording.stop();
+  StatusLine line;
+  io::start_diagnostics("test");
+  testing::internal::CaptureStderr();
+  recording.tell_news(line);
+  return testing::internal::GetCapturedStderr();
+}
+
 TEST(RecordingTest, ChangesOfStateAreToldToPeople) {
   Recording recording{{}, patient_info(), 1};
   (void)recording.recorder(0).record(
       record::Transition{.from = SiteState::Engaged,
                          .to = SiteState::Hold,
                          .reason = static_cast<std::uint16_t>(record::NoteCode::GapHold)});
-  recording.stop();
-  StatusLine line;
-  io::start_diagnostics("test");
-  testing::internal::CaptureStderr();
-  recording.tell_news(line);
-  EXPECT_THAT(testing::internal::GetCapturedStderr(),
-              testing::HasSubstr("ENGAGED -> HOLD: nothing arrived: hold"));
+  EXPECT_THAT(told(recording), testing::HasSubstr("ENGAGED -> HOLD: nothing arrived: hold"));
+}
+
+TEST(RecordingTest, WhatRepeatsItselfIsToldOnce) {
+  Recording recording{{}, patient_info(), 1};
+  for (int i = 0; i < 20; ++i) {
+    (void)recording.recorder(0).record(
+        record::Note{.code = static_cast<std::uint16_t>(record::NoteCode::RoundTripTooLong)});
+  }
+  const std::string text = told(recording);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
 }
 
 }  // namespace
