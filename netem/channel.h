@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "common/core/histogram.h"
 #include "common/core/time.h"
 #include "netem/fate.h"
-#include "netem/histogram.h"
 #include "netem/impairment.h"
 
 namespace palp::netem {

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/core/histogram.h"
 #include "common/core/time.h"
 #include "common/link/transport.h"
 #include "netem/channel.h"
 #include "netem/datagram_socket.h"
 #include "netem/endpoint.h"
-#include "netem/histogram.h"
 #include "netem/impairment.h"
 
 namespace palp::netem {

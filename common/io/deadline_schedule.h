@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "common/core/histogram.h"
 #include "common/core/time.h"
-#include "common/io/span_histogram.h"
 
 namespace palp::io {
 
@@ -32,7 +32,7 @@ class DeadlineSchedule {
     began_at_ = now;
     const Duration lateness = std::max(Duration{0}, now - deadline_);
     progress_.lateness_max = std::max(progress_.lateness_max, lateness);
-    lateness_.add(lateness);
+    lateness_.record(lateness);
     ++progress_.ticks;
   }
 
@@ -50,14 +50,14 @@ class DeadlineSchedule {
   }
 
   [[nodiscard]] const LoopProgress& progress() const noexcept { return progress_; }
-  [[nodiscard]] const SpanHistogram& lateness() const noexcept { return lateness_; }
+  [[nodiscard]] const Histogram& lateness() const noexcept { return lateness_; }
 
  private:
   TimePoint deadline_;
   Duration period_;
   TimePoint began_at_{};
   LoopProgress progress_;
-  SpanHistogram lateness_;
+  Histogram lateness_;
 };
 
 }  // namespace palp::io

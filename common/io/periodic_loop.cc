@@ -22,7 +22,7 @@ TimePoint wait_for(const SteadyClock& clock, TimePoint deadline, Duration spin) 
 
 LoopStats account(const DeadlineSchedule& schedule, RealtimeGrant grant) {
   const LoopProgress& progress = schedule.progress();
-  const SpanHistogram& lateness = schedule.lateness();
+  const Histogram& lateness = schedule.lateness();
   return {.ticks = progress.ticks,
           .missed = progress.missed,
           .overruns = progress.overruns,

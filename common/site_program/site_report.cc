@@ -44,12 +44,12 @@ ordered_json rejected_json(const link::LinkHealth& link, const link::SessionCoun
 
 void RoundTrips::add(const link::LinkHealth& link) noexcept {
   if (link.state != LinkState::Live || link.round_trip <= Duration{0}) return;
-  all_.add(link.round_trip);
+  all_.record(link.round_trip);
   least_ = std::min(least_.value_or(Duration::max()), link.round_trip_min);
 }
 
 std::optional<Duration> RoundTrips::median() const noexcept {
-  if (all_.total() == 0) return std::nullopt;
+  if (all_.count() == 0) return std::nullopt;
   return all_.quantile(0.5);
 }
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "common/core/histogram.h"
 #include "common/io/periodic_loop.h"
-#include "common/io/span_histogram.h"
 #include "common/link/session.h"
 #include "common/link/telegram.h"
 #include "common/site_program/ending.h"
@@ -21,7 +21,7 @@ class RoundTrips {
   [[nodiscard]] std::optional<Duration> least() const noexcept { return least_; }
 
  private:
-  io::SpanHistogram all_;
+  Histogram all_;
   std::optional<Duration> least_;
 };
 

@@ -73,7 +73,7 @@ RC_GTEST_PROP(DeadlineScheduleTest, EveryPeriodIsEitherTickedOrMissedAndNoDeadli
   }
   const auto periods = static_cast<std::uint64_t>((schedule.deadline() - kFirst) / kPeriod);
   RC_ASSERT(schedule.progress().ticks + schedule.progress().missed == periods);
-  RC_ASSERT(schedule.lateness().total() == schedule.progress().ticks);
+  RC_ASSERT(schedule.lateness().count() == schedule.progress().ticks);
 }
 
 }  // namespace

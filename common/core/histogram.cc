@@ -1,8 +1,8 @@
-#include "netem/histogram.h"
+#include "common/core/histogram.h"
 
 #include <cmath>
 
-namespace palp::netem {
+namespace palp {
 
 Duration Histogram::mean() const noexcept {
   if (count_ == 0) return {};
@@ -30,4 +30,4 @@ Duration Histogram::quantile(double share) const noexcept {
   return max_;
 }
 
-}  // namespace palp::netem
+}  // namespace palp

@@ -1,4 +1,4 @@
-#include "netem/histogram.h"
+#include "common/core/histogram.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-namespace palp::netem {
+namespace palp {
 namespace {
-
-using std::chrono::milliseconds;
 
 TEST(HistogramTest, IsZeroWhileEmpty) {
   const Histogram histogram;
@@ -44,6 +42,16 @@ RC_GTEST_PROP(HistogramTest, QuantilesAreWithinACellOfTheSortedSpans, ()) {
   RC_ASSERT(histogram.quantile(1) == histogram.max());
 }
 
+TEST(HistogramTest, QuantilesSplitTheCountAsAsked) {
+  Histogram histogram;
+  for (int i = 0; i < 990; ++i) histogram.record(Duration{10});
+  for (int i = 0; i < 10; ++i) histogram.record(Duration{100'000});
+  EXPECT_LE(histogram.quantile(0.5), Duration{11});
+  EXPECT_LE(histogram.quantile(0.99), Duration{11});
+  EXPECT_GE(histogram.quantile(0.991), Duration{99'000});
+  EXPECT_EQ(histogram.quantile(1.0), Duration{100'000});
+}
+
 TEST(HistogramTest, CountsWhatLiesOutsideAtItsEdges) {
   Histogram histogram;
   histogram.record(Duration{-5});
@@ -54,4 +62,4 @@ TEST(HistogramTest, CountsWhatLiesOutsideAtItsEdges) {
 }
 
 }  // namespace
-}  // namespace palp::netem
+}  // namespace palp

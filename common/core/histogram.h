@@ -8,7 +8,7 @@
 
 #include "common/core/time.h"
 
-namespace palp::netem {
+namespace palp {
 
 /// Log-linear counts of spans: each octave of nanoseconds in 128 equal cells, so a quantile is
 /// within 0.8 % (exact at the extremes and when all spans are equal). Spans below 0 count as 0,
@@ -52,4 +52,4 @@ class Histogram {
   double sum_{};  ///< [ns]
 };
 
-}  // namespace palp::netem
+}  // namespace palp
