@@ -30,24 +30,6 @@ Duration read_clock(clockid_t clock) noexcept {
   return std::chrono::seconds{now.tv_sec} + std::chrono::nanoseconds{now.tv_nsec};
 }
 
-sockaddr_in socket_address(const Endpoint& endpoint) noexcept {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(endpoint.address);
-  address.sin_port = htons(endpoint.port);
-  return address;
-}
-
-Endpoint endpoint_of(const sockaddr_in& address) noexcept {
-  return {ntohl(address.sin_addr.s_addr), ntohs(address.sin_port)};
-}
-
-/// The sockets API takes every family through this one type.
-const sockaddr* generic(const sockaddr_in& address) noexcept {
-  return reinterpret_cast<const sockaddr*>(&address);
-}
-sockaddr* generic(sockaddr_in& address) noexcept { return reinterpret_cast<sockaddr*>(&address); }
-
 /// The kernel stamps on the wall clock; both clocks read now carry the stamp over.
 TimePoint arrival_of(msghdr& header, Duration monotonic, Duration wall) noexcept {
   for (cmsghdr* part = CMSG_FIRSTHDR(&header); part != nullptr; part = CMSG_NXTHDR(&header, part)) {
@@ -63,6 +45,12 @@ TimePoint arrival_of(msghdr& header, Duration monotonic, Duration wall) noexcept
 
 [[noreturn]] void cannot(const std::string& what) {
   throw std::system_error(errno, std::generic_category(), what);
+}
+
+int open_socket(const io::Endpoint& of) {
+  const int descriptor = ::socket(of.family(), SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (descriptor < 0) cannot("cannot open a UDP socket");
+  return descriptor;
 }
 
 }  // namespace
@@ -82,7 +70,7 @@ struct DatagramSocket::Batch {
   }
   std::array<mmsghdr, kBatch> headers{};
   std::array<iovec, kBatch> parts{};
-  std::array<sockaddr_in, kBatch> senders{};
+  std::array<sockaddr_storage, kBatch> senders{};
   alignas(cmsghdr) std::array<std::array<char, 64>, kBatch> controls{};
   std::array<std::array<std::byte, kBufferSize>, kBatch> buffers{};
   std::array<ReceivedDatagram, kBatch> datagrams{};
@@ -108,39 +96,36 @@ DatagramSocket::~DatagramSocket() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-DatagramSocket DatagramSocket::bound(const Endpoint& local) {
-  const int descriptor = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (descriptor < 0) cannot("cannot open a UDP socket");
-  DatagramSocket socket{descriptor};
-  const sockaddr_in address = socket_address(local);
-  if (::bind(descriptor, generic(address), sizeof address) != 0) {
-    cannot("cannot listen on " + to_string(local));
+DatagramSocket DatagramSocket::bound(const io::Endpoint& local) {
+  DatagramSocket socket{open_socket(local)};
+  if (::bind(socket.descriptor_, local.address(), local.size()) != 0) {
+    cannot("cannot listen on " + local.to_string());
   }
   return socket;
 }
 
-DatagramSocket DatagramSocket::connected(const Endpoint& peer) {
-  const int descriptor = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (descriptor < 0) cannot("cannot open a UDP socket");
-  DatagramSocket socket{descriptor};
-  const sockaddr_in address = socket_address(peer);
-  if (::connect(descriptor, generic(address), sizeof address) != 0) {
-    cannot("cannot forward to " + to_string(peer));
+DatagramSocket DatagramSocket::connected(const io::Endpoint& peer) {
+  DatagramSocket socket{open_socket(peer)};
+  if (::connect(socket.descriptor_, peer.address(), peer.size()) != 0) {
+    cannot("cannot forward to " + peer.to_string());
   }
   return socket;
 }
 
-Endpoint DatagramSocket::local() const {
-  sockaddr_in address{};
+io::Endpoint DatagramSocket::local() const {
+  sockaddr_storage address{};
   socklen_t size = sizeof address;
-  if (::getsockname(descriptor_, generic(address), &size) != 0) cannot("cannot read an address");
-  return endpoint_of(address);
+  // The sockets API takes every family through this one type.
+  if (::getsockname(descriptor_, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
+    cannot("cannot read an address");
+  }
+  return {&address, size};
 }
 
 std::span<const ReceivedDatagram> DatagramSocket::receive() noexcept {
   Batch& batch = *batch_;
   for (mmsghdr& header : batch.headers) {
-    header.msg_hdr.msg_namelen = sizeof(sockaddr_in);
+    header.msg_hdr.msg_namelen = sizeof(sockaddr_storage);
     header.msg_hdr.msg_controllen = batch.controls[0].size();
   }
   const int got = ::recvmmsg(descriptor_, batch.headers.data(), kBatch, MSG_DONTWAIT, nullptr);
@@ -155,14 +140,13 @@ std::span<const ReceivedDatagram> DatagramSocket::receive() noexcept {
     const std::size_t size = std::min<std::size_t>(batch.headers[i].msg_len, kBufferSize);
     batch.datagrams[i] = {std::span{batch.buffers[i]}.first(size),
                           arrival_of(batch.headers[i].msg_hdr, monotonic, wall),
-                          endpoint_of(batch.senders[i])};
+                          io::Endpoint{&batch.senders[i], batch.headers[i].msg_hdr.msg_namelen}};
   }
   return std::span{batch.datagrams}.first(count);
 }
 
 bool DatagramSocket::send(std::span<const std::byte> datagram,
-                          const std::optional<Endpoint>& to) noexcept {
-  const sockaddr_in address = to ? socket_address(*to) : sockaddr_in{};
+                          const std::optional<io::Endpoint>& to) noexcept {
   // An error may be the answer to an earlier datagram; the first call only fetches it, so the
   // datagram at hand gets a second one.
   for (int attempt = 0; attempt < 2; ++attempt) {
@@ -170,8 +154,8 @@ bool DatagramSocket::send(std::span<const std::byte> datagram,
                                   datagram.data(),
                                   datagram.size(),
                                   MSG_DONTWAIT | MSG_NOSIGNAL,
-                                  to ? generic(address) : nullptr,
-                                  to ? sizeof address : 0);
+                                  to ? to->address() : nullptr,
+                                  to ? to->size() : 0);
     if (sent >= 0) return true;
     ++errors_;
     if (errno != ECONNREFUSED) return false;

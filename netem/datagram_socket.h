@@ -7,7 +7,7 @@
 #include <span>
 
 #include "common/core/time.h"
-#include "netem/endpoint.h"
+#include "common/io/endpoint.h"
 
 namespace palp::netem {
 
@@ -18,7 +18,7 @@ namespace palp::netem {
 struct ReceivedDatagram {
   std::span<const std::byte> bytes;  ///< valid until the next receive()
   TimePoint arrived_at{};            ///< the kernel's stamp on the monotonic line
-  Endpoint from;
+  io::Endpoint from;
 };
 
 /// A UDP socket that never blocks and survives the errors of its peers: they are counted.
@@ -26,21 +26,21 @@ struct ReceivedDatagram {
 class DatagramSocket {
  public:
   /// Bound to `local`. @throws std::system_error.
-  static DatagramSocket bound(const Endpoint& local);
+  static DatagramSocket bound(const io::Endpoint& local);
   /// Connected to `peer`: hears nobody else. @throws std::system_error.
-  static DatagramSocket connected(const Endpoint& peer);
+  static DatagramSocket connected(const io::Endpoint& peer);
 
   DatagramSocket(DatagramSocket&& other) noexcept;
   DatagramSocket& operator=(DatagramSocket&&) = delete;
   ~DatagramSocket();
 
   [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
-  [[nodiscard]] Endpoint local() const;
+  [[nodiscard]] io::Endpoint local() const;
 
   /// What waits, at most 64 datagrams; empty: nothing does.
   [[nodiscard]] std::span<const ReceivedDatagram> receive() noexcept;
   /// `to`: for a socket that is bound only. @returns false: not sent, counted.
-  bool send(std::span<const std::byte> datagram, const std::optional<Endpoint>& to) noexcept;
+  bool send(std::span<const std::byte> datagram, const std::optional<io::Endpoint>& to) noexcept;
   /// Refused, unreachable, out of buffers ...: what the kernel answered to receive() and send().
   [[nodiscard]] std::uint64_t errors() const noexcept { return errors_; }
 

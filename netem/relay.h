@@ -7,19 +7,19 @@
 
 #include "common/core/histogram.h"
 #include "common/core/time.h"
+#include "common/io/endpoint.h"
 #include "common/link/transport.h"
 #include "netem/channel.h"
 #include "netem/datagram_socket.h"
-#include "netem/endpoint.h"
 #include "netem/impairment.h"
 
 namespace palp::netem {
 
 struct RelayConfig {
-  Endpoint listen{};   ///< the surgeon's side
-  Endpoint forward{};  ///< the patient's
-  Impairment up{};     ///< surgeon to patient
-  Impairment down{};   ///< patient to surgeon
+  io::Endpoint listen;   ///< the surgeon's side
+  io::Endpoint forward;  ///< the patient's
+  Impairment up{};       ///< surgeon to patient
+  Impairment down{};     ///< patient to surgeon
   std::uint64_t seed{1};
   std::size_t in_flight_max{16384};  ///< datagrams each way: 2 s of delay at 8 kHz
   int priority{};                    ///< SCHED_FIFO 1..99 if permitted; 0: leave it as it is
@@ -49,10 +49,10 @@ class Relay {
   /// Works for `span`, or until the stop descriptor is readable. @returns false: told to stop.
   bool serve(Duration span);
 
-  [[nodiscard]] Endpoint listening_on() const { return client_side_.local(); }
+  [[nodiscard]] io::Endpoint listening_on() const { return client_side_.local(); }
   /// Where the patient sees us.
-  [[nodiscard]] Endpoint forwarding_from() const { return server_side_.local(); }
-  [[nodiscard]] const std::optional<Endpoint>& client() const noexcept { return client_; }
+  [[nodiscard]] io::Endpoint forwarding_from() const { return server_side_.local(); }
+  [[nodiscard]] const std::optional<io::Endpoint>& client() const noexcept { return client_; }
   [[nodiscard]] bool real_time() const noexcept { return real_time_; }
   [[nodiscard]] const Channel& channel(Direction direction) const noexcept {
     return direction == Direction::Up ? up_ : down_;
@@ -72,7 +72,7 @@ class Relay {
   Channel down_;
   int stop_descriptor_;
   bool real_time_;
-  std::optional<Endpoint> client_;
+  std::optional<io::Endpoint> client_;
   std::array<RelayTraffic, 2> traffic_;  ///< by Direction
   Duration lead_{};                      ///< running median of what a send call takes
   TimePoint awake_since_{};

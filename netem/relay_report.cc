@@ -1,10 +1,6 @@
 #include "netem/relay_report.h"
 
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -88,8 +84,8 @@ std::string relay_report(const Relay& relay, const RelayRun& run) {
   report["schema"] = "palp.relay/1";
   report["preset"] = run.preset.empty() ? ordered_json(nullptr) : ordered_json(run.preset);
   report["seed"] = run.seed;
-  report["listen"] = to_string(relay.listening_on());
-  report["forward"] = to_string(run.forward);
+  report["listen"] = relay.listening_on().to_string();
+  report["forward"] = run.forward.to_string();
   report["duration_s"] = seconds(run.duration);
   report["real_time"] = relay.real_time();
   report["up"] = direction_report(relay, Direction::Up, run.up);
@@ -99,19 +95,6 @@ std::string relay_report(const Relay& relay, const RelayRun& run) {
 
 std::string relay_summary(const Relay& relay) {
   return direction_summary(relay, Direction::Up) + direction_summary(relay, Direction::Down);
-}
-
-Result<std::string> write_whole(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".part";
-  std::ofstream file{temporary, std::ios::binary | std::ios::trunc};
-  file << text;
-  file.close();
-  if (!file || std::rename(temporary.c_str(), path.c_str()) != 0) {
-    const std::string reason = std::strerror(errno);
-    std::remove(temporary.c_str());
-    return fail("cannot write the report to '" + path + "': " + reason);
-  }
-  return path;
 }
 
 }  // namespace palp::netem

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <string>
 
-#include "common/core/result.h"
 #include "netem/relay.h"
 
 namespace palp::netem {
@@ -14,7 +13,7 @@ struct RelayRun {
   Impairment up;
   Impairment down;
   std::uint64_t seed{};
-  Endpoint forward;
+  io::Endpoint forward;
   Duration duration{};
 };
 
@@ -23,9 +22,5 @@ struct RelayRun {
 
 /// Two lines for people.
 [[nodiscard]] std::string relay_summary(const Relay& relay);
-
-/// Writes a file whole: under a temporary name first, then renamed.
-/// @returns or the sentence that says why not.
-[[nodiscard]] Result<std::string> write_whole(const std::string& path, const std::string& text);
 
 }  // namespace palp::netem

@@ -329,6 +329,8 @@ void CommandLine::knob(const std::string& flag, const std::string& path) {
   });
 }
 
+void CommandLine::footer(const std::string& text) { parts_->app->footer(text); }
+
 void CommandLine::required() {
   PALP_CHECK(!parts_->declared.empty(), "required() follows a declaration");
   parts_->declared.back().required = true;
@@ -387,6 +389,9 @@ std::string CommandLine::chosen_verb() const {
 int leave(const Ending& ending) {
   const bool done = ending.code == ExitCode::Done;
   const bool ended = !ending.text.empty() && ending.text.back() == '\n';
+  if (ending.text.empty()) {
+    return exit_status(ending.code);
+  }
   (void)std::fputs((ending.text + (ended ? "" : "\n")).c_str(), done ? stdout : stderr);
   return exit_status(ending.code);
 }

@@ -20,7 +20,8 @@ struct Ending {
   std::string text;
 };
 
-/// Prints the text (to standard output if Done, else to standard error) and gives main()'s value.
+/// Prints the text (to standard output if Done, else to standard error; an empty one
+/// not at all) and gives main()'s value.
 [[nodiscard]] int leave(const Ending& ending);
 
 /// The flags of a program, or of one of its verbs. Each declaration binds a flag to a variable that
@@ -85,6 +86,10 @@ class CommandLine {
   /// A flag for one field of the document: meaning, unit, range and default come from the schema.
   /// A boolean field gives a switch that sets it to true.
   void knob(const std::string& flag, const std::string& path);
+
+  /// What --help says below the flags: lines of at most 100 columns. Not beside settings(), which
+  /// says its own there.
+  void footer(const std::string& text);
 
   /// The flag or argument declared before must be given.
   void required();

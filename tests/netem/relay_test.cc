@@ -2,58 +2,23 @@
 
 #include <algorithm>
 #include <array>
-#include <csignal>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <optional>
-#include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include "netem/relay_report.h"
+#include "tests/netem/datagrams.h"
 #include "tests/netem/impairment_builders.h"
 
 /// Goal: datagrams cross a real relay between real sockets as its channels decide, whatever the
-/// peers do. Method: this thread is client, server and, through short calls of serve(), the relay;
-/// the last tests start the program itself. Every wait has a deadline, ports come from the kernel.
+/// peers do. Method: this thread is client, server and, through short calls of serve(), the relay.
+/// Every wait has a deadline, ports come from the kernel.
 namespace palp::netem {
 namespace {
 
 using std::chrono::milliseconds;
-
-constexpr Duration kDeadline = std::chrono::seconds{10};
-const Endpoint kAnyPort = *parse_endpoint("127.0.0.1:0");
-
-std::vector<std::byte> saying(std::uint32_t number) {
-  std::vector<std::byte> datagram(100);
-  std::memcpy(datagram.data(), &number, sizeof number);
-  return datagram;
-}
-
-struct Heard {
-  std::vector<std::uint32_t> numbers;
-  Endpoint from;
-};
-
-void hear(DatagramSocket& socket, Heard& heard) {
-  for (auto got = socket.receive(); !got.empty(); got = socket.receive()) {
-    for (const ReceivedDatagram& datagram : got) {
-      std::uint32_t number = 0;
-      std::memcpy(&number, datagram.bytes.data(), sizeof number);
-      heard.numbers.push_back(number);
-      heard.from = datagram.from;
-    }
-  }
-}
 
 class RelayTest : public ::testing::Test {
  protected:
@@ -123,7 +88,7 @@ TEST_F(RelayTest, LosesAndDuplicatesAsTheChannelDecides) {
 
 TEST_F(RelayTest, ARestartedClientWithANewPortGetsTheReplies) {
   Relay relay = this->relay("none");
-  Endpoint back;
+  io::Endpoint back;
   {
     DatagramSocket first = DatagramSocket::connected(relay.listening_on());
     first.send(saying(1), std::nullopt);
@@ -152,7 +117,7 @@ TEST_F(RelayTest, RepliesBeforeAnyClientAreCountedNotSent) {
 }
 
 TEST_F(RelayTest, SurvivesAServerThatVanishesAndComesBack) {
-  Endpoint address;
+  io::Endpoint address;
   {
     const DatagramSocket gone = DatagramSocket::bound(kAnyPort);
     address = gone.local();
@@ -191,7 +156,7 @@ TEST_F(RelayTest, AnAddressInUseIsAnException) {
 }
 
 TEST(DatagramSocketTest, AnEarlierRefusalDoesNotCostTheDatagramAtHand) {
-  Endpoint address;
+  io::Endpoint address;
   {
     const DatagramSocket gone = DatagramSocket::bound(kAnyPort);
     address = gone.local();
@@ -201,223 +166,6 @@ TEST(DatagramSocketTest, AnEarlierRefusalDoesNotCostTheDatagramAtHand) {
   // On loopback the refusal is there before the call returns; the next call hears of it.
   EXPECT_TRUE(socket.send(saying(2), std::nullopt));
   EXPECT_EQ(socket.errors(), 1U);
-}
-
-TEST(EndpointTest, ReadsAddressesAndRefusesTheRest) {
-  EXPECT_EQ(to_string(*parse_endpoint("10.1.2.3:65535")), "10.1.2.3:65535");
-  EXPECT_EQ(to_string(*parse_endpoint("localhost:0")), "127.0.0.1:0");
-  for (const char* text : {"",
-                           "127.0.0.1",
-                           "127.0.0.1:",
-                           "127.0.0.1:65536",
-                           "127.0.0.1:-1",
-                           "127.0.0.1:80x",
-                           "host:80",
-                           ":80",
-                           "1.2.3:80",
-                           "256.0.0.1:80"}) {
-    EXPECT_FALSE(parse_endpoint(text)) << text;
-  }
-}
-
-/// The program itself, ended at the latest by the destructor.
-class Program {
- public:
-  Program(std::vector<std::string> arguments, const std::filesystem::path& folder)
-      : output_{folder / "stdout"}, error_{folder / "stderr"} {
-    arguments.insert(arguments.begin(), PALP_NETEM_PROGRAM);
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    constexpr int kFlags = O_CREAT | O_TRUNC | O_WRONLY;
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output_.c_str(), kFlags, 0600);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, error_.c_str(), kFlags, 0600);
-    ::posix_spawn(&pid_, pointers[0], &actions, nullptr, pointers.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-  }
-  Program(const Program&) = delete;
-  Program& operator=(const Program&) = delete;
-  ~Program() {
-    if (pid_ > 0) {
-      ::kill(pid_, SIGKILL);
-      ::waitpid(pid_, nullptr, 0);
-    }
-  }
-
-  void signal(int number) const { ::kill(pid_, number); }
-
-  /// The exit code; -1: it did not end by itself before the deadline.
-  int wait() {
-    const TimePoint until = monotonic_now() + kDeadline;
-    while (monotonic_now() < until) {
-      int status = 0;
-      if (::waitpid(pid_, &status, WNOHANG) == pid_) {
-        pid_ = 0;
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-      }
-      ::usleep(1000);
-    }
-    return -1;
-  }
-
-  /// The address it says it listens on; nullopt: it has not said so before the deadline.
-  [[nodiscard]] std::optional<Endpoint> listening_on() const {
-    const TimePoint until = monotonic_now() + kDeadline;
-    while (monotonic_now() < until) {
-      const std::string text = read(output_);
-      constexpr std::string_view kBegin = "listening on ";
-      const std::size_t end = text.find('\n');
-      if (text.starts_with(kBegin) && end != std::string::npos) {
-        const auto endpoint =
-            parse_endpoint(std::string_view{text}.substr(kBegin.size(), end - kBegin.size()));
-        if (endpoint) return *endpoint;
-      }
-      ::usleep(1000);
-    }
-    return std::nullopt;
-  }
-
-  [[nodiscard]] std::string output() const { return read(output_); }
-  [[nodiscard]] std::string errors() const { return read(error_); }
-
- private:
-  static std::string read(const std::filesystem::path& path) {
-    std::ifstream file{path};
-    return {std::istreambuf_iterator<char>{file}, {}};
-  }
-  std::filesystem::path output_;
-  std::filesystem::path error_;
-  pid_t pid_{};
-};
-
-class RelayProgramTest : public ::testing::Test {
- protected:
-  RelayProgramTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "palp-netem-XXXXXX").string();
-    if (::mkdtemp(name.data()) != nullptr) folder_ = name;
-  }
-  ~RelayProgramTest() override { std::filesystem::remove_all(folder_); }
-  [[nodiscard]] std::string report_path() const { return folder_ / "report.json"; }
-  std::filesystem::path folder_;
-};
-
-TEST_F(RelayProgramTest, ForwardsUntilASignalAndWritesItsReport) {
-  for (const int number : {SIGINT, SIGTERM}) {
-    DatagramSocket server = DatagramSocket::bound(kAnyPort);
-    Program program{{"relay",
-                     "--listen",
-                     "localhost:0",
-                     "--forward",
-                     to_string(server.local()),
-                     "--up",
-                     "delay 2ms",
-                     "--down",
-                     "loss 100%",
-                     "--seed",
-                     "5",
-                     "--report",
-                     report_path()},
-                    folder_};
-    const auto address = program.listening_on();
-    ASSERT_TRUE(address) << program.errors();
-    DatagramSocket client = DatagramSocket::connected(*address);
-    for (std::uint32_t i = 0; i < 20; ++i) client.send(saying(i), std::nullopt);
-    Heard heard;
-    const TimePoint until = monotonic_now() + kDeadline;
-    while (heard.numbers.size() < 20 && monotonic_now() < until) hear(server, heard);
-    ASSERT_EQ(heard.numbers.size(), 20U);
-    server.send(saying(1), heard.from);
-    // The reply is lost on the way; a datagram up that arrives later tells that it has been read.
-    client.send(saying(20), std::nullopt);
-    while (heard.numbers.size() < 21 && monotonic_now() < until) hear(server, heard);
-    program.signal(number);
-    EXPECT_EQ(program.wait(), 0) << program.errors();
-
-    const auto report = nlohmann::json::parse(std::ifstream{report_path()});
-    EXPECT_EQ(report["schema"], "palp.relay/1");
-    EXPECT_EQ(report["seed"], 5);
-    EXPECT_EQ(report["up"]["asked"], "delay 2ms");
-    EXPECT_EQ(report["up"]["sent"], 21);
-    EXPECT_EQ(report["up"]["received"], 21);
-    EXPECT_EQ(report["up"]["lost"], 0);
-    EXPECT_GE(report["up"]["delay_p50_ms"].get<double>(), 1.98);
-    EXPECT_EQ(report["down"]["sent"], 1);
-    EXPECT_EQ(report["down"]["lost"], 1);
-    EXPECT_TRUE(report["down"]["delay_p50_ms"].is_null());
-    for (const char* key :
-         {"duplicated", "reordered", "delay_p99_ms", "late_releases", "socket_errors"}) {
-      EXPECT_TRUE(report["up"].contains(key)) << key;
-    }
-  }
-}
-
-TEST_F(RelayProgramTest, EndsAfterItsDuration) {
-  Program program{{"relay",
-                   "--listen",
-                   "localhost:0",
-                   "--forward",
-                   "localhost:9",
-                   "--preset",
-                   "lan",
-                   "--duration-s",
-                   "0.01",
-                   "--report",
-                   report_path()},
-                  folder_};
-  EXPECT_EQ(program.wait(), 0) << program.errors();
-  EXPECT_EQ(nlohmann::json::parse(std::ifstream{report_path()})["preset"], "lan");
-}
-
-TEST_F(RelayProgramTest, ShowsItsPresets) {
-  Program program{{"presets"}, folder_};
-  EXPECT_EQ(program.wait(), 0);
-  EXPECT_NE(program.output().find("transatlantic"), std::string::npos);
-  EXPECT_NE(program.output().find("assumed"), std::string::npos);
-}
-
-TEST_F(RelayProgramTest, BadInputIsExitCode2AndASentence) {
-  const std::vector<std::string> begin{
-      "relay", "--listen", "localhost:0", "--forward", "localhost:9"};
-  for (const std::vector<std::string>& wrong :
-       std::vector<std::vector<std::string>>{{"--spec", "delay 5"},
-                                             {"--up", "loss 200%"},
-                                             {"--preset", "moon"},
-                                             {"--rtt-ms", "-1"},
-                                             {"--loss", "1.5"},
-                                             {"--loss", "101%"},
-                                             {"--jitter-ms", "nan"},
-                                             {"--preset", "lan", "--rtt-ms", "1"},
-                                             {"--seed", "x"},
-                                             {"--duration-s", "-1"},
-                                             {"--nonsense"}}) {
-    std::vector<std::string> arguments = begin;
-    arguments.insert(arguments.end(), wrong.begin(), wrong.end());
-    Program program{arguments, folder_};
-    EXPECT_EQ(program.wait(), 2) << wrong.front() << ' ' << wrong.back();
-    EXPECT_FALSE(program.errors().empty()) << wrong.front();
-  }
-  Program program{{"relay", "--listen", "nowhere", "--forward", "localhost:9"}, folder_};
-  EXPECT_EQ(program.wait(), 2);
-  EXPECT_NE(program.errors().find("'nowhere'"), std::string::npos);
-}
-
-TEST_F(RelayProgramTest, WhatCannotBeOpenedIsExitCode3) {
-  const DatagramSocket taken = DatagramSocket::bound(kAnyPort);
-  Program busy{{"relay", "--listen", to_string(taken.local()), "--forward", "localhost:9"},
-               folder_};
-  EXPECT_EQ(busy.wait(), 3);
-  EXPECT_NE(busy.errors().find(to_string(taken.local())), std::string::npos);
-  Program unwritable{{"relay",
-                      "--listen",
-                      "localhost:0",
-                      "--forward",
-                      "localhost:9",
-                      "--report",
-                      folder_ / "no" / "folder.json"},
-                     folder_};
-  EXPECT_EQ(unwritable.wait(), 3);
 }
 
 }  // namespace

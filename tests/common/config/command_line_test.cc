@@ -353,5 +353,24 @@ TEST(LeaveTest, GivesTheExitStatusOfEachCode) {
   EXPECT_EQ(leave({ExitCode::CutShort, "cut"}), 4);
 }
 
+TEST(LeaveTest, PrintsOneLineEndAndNothingForAnEmptyText) {
+  testing::internal::CaptureStdout();
+  (void)leave({ExitCode::Done, ""});
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  testing::internal::CaptureStdout();
+  (void)leave({ExitCode::Done, "done"});
+  (void)leave({ExitCode::Done, "done\n"});
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "done\ndone\n");
+}
+
+TEST(FooterTest, StandsInTheHelpOfItsVerb) {
+  CommandLine line{"palp-x", "does x"};
+  line.verb("go", "goes").footer("Words of a path: straight, round.");
+  const auto ending = parse(line, {"go", "--help"});
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, ExitCode::Done);
+  EXPECT_THAT(ending->text, HasSubstr("Words of a path: straight, round."));
+}
+
 }  // namespace
 }  // namespace palp::config
