@@ -95,7 +95,7 @@ TEST(FencesTest, LibraryIsSeenOnlyBehindItsFence) {
   EXPECT_TRUE(allowed("lab/main.cc", "<spdlog/spdlog.h>"));
   EXPECT_FALSE(allowed("lab/world.cc", "<fmt/format.h>"));
   EXPECT_FALSE(allowed("common/io/a.cc", "<readerwriterqueue/readerwriterqueue.h>"));
-  EXPECT_FALSE(allowed("common/link/a.h", "<tl/expected.hpp>"));
+  EXPECT_FALSE(allowed("common/record/a.h", "<tl/expected.hpp>"));
   EXPECT_TRUE(allowed("lab/report.cc", "<nlohmann/json.hpp>"));
   EXPECT_FALSE(allowed("lab/report.h", "<nlohmann/json.hpp>"));
   EXPECT_FALSE(allowed("common/core/check.cc", "<gtest/gtest.h>"));
@@ -191,6 +191,14 @@ TEST(RulesTest, MemberWithoutUnitIsFound) {
             "3 8 9 16");
 }
 
+TEST(RulesTest, UnitAtTheEndOfANameIsAUnit) {
+  EXPECT_EQ(fires(members_without_unit,
+                  "lab/a.h",
+                  "struct A {\n  double depth_mm{};\n  std::optional<double> rtt_ms{};\n"
+                  "  double force_n = 0;\n  double items;\n};\n"),
+            "5");
+}
+
 TEST(RulesTest, MembersOfSourcesAndTestsAreTheirOwnAffair) {
   EXPECT_EQ(fires(members_without_unit, "lab/a.cc", "struct A {\n  double bare{};\n};\n"), "");
   EXPECT_EQ(fires(members_without_unit, "tests/lab/a.h", "struct A {\n  double bare{};\n};\n"), "");
@@ -212,6 +220,8 @@ TEST(RulesTest, FourHundredLinesPassAndOneMoreDoesNot) {
   EXPECT_EQ(fires(long_files, "lab/a.cc", repeated(400, "\n")), "");
   EXPECT_EQ(fires(long_files, "lab/a.cc", repeated(401, "\n")), "401");
   EXPECT_EQ(fires(long_files, "demo", "#!/bin/bash\n" + repeated(400, "\n")), "401");
+  EXPECT_EQ(fires(long_files, "tests/lab/a_test.cc", repeated(450, "\n")), "");
+  EXPECT_EQ(fires(long_files, "tests/lab/a_test.cc", repeated(451, "\n")), "451");
   EXPECT_EQ(fires(long_files, "README.md", repeated(401, "\n")), "");
 }
 
@@ -249,8 +259,11 @@ TEST(TreeRulesTest, HeaderThatNoTestReadsIsFound) {
   const Source other = make_source("tests/lab/a_test.cc", "#include \"netem/pipe.h\"\n");
   const Source pipe = make_source("netem/pipe.h", "#include \"netem/fate.h\"\n");
   EXPECT_EQ(untested_headers({header, list}).size(), 1U);
-  EXPECT_TRUE(untested_headers({header}).empty());                      // no such room yet
-  EXPECT_TRUE(untested_headers({header, list, test, pipe}).empty());    // through pipe.h
+  EXPECT_TRUE(untested_headers({header}).empty());                    // no such room yet
+  EXPECT_TRUE(untested_headers({header, list, test, pipe}).empty());  // through pipe.h
+  const Source beside = make_source("netem/pipe.cc", "#include \"netem/fate.h\"\n");
+  const Source bare_pipe = make_source("netem/pipe.h", "");
+  EXPECT_TRUE(untested_headers({header, list, test, bare_pipe, beside}).empty());
   EXPECT_EQ(untested_headers({header, list, other, pipe}).size(), 1U);  // of another room
 }
 

@@ -5,11 +5,15 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "tests/house/arrows.h"
 
 namespace palp::house {
 namespace {
+
+/// What only the programs of a session are made of; tests/system runs those.
+constexpr std::string_view kTestedAsPrograms = "common/site_program";
 
 using Files = std::map<std::string, const Source*, std::less<>>;
 
@@ -31,12 +35,15 @@ std::string tests_of(std::string_view room) {
   return "tests/" + std::string{common ? room : room.substr(0, slash)};
 }
 
-/// All that a file includes, and what those include.
+/// All that a file includes, what those include, and what the sources beside them include.
 void reach(const Files& files, const Source& from, std::set<std::string>& reached) {
   for (const Include& include : includes(from)) {
     if (!include.quoted || !reached.insert(include.target).second) continue;
-    const auto next = files.find(include.target);
-    if (next != files.end()) reach(files, *next->second, reached);
+    const std::string stem = include.target.substr(0, include.target.rfind('.'));
+    for (const std::string_view end : {".h", ".cc"}) {
+      const auto next = files.find(stem + std::string{end});
+      if (next != files.end()) reach(files, *next->second, reached);
+    }
   }
 }
 
@@ -67,6 +74,7 @@ Violations untested_headers(const Tree& tree) {
   for (const Source& source : tree) {
     if (!source.is_header() || source.is_under("tests")) continue;
     const std::string room{room_of(source.path)};
+    if (room == kTestedAsPrograms) continue;
     const std::string tests = tests_of(room);
     if (room.empty() || !files.contains(tests.substr(6) + "/CMakeLists.txt")) continue;
     if (direct.contains(source.path) || of_room[tests].contains(source.path)) continue;
@@ -85,7 +93,7 @@ Violations unlisted_sources(const Tree& tree) {
     bool listed = false;
     for (; !folder.empty() && !listed; folder = folder_of(folder)) {
       const auto list = files.find(folder + "/CMakeLists.txt");
-      if (list == files.end()) continue;
+      if (list == files.end() || folder == "tests") continue;
       has_list = true;
       listed = names(*list->second, source.path.substr(folder.size() + 1));
     }

@@ -10,8 +10,8 @@ namespace palp::house {
 
 using Tree = std::vector<Source>;
 
-/// Headers that no test reads: neither included by a test, nor by what the tests of the same room
-/// include.
+/// Headers that no test stands on: neither included by a test, nor by what the tests of the same
+/// room include, or by the sources of that.
 [[nodiscard]] Violations untested_headers(const Tree& tree);
 
 /// .cc files that stand in no CMakeLists.txt.
