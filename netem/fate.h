@@ -91,11 +91,11 @@ class FateSequence {
   TimePoint stay_until_{};
 
   bool correlated_;
-  double carry_{};          ///< a of z_n = a z_(n-1) + sqrt(1 - a^2) e_n
-  double fresh_{1};         ///< sqrt(1 - a^2)
+  double carry_{};          ///< [-], a of z_n = a z_(n-1) + sqrt(1 - a^2) e_n
+  double fresh_{1};         ///< [-], sqrt(1 - a^2)
   Duration carry_gap_{-1};  ///< the gap that carry_ belongs to
-  double z_before_{};       ///< z_(n-1)
-  double z_{};              ///< z_n, once drawn
+  double z_before_{};       ///< [-], z_(n-1)
+  double z_{};              ///< [-], z_n, once drawn
 
   TimePoint last_release_{};
 };

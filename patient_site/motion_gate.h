@@ -46,7 +46,7 @@ struct MotionAnswer {
   bool halt{};        ///< command nothing, hold
   bool acted{};       ///< not what was asked for
   record::NoteCode note{};
-  double detail{};
+  double detail{};  ///< [by note]
 };
 
 /// The last word before the tissue: nothing reaches the stage but through here, and nothing here

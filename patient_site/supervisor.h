@@ -32,7 +32,7 @@ struct SupervisorOutput {
   bool session_began{};  ///< another session than the last one
   record::NoteCode reason{};
   record::NoteCode refused{};
-  double detail{};  ///< of reason and refused
+  double detail{};  ///< [by code], of reason and refused
 };
 
 /// The patient's half of the site states: says when the peer's samples may cause motion. A pure

@@ -16,7 +16,7 @@ struct Asked {
   std::optional<std::string> grip{};
   std::optional<double> rtt_ms{};
   std::optional<double> jitter_ms{};
-  std::optional<double> loss{};
+  std::optional<double> loss{};  ///< [-], share
 };
 
 /// Texts of the reports that the programs of a session wrote; empty: absent. What they would have

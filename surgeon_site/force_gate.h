@@ -27,7 +27,7 @@ struct ForceAnswer {
   double force{};           ///< [N], finite, |force| <= force_max
   bool acted{};             ///< not what the law asked for
   record::NoteCode note{};  ///< None, NotFinite or ForceGateClamped: as it begins
-  double detail{};          ///< of the note
+  double detail{};          ///< [by note]
 };
 
 /// The last word before the hand. Limits the force to the device's peak and, by an i^2 t account

@@ -42,7 +42,7 @@ struct SupervisorOutput {
   bool session_began{};       ///< another session than the last one
   record::NoteCode reason{};  ///< of the change of state
   record::NoteCode refused{};
-  double detail{};  ///< of `refused`
+  double detail{};  ///< [by code], of `refused`
 };
 
 /// The surgeon's half of the site states: says when the peer's samples may cause force. A pure

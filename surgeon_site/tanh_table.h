@@ -13,11 +13,11 @@ class TanhTable {
   [[nodiscard]] double operator()(double argument) const noexcept;
 
  private:
-  static constexpr double kEnd = 8.0;  ///< 1 - tanh(8) = 2.3e-7: beyond it the answer is +-1
-  static constexpr double kNodesPerUnit = 16.0;
+  static constexpr double kEnd = 8.0;  ///< [-], 1 - tanh(8) = 2.3e-7: beyond it the answer is +-1
+  static constexpr double kNodesPerUnit = 16.0;  ///< [-]
   static constexpr std::size_t kNodeCount = 129;
 
-  std::array<double, kNodeCount> nodes_{};
+  std::array<double, kNodeCount> nodes_{};  ///< [-]
 };
 
 }  // namespace palp::surgeon

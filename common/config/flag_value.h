@@ -11,8 +11,8 @@ namespace palp::config {
 
 /// Inclusive range of a flag and its unit ("1": none).
 struct NumberRange {
-  double min{};
-  double max{};
+  double min{};  ///< [unit]
+  double max{};  ///< [unit]
   std::string unit{"1"};
 };
 struct WholeRange {

@@ -22,10 +22,10 @@ class LineFit {
 
  private:
   std::size_t count_{};
-  double mean_x_{};
-  double mean_y_{};
-  double xx_{};
-  double xy_{};
+  double mean_x_{};  ///< [x]
+  double mean_y_{};  ///< [y]
+  double xx_{};      ///< [x^2]
+  double xy_{};      ///< [x y]
 };
 
 }  // namespace palp

@@ -24,7 +24,7 @@ struct SessionConfig {
   std::uint32_t protocol_version{kProtocolVersion};
   Duration repeat_first{std::chrono::milliseconds{100}};
   Duration repeat_max{std::chrono::seconds{1}};
-  double repeat_growth{1.5};
+  double repeat_growth{1.5};  ///< [-], of the wait after each
 };
 
 /// Both sites know each other: make a Handover of this. Numbers start at 0.

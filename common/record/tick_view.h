@@ -11,9 +11,9 @@ inline constexpr Duration kViewInterval{std::chrono::milliseconds{20}};  ///< 50
 
 /// A signal over some ticks: a spike of one tick stays visible.
 struct SignalView {
-  double newest{};
-  double min{};
-  double max{};
+  double newest{};  ///< [of the signal], as are the others
+  double min{};     ///< [of the signal]
+  double max{};     ///< [of the signal]
 
   void add(double value, bool first) noexcept {
     newest = value;

@@ -11,7 +11,7 @@ struct ContactPoint {
   double position{};  ///< [m], tip
   double force{};     ///< [N]
   double rate{};      ///< [m/s], of the tip
-  double count{};     ///< samples behind it
+  double count{};     ///< [-], samples behind it
 };
 
 /// Force over position of one place, binned: a hold counts as one point and strokes of one place

@@ -29,8 +29,8 @@ class LeastSquares {
   }
 
   struct Solution {
-    std::array<double, N> x{};
-    double cost{};  ///< sum of weighted squared residuals at x, priors included
+    std::array<double, N> x{};  ///< [of the model]
+    double cost{};              ///< [-], sum of weighted squared residuals at x, priors included
     bool regular{};
   };
 
@@ -69,9 +69,9 @@ class LeastSquares {
   }
 
  private:
-  std::array<std::array<double, N>, N> matrix_{};  ///< lower triangle
-  std::array<double, N> vector_{};
-  double squares_{};
+  std::array<std::array<double, N>, N> matrix_{};  ///< [-], lower triangle
+  std::array<double, N> vector_{};                 ///< [-]
+  double squares_{};                               ///< [-]
 };
 
 }  // namespace palp::estimator

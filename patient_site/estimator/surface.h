@@ -31,9 +31,9 @@ struct SurfaceConfig {
 
 struct SurfaceInput {
   std::span<const ContactPoint> points;
-  double first_contact{};         ///< [m], where the force was first felt
-  double noise{};                 ///< [N], rms of one sample
-  double rate_factor{};           ///< [s/m], as known so far
+  double first_contact{};           ///< [m], where the force was first felt
+  double noise{};                   ///< [N], rms of one sample
+  double rate_factor{};             ///< [s/m], as known so far
   std::optional<double> surface{};  ///< [m], as known so far: search near it first
 };
 

@@ -52,9 +52,6 @@ const std::vector<Arrow>& arrows() {
       {"netem/relay*", {"common/link/transport.h", "common/io", "common/config"}},
       {"netem/main.cc", {"common/link/transport.h", "common/io", "common/config"}},
       {"netem/*", {"common/link/transport.h"}},
-      // What the programs of both sites have around their node.
-      {"common/site_program/*",
-       {"common/io", "common/link", "common/record", "common/config", "common/settings", "netem"}},
       // A site: main puts it together, settings reads its configuration, devices are adapters.
       {"surgeon_site/main.cc",
        {"surgeon_site/devices",

@@ -227,7 +227,7 @@ TEST(LinkTest, OneBudgetPerTick) {
   Couple couple;
   couple.connect();
   couple.run(1ms);
-  const LaneEnd flood{couple.pipe.up, couple.pipe.down};
+  const LaneEnd flood{*couple.pipe.up, *couple.pipe.down};
   for (int i = 0; i < 600; ++i) {
     couple.pipe.up->push(Bytes(50), couple.now);
   }

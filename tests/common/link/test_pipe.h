@@ -65,17 +65,17 @@ class Lane {
   std::uint64_t popped_{};
 };
 
+/// Of a TestPipe, which outlives it.
 class LaneEnd final : public Transport {
  public:
-  LaneEnd(std::shared_ptr<Lane> out, std::shared_ptr<Lane> in)
-      : out_{std::move(out)}, in_{std::move(in)} {}
+  LaneEnd(Lane& out, Lane& in) : out_{out}, in_{in} {}
   bool send(std::span<const std::byte> datagram, TimePoint now) noexcept override {
-    out_->push(datagram, now);
+    out_.push(datagram, now);
     return true;
   }
   std::optional<Datagram> receive(std::span<std::byte, kDatagramSizeMax> buffer,
                                   TimePoint now) noexcept override {
-    auto next = in_->pop(now);
+    auto next = in_.pop(now);
     if (!next) return std::nullopt;
     const std::size_t copied = std::min(buffer.size(), next->second.size());
     std::copy_n(next->second.begin(), copied, buffer.begin());
@@ -83,20 +83,20 @@ class LaneEnd final : public Transport {
   }
 
  private:
-  std::shared_ptr<Lane> out_;
-  std::shared_ptr<Lane> in_;
+  Lane& out_;
+  Lane& in_;
 };
 
-/// Up: surgeon to patient.
+/// Up: surgeon to patient. Outlives its ends.
 struct TestPipe {
-  std::shared_ptr<Lane> up{std::make_shared<Lane>()};
-  std::shared_ptr<Lane> down{std::make_shared<Lane>()};
+  std::unique_ptr<Lane> up{std::make_unique<Lane>()};
+  std::unique_ptr<Lane> down{std::make_unique<Lane>()};
 
   [[nodiscard]] std::unique_ptr<Transport> surgeon_end() const {
-    return std::make_unique<LaneEnd>(up, down);
+    return std::make_unique<LaneEnd>(*up, *down);
   }
   [[nodiscard]] std::unique_ptr<Transport> patient_end() const {
-    return std::make_unique<LaneEnd>(down, up);
+    return std::make_unique<LaneEnd>(*down, *up);
   }
 };
 
