@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "lab/scenario_file.h"
+
 namespace palp::lab {
 namespace {
 
+Scenario metro() { return make_scenario("metro", load_scenario("metro").value()).value(); }
+
 TEST(RunReportTest, BeginsWithItsSchemaAlsoWhenNothingWasMeasured) {
-  const std::string text = run_report(Scenario{}, TrialResult{}, {.scenario = "empty"});
+  const std::string text = run_report(metro(), TrialResult{}, {.scenario = "metro"});
   const auto report = nlohmann::ordered_json::parse(text);
   EXPECT_EQ(report.begin().key(), "schema");
   EXPECT_EQ(report.begin().value(), "palp.run/1");
@@ -16,9 +20,9 @@ TEST(RunReportTest, BeginsWithItsSchemaAlsoWhenNothingWasMeasured) {
 TEST(RunReportTest, ReportAndSummaryTellTheDigest) {
   TrialResult result;
   result.digest = 0x0123456789abcdef;
-  const RunAccount account{.scenario = "empty"};
+  const RunAccount account{.scenario = "metro"};
   for (const std::string& text :
-       {run_report(Scenario{}, result, account), run_summary(Scenario{}, result, account)}) {
+       {run_report(metro(), result, account), run_summary(metro(), result, account)}) {
     EXPECT_NE(text.find("0123456789abcdef"), std::string::npos) << text;
   }
 }
