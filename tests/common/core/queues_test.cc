@@ -42,6 +42,15 @@ TEST(MailboxTest, NewestWinsAndStays) {
   EXPECT_EQ(whole_number(mailbox.get()), 6U);
 }
 
+TEST(MailboxTest, WhatTheReaderHoldsIsNotOverwritten) {
+  Mailbox<Wide> mailbox;
+  mailbox.put(wide(1));
+  const Wide& held = mailbox.get();
+  for (std::uint64_t number = 2; number <= 9; ++number) mailbox.put(wide(number));
+  EXPECT_EQ(whole_number(held), 1U);
+  EXPECT_EQ(whole_number(mailbox.get()), 9U);
+}
+
 TEST(MailboxTest, AlternatingPutAndGetLosesNothing) {
   Mailbox<Wide> mailbox;
   for (std::uint64_t number = 1; number <= 100; ++number) {
