@@ -7,7 +7,9 @@
 
 namespace palp::record {
 
-inline constexpr Duration kViewInterval{std::chrono::milliseconds{20}};  ///< 50 Hz
+/// 50 Hz: 20 ticks of 1 ms. Half a tick less, or a tick that is a little early joins the view
+/// before and the rate falls.
+inline constexpr Duration kViewInterval{std::chrono::microseconds{19500}};
 
 /// A signal over some ticks: a spike of one tick stays visible.
 struct SignalView {

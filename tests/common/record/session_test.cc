@@ -240,6 +240,18 @@ TEST(SessionTest, ViewShowsFiftyPerSecondAndKeepsASpikeOfOneTick) {
   EXPECT_EQ(session.counts.views, 250u);
 }
 
+TEST(SessionTest, ViewKeepsItsRateWhenTicksComeALittleEarlyOrLate) {
+  NullSink sink;
+  SessionWriter writer{sink, {.site = Role::Surgeon}};
+  for (int k = 0; k < 5000; ++k) {
+    SiteTick tick = test::tick(k);
+    tick.at += std::chrono::microseconds{(k * 7919) % 200 - 100};
+    writer.write(tick, tick.at);
+  }
+  writer.close();
+  EXPECT_EQ(writer.counts().views, 250u);
+}
+
 TEST(SessionTest, MetadataAndAttachmentsStandBeforeTheFirstMessage) {
   const auto session = five_seconds();
   SessionReader reader{session.sink.bytes()};
