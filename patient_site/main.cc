@@ -115,6 +115,8 @@ tl::expected<Plan, Ending> make_plan(const config::Document& document) {
   runner.loop = settings->loop;
   auto info =
       site_program::session_info(link::Role::Patient, "palp-patient", settings->seed, document);
+  info.metadata.emplace_back("coupling", settings->coupling.name);
+  info.metadata.emplace_back("estimator", settings->estimator_kind);
   describe_tissue(*phantom, simulation.surface_offset, info);
   return Plan{std::move(*settings),
               std::move(*phantom),

@@ -99,6 +99,7 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
   made.force = message.force();
   made.phantom = message.simulated_phantom().phantom();
   made.simulation = make_simulation(message.simulated_phantom(), message.seed());
+  made.estimator_kind = message.estimator().kind();
   made.estimator = *estimator;
   made.impairment = settings::make_impairment(message.impairment());
   made.record = settings::make_record(message.record());

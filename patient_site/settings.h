@@ -31,6 +31,7 @@ struct Settings {
   std::string force{"sim"};
   std::string phantom{"paper-10mm"};
   SimulatedPhantomConfig simulation;
+  std::string estimator_kind{"paper"};
   estimator::PaperEstimatorConfig estimator;
   settings::LoopSettings loop;
   settings::ImpairmentSettings impairment;

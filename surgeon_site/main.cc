@@ -110,6 +110,9 @@ tl::expected<Plan, Ending> make_plan(const config::Document& document) {
   runner.loop = settings->loop;
   auto info =
       site_program::session_info(link::Role::Surgeon, "palp-surgeon", settings->seed, document);
+  info.metadata.emplace_back("coupling", settings->coupling.name);
+  info.metadata.emplace_back("master", settings->master);
+  info.metadata.emplace_back("grip", settings->grip);
   return Plan{std::move(*settings),
               std::move(*script),
               std::move(*law),

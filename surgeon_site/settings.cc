@@ -60,6 +60,7 @@ Result<Settings> make_settings(const proto::config::SurgeonConfig& message) {
   }
   made.node.gate = make_gate(message.force_gate());
   made.master = message.hand().master();
+  made.grip = message.hand().grip();
   made.hand = *hand;
   made.impairment = settings::make_impairment(message.impairment());
   made.record = settings::make_record(message.record());

@@ -64,6 +64,7 @@ std::string text_of(const Settings& settings) {
   list.add("stage", settings.stage)
       .add("force", settings.force)
       .add("phantom", settings.phantom)
+      .add("estimator_kind", settings.estimator_kind)
       .add("estimator.sensor_cut_off", settings.estimator.sensor_cut_off)
       .add("estimator.filter_cut_off", settings.estimator.filter_cut_off)
       .add("estimator.period", settings.estimator.period)
