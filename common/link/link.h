@@ -7,8 +7,7 @@
 #include <span>
 #include <vector>
 
-#include <tl/expected.hpp>
-
+#include "common/core/result.h"
 #include "common/core/watchdog.h"
 #include "common/link/codec.h"
 #include "common/link/handover.h"

@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include <tl/expected.hpp>
-
+#include "common/core/result.h"
 #include "common/link/header.h"
 
 namespace palp::link {
