@@ -16,5 +16,16 @@ TEST(ProcessTimeTest, NeitherAccountFalls) {
   }
 }
 
+TEST(ProcessTimeTest, BothAccountsMoveUnderWork) {
+  const ProcessTime before = process_time();
+  ProcessTime now = before;
+  // Asking is the work; the bound is far beyond the resolution of any clock.
+  for (int i = 0; i < 10'000'000 && (now.cpu == before.cpu || now.wall == before.wall); ++i) {
+    now = process_time();
+  }
+  EXPECT_GT(now.cpu, before.cpu);
+  EXPECT_GT(now.wall, before.wall);
+}
+
 }  // namespace
 }  // namespace palp::io
