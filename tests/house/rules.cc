@@ -148,7 +148,6 @@ Violations clocks_and_sleeps(const Source& source) {
                          {"common/io/*",
                           "netem/relay.cc",
                           "netem/datagram_socket.cc",  // the relay's
-                          "tests/netem/relay_test.cc",
                           "tests/common/io/*",
                           "tests/system/*",
                           "tests/bench/*",
