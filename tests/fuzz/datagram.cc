@@ -36,11 +36,33 @@ void header_laws(std::span<const std::byte> datagram) {
   PALP_CHECK(equal(std::span{sealed}.first(size), datagram), "what opens seals as it was");
 }
 
+/// Said here once more, so that the limits do not vouch for themselves.
+void limit_laws(const WireTelegram& telegram) {
+  const auto within = [](double value, double limit) { return value >= -limit && value <= limit; };
+  const auto sound = [&](const PortSample& sample) {
+    return within(sample.position, 10) && within(sample.velocity, 1e3) && within(sample.force, 1e5);
+  };
+  const DepthReport& depth = telegram.telegram.site.depth;
+  PALP_CHECK(telegram.sent_at_ns <= kSentAtMaxNs && telegram.newest_number <= kNumberMax &&
+                 telegram.hold_us <= kHoldMaxUs && telegram.older_count <= telegram.older.size(),
+             "numbers keep the limits of the wire");
+  PALP_CHECK(sound(telegram.telegram.port) && sound(telegram.older[0]) && sound(telegram.older[1]),
+             "samples keep the limits of the wire");
+  PALP_CHECK(within(depth.hash, 1e5) && within(depth.depth, 10) && within(depth.depth_stddev, 10) &&
+                 within(depth.depth_low, 10) && within(depth.depth_high, 10) &&
+                 within(telegram.telegram.site.lateral, 10),
+             "reports keep the limits of the wire");
+  PALP_CHECK(static_cast<int>(telegram.telegram.site.state) < kSiteStateCount &&
+                 static_cast<int>(depth.verdict) < kDepthVerdictCount &&
+                 static_cast<int>(depth.reason) < kDepthReasonCount,
+             "enumerators are ours");
+}
+
 void telegram_laws(std::span<const std::byte> bytes) {
   ProtobufCodec codec;
   const auto telegram = codec.decode(bytes);
   if (!telegram) return;
-  PALP_CHECK(well_formed(*telegram), "what comes out is well formed");
+  limit_laws(*telegram);
   std::array<std::byte, kTelegramSizeMax> first{};
   const std::size_t first_size = codec.encode(*telegram, first);
   PALP_CHECK(first_size > 0, "what is well formed encodes");

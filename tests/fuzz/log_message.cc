@@ -29,7 +29,8 @@ void message_laws(link::Role site, const std::string& schema, std::span<const st
   SessionEncoder encoder{site};
   const Bytes bytes = encoded(encoder, first.record);
   const auto again = decoder.decode(schema, bytes, at);
-  PALP_CHECK(again.verdict == Verdict::Decoded, "what was decoded can be written and read");
+  PALP_CHECK(again.verdict == Verdict::Decoded && again.record.index() == first.record.index(),
+             "what was decoded can be written and read");
   PALP_CHECK(encoded(encoder, again.record) == bytes, "what was decoded survives the file");
 }
 
