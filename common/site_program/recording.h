@@ -54,7 +54,7 @@ class Recording {
   std::optional<record::SessionWriter> writer_;
   std::vector<std::unique_ptr<record::QueueRecorder>> queues_;
   SpscQueue<std::string> news_{kNewsMax};  ///< writer: record, reader: the maker
-  std::string told_last_;  ///< the maker's
+  std::string told_last_;                  ///< the maker's
   bool told_of_full_disk_{};
   RecordAccount account_;
   std::optional<io::BackgroundLoop> loop_;

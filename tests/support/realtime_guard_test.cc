@@ -45,9 +45,7 @@ void expect_caught(const std::string& function, const std::function<void()>& act
 }
 
 /// Keeps the compiler from leaving an allocation out.
-void keep(const void* memory) {
-  asm volatile("" : : "r"(memory) : "memory");
-}
+void keep(const void* memory) { asm volatile("" : : "r"(memory) : "memory"); }
 
 TEST(RealtimeGuardTest, ArithmeticIsClean) {
   double sum = 0;
