@@ -158,7 +158,7 @@ TrialResult run_trial(const Scenario& scenario, const TrialFiles& files) {
   Files session_files{scenario, files, start};
 
   // The path.
-  netem::Pipe pipe{scenario.up, scenario.down, scenario.seed, kInFlightMax};
+  netem::Pipe pipe{scenario.up, scenario.down, scenario.seed, kInFlightMax, start};
   link::Link surgeon_link{scenario.link, make_codec(scenario.bare)};
   link::Link patient_link{scenario.link, make_codec(scenario.bare)};
   (void)surgeon_link.adopt(handover(pipe.surgeon_end()), start);

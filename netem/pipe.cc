@@ -29,9 +29,10 @@ class PipeEnd final : public link::Transport {
 Pipe::Pipe(const Impairment& up,
            const Impairment& down,
            std::uint64_t seed,
-           std::size_t in_flight_max)
-    : up_{up, seed, Direction::Up, in_flight_max},
-      down_{down, seed, Direction::Down, in_flight_max} {}
+           std::size_t in_flight_max,
+           TimePoint start)
+    : up_{up, seed, Direction::Up, in_flight_max, start},
+      down_{down, seed, Direction::Down, in_flight_max, start} {}
 
 std::unique_ptr<link::Transport> Pipe::surgeon_end() {
   return std::make_unique<PipeEnd>(up_, down_);

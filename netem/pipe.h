@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "common/core/time.h"
 #include "common/link/transport.h"
 #include "netem/channel.h"
 #include "netem/impairment.h"
@@ -16,7 +17,12 @@ namespace palp::netem {
 /// Thread: one for both ends. The ends refer to the pipe, which outlives them and does not move.
 class Pipe {
  public:
-  Pipe(const Impairment& up, const Impairment& down, std::uint64_t seed, std::size_t in_flight_max);
+  /// `start`: where the blackouts' times begin.
+  Pipe(const Impairment& up,
+       const Impairment& down,
+       std::uint64_t seed,
+       std::size_t in_flight_max,
+       TimePoint start = {});
   Pipe(const Pipe&) = delete;
   Pipe& operator=(const Pipe&) = delete;
 

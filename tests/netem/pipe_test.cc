@@ -153,5 +153,21 @@ TEST_F(ImpairedTransportTest, DropsAndCountsWhatWasCutOff) {
   EXPECT_EQ(transport.cut_off(), 1U);
 }
 
+TEST(PipeTest, BlackoutsCountFromTheStart) {
+  const Impairment path = parse_impairment("blackout 1s 1s").value();
+  const TimePoint start{std::chrono::seconds{5}};
+  Pipe pipe{path, path, 1, 16, start};
+  const auto surgeon = pipe.surgeon_end();
+  const auto patient = pipe.patient_end();
+  const std::array<std::byte, 4> bytes{};
+  std::array<std::byte, link::kDatagramSizeMax> buffer{};
+  for (const auto& [after, arrives] : {std::pair{std::chrono::milliseconds{999}, true},
+                                       std::pair{std::chrono::milliseconds{1001}, false},
+                                       std::pair{std::chrono::milliseconds{2001}, true}}) {
+    surgeon->send(bytes, start + after);
+    EXPECT_EQ(patient->receive(buffer, start + after).has_value(), arrives) << after.count();
+  }
+}
+
 }  // namespace
 }  // namespace palp::netem
