@@ -57,6 +57,12 @@ TEST(MotionGateTest, NeverExceedsSpeedAndAccelerationWhateverIsAsked) {
   });
 }
 
+TEST(MotionGateTest, ATargetWithinTheSpeedStillWaitsForTheAcceleration) {
+  MotionGate gate = gate_at(0);
+  // 0.14 m/s from rest; 8 m/s^2 give 8 mm/s in the first tick.
+  EXPECT_NEAR(gate.pass(engaged(140e-6), kTick).position, 8e-6, 1e-9);
+}
+
 TEST(MotionGateTest, ReachesAFarTargetAndStaysThere) {
   MotionGate gate = gate_at(0);
   double position = 0;

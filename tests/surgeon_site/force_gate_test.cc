@@ -122,6 +122,12 @@ TEST(ForceGateTest, LateFirstSampleOfAnEngagementFadesIn) {
   EXPECT_NEAR(gate.pass(engaged(1), 1ms).force, 0.04, 1e-12);
 }
 
+TEST(ForceGateTest, LateTickBuysNoBiggerStepOfAFade) {
+  ForceGate gate{ForceGateConfig{}};
+  for (int i = 0; i < 2000; ++i) gate.pass(engaged(0), 1ms);
+  EXPECT_NEAR(gate.pass(engaged(5), 100ms).force, 0.4, 1e-12);  // as after 10 ms
+}
+
 RC_GTEST_PROP(ForceGateTest, NoChangeOfStateMovesTheForceByMoreThanHalfANewtonInTenTicks, ()) {
   ForceGate gate = settled();
   const double force = *rc::gen::map(rc::gen::inRange(-8000, 8000), [](int x) { return x * 1e-3; });
