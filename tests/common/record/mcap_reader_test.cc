@@ -89,6 +89,50 @@ TEST(McapReaderTest, DamagedChunkIsSkippedAndTheOthersAreKept) {
   EXPECT_EQ(report.messages, ends.rbegin()->second - in_second);
 }
 
+/// One uncompressed chunk with two messages; where the payload of the first stands in it.
+struct PlainFile {
+  MemorySink sink;
+  std::size_t payload_at{};
+
+  explicit PlainFile(std::size_t schema_size = 4) {
+    McapOptions options;
+    options.compression = McapCompression::None;
+    McapWriter writer{sink, options};
+    const Bytes schema(schema_size, std::byte{'s'});
+    const auto channel = writer.add_channel(writer.add_schema("a", "raw", schema), "topic", "raw");
+    const Bytes payload(8, std::byte{0x5a});
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      std::copy(
+          payload.begin(), payload.end(), writer.add_message({channel, i, i, i}, payload.size()));
+    }
+    writer.close();
+    const auto found = std::ranges::search(sink.bytes(), payload);
+    payload_at = static_cast<std::size_t>(found.begin() - sink.bytes().begin());
+  }
+};
+
+TEST(McapReaderTest, DamageThatNoDecompressorSeesIsSeenByTheChecksumOfTheChunk) {
+  const PlainFile file;
+  Bytes damaged{file.sink.bytes().begin(), file.sink.bytes().end()};
+  EXPECT_EQ(read_all(damaged).messages, 2u);
+  damaged[file.payload_at] ^= std::byte{1};
+  const auto report = read_all(damaged);
+  EXPECT_EQ(report.chunks_damaged, 1u);
+  EXPECT_EQ(report.messages, 0u);
+}
+
+TEST(McapReaderTest, DefinitionsBeyondTheLimitAreAFaultAndNotKept) {
+  const PlainFile file{1000};
+  for (const std::uint64_t limit : {2000u, 900u}) {
+    McapReader reader{file.sink.bytes(), {.definitions_size_max = limit}};
+    bool schema_seen = false;
+    while (const auto item = reader.next())
+      schema_seen |= std::holds_alternative<McapSchema>(*item);
+    EXPECT_EQ(schema_seen, limit == 2000);
+    EXPECT_EQ(reader.report().fault_count == 0, limit == 2000);
+  }
+}
+
 /// A file of hand-made records behind the magic and a header.
 class RawFile {
  public:
