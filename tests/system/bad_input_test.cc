@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include "tests/system/process.h"
+
+/// Goal: what cannot work is told in one sentence on standard error, and in the exit code.
+/// Method: the programs with one thing wrong.
+namespace palp::system_test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int kBadInput = 2;
+constexpr int kNotReached = 3;
+
+class BadInputTest : public ::testing::Test {
+ protected:
+  ~BadInputTest() override { std::filesystem::remove_all(folder_); }
+
+  /// One line about `about` on standard error, nothing on standard output, and `code`.
+  void expect_refusal(const std::string& command, int code, const std::string& about) const {
+    SCOPED_TRACE(command);
+    EXPECT_EQ(run(command), code);
+    const std::string complaint = text("err");
+    EXPECT_EQ(std::ranges::count(complaint, '\n'), 1) << complaint;
+    EXPECT_THAT(complaint, HasSubstr(about));
+    EXPECT_EQ(text("out"), "");
+  }
+
+  std::string folder_{make_folder("bad-input")};
+
+ private:
+  /// @returns the exit code; 124 if it still ran after 20 s.
+  [[nodiscard]] int run(const std::string& command) const {
+    const std::string line = "timeout -s KILL 20 '" PALP_BINARY_FOLDER "'/" + command + " >'" +
+                             folder_ + "/out' 2>'" + folder_ + "/err' </dev/null";
+    const int status = std::system(line.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  [[nodiscard]] std::string text(const std::string& name) const {
+    std::ifstream file{folder_ + "/" + name};
+    return {std::istreambuf_iterator<char>{file}, {}};
+  }
+};
+
+TEST_F(BadInputTest, UnknownFlag) {
+  for (const std::string program :
+       {"palp-surgeon", "palp-patient", "palp-lab run", "palp-netem relay"}) {
+    expect_refusal(program + " --no-such-flag", kBadInput, "--no-such-flag");
+  }
+}
+
+TEST_F(BadInputTest, UnknownPhantom) {
+  expect_refusal(
+      "palp-patient --listen 127.0.0.1:0 --insecure --phantom jelly", kBadInput, "'jelly'");
+}
+
+TEST_F(BadInputTest, BadNumber) {
+  const std::string surgeon = "palp-surgeon --peer 127.0.0.1:9 --insecure ";
+  expect_refusal(surgeon + "--loss a-lot", kBadInput, "--loss = a-lot");
+  expect_refusal(surgeon + "--loss 1.5", kBadInput, "0 to 1");
+  expect_refusal("palp-netem relay --listen 127.0.0.1:0 --forward 127.0.0.1:9 --rtt-ms long",
+                 kBadInput,
+                 "--rtt-ms = long");
+}
+
+TEST_F(BadInputTest, PortInUse) {
+  Process patient{"palp-patient", {"--listen", "127.0.0.1:0", "--insecure"}, folder_ + "/log"};
+  const std::string address = patient.address();
+  ASSERT_NE(address, "") << patient.output();
+  expect_refusal(
+      "palp-netem relay --forward 127.0.0.1:9 --listen " + address, kNotReached, address);
+}
+
+TEST_F(BadInputTest, MissingFile) {
+  expect_refusal("palp-surgeon --config no-such-file", kNotReached, "no-such-file");
+  expect_refusal("palp-patient --config no-such-file", kNotReached, "no-such-file");
+  expect_refusal("palp-review check no-such-file", kNotReached, "no-such-file");
+  expect_refusal("palp-lab run no-such-file", kBadInput, "no-such-file");
+}
+
+}  // namespace
+}  // namespace palp::system_test

@@ -1,0 +1,107 @@
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/system/process.h"
+#include "tests/system/session_files.h"
+
+/// Goal: a whole session through the emulated link ends in order and leaves sound files.
+/// Method: the four programs, a script of one tap at either site.
+namespace palp::system_test {
+namespace {
+
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+constexpr char kScript[] =
+    "move -3 0.5\n"
+    "taps 1 4 1 0.5\n"
+    "lift 0.5 0.2\n"
+    "site B\n"
+    "move -3 0.5\n"
+    "taps 1 4 1 0.5\n"
+    "lift 0.5 0.2\n";
+
+nlohmann::json report(const std::string& path) {
+  std::ifstream file{path};
+  return nlohmann::json::parse(file, nullptr, false);
+}
+
+class SessionTest : public ::testing::Test {
+ protected:
+  ~SessionTest() override {
+    if (!HasFailure()) std::filesystem::remove_all(folder_);
+  }
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
+
+  /// The file of `site` is sound to palp-review and holds as many messages as the site counted.
+  void expect_sound_file(const std::string& site) const {
+    const nlohmann::json account = report(path(site + ".json"));
+    ASSERT_TRUE(account.is_object()) << site;
+    EXPECT_EQ(account["schema"], "palp.site/1");
+    EXPECT_EQ(account["site"], site);
+    EXPECT_EQ(account["exit_code"], 0);
+    EXPECT_EQ(account["records_dropped"], 0);
+    Process check{"palp-review", {"check", path(site + ".mcap")}, path(site + ".check")};
+    EXPECT_EQ(check.wait(seconds{60}), 0) << check.output();
+    const SessionFile file = read_session(path(site + ".mcap"));
+    EXPECT_TRUE(file.closed);
+    EXPECT_EQ(file.messages, account["messages"]);
+    EXPECT_EQ(file.ticks.size(), account["records"]["tick"]);
+    EXPECT_EQ(file.arrivals.size(), account["records"]["arrived"]);
+  }
+
+  std::string folder_{make_folder("session")};
+};
+
+TEST_F(SessionTest, EndsInOrderAndLeavesSoundFiles) {
+  write_text(path("script.txt"), kScript);
+  const auto with_files = [this](std::string site, std::vector<std::string> arguments) {
+    const std::vector<std::string> more{
+        "--insecure", "--session-file", path(site + ".mcap"), "--report", path(site + ".json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Process{"palp-" + site, arguments, path(site + ".log")};
+  };
+  Process patient = with_files("patient", {"--listen", "127.0.0.1:0"});
+  const std::string patient_address = patient.address();
+  ASSERT_NE(patient_address, "") << patient.output();
+  Process relay{"palp-netem",
+                {"relay",
+                 "--listen",
+                 "127.0.0.1:0",
+                 "--forward",
+                 patient_address,
+                 "--rtt-ms",
+                 "5",
+                 "--report",
+                 path("relay.json")},
+                path("relay.log")};
+  const std::string relay_address = relay.address();
+  ASSERT_NE(relay_address, "") << relay.output();
+  Process surgeon =
+      with_files("surgeon", {"--peer", relay_address, "--master", "script:" + path("script.txt")});
+
+  ASSERT_EQ(surgeon.wait(seconds{60}), 0) << surgeon.output();
+  EXPECT_TRUE(patient.wait_for("-> PARKED", seconds{20})) << patient.output();
+  patient.signal(SIGINT);
+  relay.signal(SIGINT);
+  EXPECT_EQ(patient.wait(seconds{20}), 0) << patient.output();
+  EXPECT_EQ(relay.wait(seconds{20}), 0) << relay.output();
+
+  expect_sound_file("surgeon");
+  expect_sound_file("patient");
+  const nlohmann::json link = report(path("relay.json"));
+  ASSERT_TRUE(link.is_object());
+  EXPECT_EQ(link["schema"], "palp.relay/1");
+  EXPECT_GT(link["up"]["received"], 0);
+  EXPECT_GT(link["down"]["received"], 0);
+  EXPECT_EQ(report(path("patient.json"))["records"]["depth_estimate"], 2) << "one for each tap";
+}
+
+}  // namespace
+}  // namespace palp::system_test
