@@ -28,7 +28,7 @@ constexpr double kForceStepMax = 0.5;  // [N] in 10 ms: what a hand is not start
 
 constexpr char kScript[] =
     "move -3 0.5\n"
-    "press 4 0.6 7\n"
+    "press 7 0.8 7\n"
     "lift 0.6 0.5\n"
     "site B\n"
     "taps 1 4 1 0.5\n"
@@ -45,7 +45,13 @@ class RestartTest : public ::testing::Test {
   /// `name` is that of the session file and of the log.
   [[nodiscard]] Process start_patient(const std::string& name, const std::string& address) const {
     return {"palp-patient",
-            {"--listen", address, "--insecure", "--session-file", path(name + ".mcap")},
+            {"--listen",
+             address,
+             "--insecure",
+             "--phantom",
+             "closed-form",
+             "--session-file",
+             path(name + ".mcap")},
             path(name + ".log")};
   }
   [[nodiscard]] Process start_surgeon(const std::string& name, const std::string& peer) const {
@@ -61,7 +67,7 @@ class RestartTest : public ::testing::Test {
   }
   /// Waits until the patient's status line tells of a force that only the press makes.
   static bool wait_for_press(const Process& patient) {
-    const std::regex pressed{"contact 0\\.[3-9]"};
+    const std::regex pressed{"contact (0\\.[89]|1\\.)"};
     const TimePoint deadline = io::SteadyClock{}.now() + seconds{30};
     while (!std::regex_search(patient.output(), pressed)) {
       if (io::SteadyClock{}.now() > deadline) return false;
