@@ -12,7 +12,7 @@ struct HouseTime {
   using rep = duration::rep;
   using period = duration::period;
   using time_point = std::chrono::time_point<HouseTime>;
-  static constexpr bool is_steady = true;
+  static constexpr bool is_steady = true;  // NOLINT(readability-identifier-naming): std
 };
 
 /// The other site's line. Another type: subtracting one from the other does not compile.
@@ -21,7 +21,7 @@ struct PeerTime {
   using rep = duration::rep;
   using period = duration::period;
   using time_point = std::chrono::time_point<PeerTime>;
-  static constexpr bool is_steady = true;
+  static constexpr bool is_steady = true;  // NOLINT(readability-identifier-naming): std
 };
 
 using Duration = HouseTime::duration;
