@@ -12,6 +12,7 @@
 #include "common/config/command_line.h"
 #include "common/config/number.h"
 #include "common/config/report.h"
+#include "common/core/printable.h"
 #include "common/io/endpoint.h"
 #include "netem/presets.h"
 #include "netem/relay.h"
@@ -40,8 +41,8 @@ Times need their unit (us, ms, s), shares their %. Delays are one way.)";
 
 /// The command line, as given; texts are empty where it says nothing.
 struct Flags {
-  std::optional<config::Endpoint> listen;
-  std::optional<config::Endpoint> forward;
+  std::optional<HostAndPort> listen;
+  std::optional<HostAndPort> forward;
   std::string spec;
   std::string up;
   std::string down;
@@ -101,7 +102,7 @@ Result<double> loss_flag(const std::string& text) {
   if (text.empty()) return 0.0;
   const auto loss = config::parse_share(text);
   if (!loss || !(*loss >= 0 && *loss <= 1)) {
-    return fail("--loss is \"" + config::printable(text) +
+    return fail("--loss is \"" + printable(text) +
                 "\", expected a fraction from 0 to 1, or a share as 5%");
   }
   return *loss;
@@ -149,11 +150,6 @@ int stop_signals() {
   return ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 
-/// Numeric by now: nobody is asked.
-Result<io::Endpoint> socket_address(const config::Endpoint& endpoint) {
-  return io::resolve({.host = endpoint.address, .port = endpoint.port});
-}
-
 /// Serves until told to stop; the report is written at once as well: a path that cannot be written
 /// is known before the session.
 Ending serve(Relay& relay, const Flags& flags, RelayRun run) {
@@ -182,9 +178,9 @@ Ending serve(Relay& relay, const Flags& flags, RelayRun run) {
 }
 
 Ending run_relay(const Flags& flags) {
-  const auto listen = socket_address(*flags.listen);
+  const auto listen = io::resolve(*flags.listen);
   if (!listen) return bad_input("--listen: " + listen.error().text);
-  const auto forward = socket_address(*flags.forward);
+  const auto forward = io::resolve(*flags.forward);
   if (!forward) return bad_input("--forward: " + forward.error().text);
   const auto asked = asked_impairments(flags);
   if (!asked) return bad_input(asked.error().text);
@@ -229,9 +225,9 @@ Ending show_presets(const std::string& name) {
 
 void declare_relay(config::CommandLine& relay, Flags& flags) {
   const config::NumberRange milliseconds{.min = 0, .max = 1e9, .unit = "ms"};
-  relay.endpoint("--listen", flags.listen, 0, "where the surgeon sends to; port 0: any");
+  relay.address("--listen", flags.listen, 0, "where the surgeon sends to; port 0: any");
   relay.required();
-  relay.endpoint("--forward", flags.forward, 1, "the patient");
+  relay.address("--forward", flags.forward, 1, "the patient");
   relay.required();
   relay.text("--spec", flags.spec, "SPEC", "impairment of both directions");
   relay.text("--up", flags.up, "SPEC", "impairment from surgeon to patient");

@@ -263,11 +263,11 @@ Result<ForceTable> parse_force_table(std::string_view text, std::string_view nam
 
 Result<ForceTable> load_force_table(const std::string& path) {
   std::ifstream file{path, std::ios::binary};
-  if (!file) return fail(path + ": the file cannot be opened");
+  if (!file) return fail_to_reach(path + ": the file cannot be opened");
   std::string text(kTextSizeMax + 1, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (file.bad() || (file.gcount() == 0 && !file.eof())) {
-    return fail(path + ": the file cannot be read");
+    return fail_to_reach(path + ": the file cannot be read");
   }
   text.resize(static_cast<std::size_t>(file.gcount()));
   return parse_force_table(text, path);

@@ -35,8 +35,8 @@ namespace palp::patient {
 namespace {
 
 using config::ExitCode;
-using site_program::bad_input;
 using site_program::Ending;
+using site_program::ending_of;
 
 constexpr Duration kDisplayPeriod = std::chrono::milliseconds{100};
 constexpr Duration kEstimatorPause = std::chrono::milliseconds{5};
@@ -88,7 +88,7 @@ void describe_tissue(const Phantom& phantom,
 }
 
 tl::expected<Plan, Ending> make_plan(const config::Document& document) {
-  const auto bad = [](const Error& error) { return tl::unexpected{bad_input(error.text)}; };
+  const auto bad = [](const Error& error) { return tl::unexpected{ending_of(error)}; };
   auto settings = make_settings(document);
   if (!settings) return bad(settings.error());
   const auto address =

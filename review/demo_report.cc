@@ -17,6 +17,7 @@ using Json = nlohmann::ordered_json;
 Json value(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 Json value(const std::optional<double>& number) { return number ? value(*number) : Json(nullptr); }
 Json value(const std::optional<std::string>& text) { return text ? Json(*text) : Json(nullptr); }
+Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 Json millimetres(const std::optional<double>& metres) {
   return metres ? value(*metres * 1e3) : Json(nullptr);
 }
@@ -96,7 +97,7 @@ Json tap_json(const Tap& tap, const SiteData& patient) {
   json["index"] = tap.index;
   json["kind"] = to_string(tap.kind);
   json["number"] = estimate.number;
-  json["t_s"] = value(seconds(estimate.stroke_began_at - patient.began_at));
+  json["t_s"] = value(seconds(elapsed(patient.began_at, estimate.stroke_began_at)));
   json["lateral_mm"] = value(estimate.lateral * 1e3);
   json["indentation_max_mm"] = value(estimate.indentation_max * 1e3);
   json["force_max_n"] = value(estimate.force_max);
@@ -168,7 +169,7 @@ Json transitions_json(const SiteData& surgeon, const SiteData& patient) {
   std::vector<Entry> entries;
   for (const SiteData* site : {&surgeon, &patient}) {
     for (const record::Transition& transition : site->transitions) {
-      entries.push_back({seconds(transition.at - site->began_at), site, &transition});
+      entries.push_back({seconds(elapsed(site->began_at, transition.at)), site, &transition});
     }
   }
   std::stable_sort(
@@ -196,13 +197,14 @@ std::string demo_report(const SiteData& surgeon,
   const Json patient_report = parsed(reports.patient);
   Json json;
   json["schema"] = "palp.demo/1";
-  json["outcome"] = first_known(
-      {value(asked.outcome), member(surgeon_report, "outcome"), member(patient_report, "outcome")});
+  json["outcome"] = first_known({text_or_null(asked.outcome),
+                                 member(surgeon_report, "outcome"),
+                                 member(patient_report, "outcome")});
   json["seed"] = first_known({member(surgeon_report, "seed"), whole_number(surgeon.entry("seed"))});
   json["coupling"] =
       first_known({member(surgeon_report, "coupling"), value(surgeon.entry("coupling"))});
-  json["preset"] = value(asked.preset);
-  json["grip"] = first_known({value(asked.grip), value(surgeon.entry("grip"))});
+  json["preset"] = text_or_null(asked.preset);
+  json["grip"] = first_known({text_or_null(asked.grip), value(surgeon.entry("grip"))});
   json["phantom"] = phantom_json(patient);
   json["link"] = link_json(asked, surgeon, surgeon_report, parsed(reports.relay));
   json["taps"] = Json::array();

@@ -11,9 +11,9 @@ namespace palp::review {
 
 /// What the caller of a session asked for; a session file cannot know it.
 struct Asked {
-  std::optional<std::string> outcome{};
-  std::optional<std::string> preset{};
-  std::optional<std::string> grip{};
+  std::string outcome{};  ///< empty: nobody said
+  std::string preset{};   ///< empty: nobody said
+  std::string grip{};     ///< empty: nobody said
   std::optional<double> rtt_ms{};
   std::optional<double> jitter_ms{};
   std::optional<double> loss{};  ///< [-], share

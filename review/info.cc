@@ -10,7 +10,7 @@ std::string describe_topics(const record::SessionReader& reader) {
   std::string text{left("topic", 22) + right("messages", 10) + right("rate Hz", 10) +
                    right("missing", 9) + "  schema\n"};
   for (const auto& [name, topic] : reader.topics()) {
-    const double span = seconds(topic.last - topic.first);
+    const double span = seconds(elapsed(topic.first, topic.last));
     const std::string rate =
         span > 0 ? fixed(static_cast<double>(topic.messages - 1) / span, 1) : "-";
     text += left(name, 22) + right(std::to_string(topic.messages), 10) + right(rate, 10) +
@@ -27,7 +27,8 @@ std::string describe_end(const record::SessionReader& reader) {
   std::string text{"the file was not closed; " + std::to_string(report.messages) +
                    " messages read"};
   if (reader.began_at() && reader.ended_at()) {
-    text += ", last at " + fixed(seconds(*reader.ended_at() - *reader.began_at()), 3) + " s";
+    text +=
+        ", last at " + fixed(seconds(elapsed(*reader.began_at(), *reader.ended_at())), 3) + " s";
   }
   return text + "; " + std::to_string(report.bytes_unread) + " bytes at the end are of no use\n";
 }
@@ -45,8 +46,8 @@ std::string describe(std::span<const std::byte> file) {
     text += left(key, 22) + value + '\n';
   }
   if (reader.began_at() && reader.ended_at()) {
-    text +=
-        left("duration", 22) + fixed(seconds(*reader.ended_at() - *reader.began_at()), 3) + " s\n";
+    text += left("duration", 22) +
+            fixed(seconds(elapsed(*reader.began_at(), *reader.ended_at())), 3) + " s\n";
   }
   text += left("records", 22) + std::to_string(records);
   if (const auto dropped = reader.metadata("palp.summary", "records_dropped")) {

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "common/config/command_line.h"
+#include "common/config/exit_code.h"
 #include "common/record/mapped_file.h"
 #include "review/check.h"
 #include "review/demo_report.h"
@@ -19,54 +19,51 @@
 namespace palp::review {
 namespace {
 
-// Exit codes of every program of this house.
-constexpr int kDone = 0;
-constexpr int kMissed = 1;      ///< ran, but a check failed
-constexpr int kBadInput = 2;    ///< flag, field or content
-constexpr int kNotReached = 3;  ///< could not be opened
+using config::Ending;
+using config::ExitCode;
 
-int complain(int code, const std::string& text) {
-  std::cerr << "palp-review: " << text << '\n';
-  return code;
+Ending bad_input(const std::string& text) { return {ExitCode::BadInput, "palp-review: " + text}; }
+Ending cannot_open(const std::string& text) {
+  return {ExitCode::CannotOpen, "palp-review: " + text};
 }
 
-int run_info(const std::string& path) {
+Ending run_info(const std::string& path) {
   const auto file = record::MappedFile::open(path);
   if (!file) {
-    return complain(kNotReached, file.error().text);
+    return cannot_open(file.error().text);
   }
   std::cout << describe(file->bytes());
-  return kDone;
+  return {};
 }
 
-int run_check(const std::string& path) {
+Ending run_check(const std::string& path) {
   const auto file = record::MappedFile::open(path);
   if (!file) {
-    return complain(kNotReached, file.error().text);
+    return cannot_open(file.error().text);
   }
   if (const auto fault = first_fault(file->bytes())) {
     std::cout << path << ": " << *fault << '\n';
-    return kMissed;
+    return {ExitCode::Missed, {}};
   }
   std::cout << path << ": whole, closed, every message decodes\n";
-  return kDone;
+  return {};
 }
 
-int run_recover(const std::string& in, const std::string& out) {
+Ending run_recover(const std::string& in, const std::string& out) {
   const auto file = record::MappedFile::open(in);
   if (!file) {
-    return complain(kNotReached, file.error().text);
+    return cannot_open(file.error().text);
   }
   auto sink = record::FileSink::create(out);
   if (!sink) {
-    return complain(kNotReached, sink.error().text);
+    return cannot_open(sink.error().text);
   }
   const auto recovery = recover(file->bytes(), *sink);
   if (!recovery) {
-    return complain(kNotReached, recovery.error().text);
+    return cannot_open(recovery.error().text);
   }
   std::cout << describe(*recovery);
-  return kDone;
+  return {};
 }
 
 /// The text of a report; empty, with a line on standard error, if it cannot be read.
@@ -89,79 +86,73 @@ struct MetricsFlags {
   Asked asked;
 };
 
-int run_metrics(const MetricsFlags& flags) {
+Ending run_metrics(const MetricsFlags& flags) {
   const auto surgeon = load_site(flags.sessions.surgeon, link::Role::Surgeon);
   const auto patient = load_site(flags.sessions.patient, link::Role::Patient);
   if (!surgeon || !patient) {
-    return complain(kBadInput, !surgeon ? surgeon.error().text : patient.error().text);
+    return bad_input(!surgeon ? surgeon.error().text : patient.error().text);
   }
   std::optional<TissueTable> tissue;
   if (patient->tissue_csv) {
     auto table = TissueTable::parse(*patient->tissue_csv);
     if (!table) {
-      return complain(kBadInput, flags.sessions.patient + ": " + table.error().text);
+      return bad_input(flags.sessions.patient + ": " + table.error().text);
     }
     tissue = std::move(*table);
   }
   const auto taps = match_taps(*surgeon, *patient, tissue ? &*tissue : nullptr);
   std::cout << tap_table(taps, judge_depth(taps));
   if (flags.report.empty()) {
-    return kDone;
+    return {};
   }
   const ProgramReports reports{.surgeon = optional_text(flags.reports.surgeon),
                                .patient = optional_text(flags.reports.patient),
                                .relay = optional_text(flags.relay)};
   const auto document = demo_report(*surgeon, *patient, taps, flags.asked, reports, flags.sessions);
   if (const auto error = write_whole(flags.report, document)) {
-    return complain(kNotReached, error->text);
+    return cannot_open(error->text);
   }
-  return kDone;
+  return {};
 }
 
-void add_metrics_flags(CLI::App& verb, MetricsFlags& flags) {
-  verb.add_option("--surgeon", flags.sessions.surgeon, "session file of the surgeon's site")
-      ->required();
-  verb.add_option("--patient", flags.sessions.patient, "session file of the patient's site")
-      ->required();
-  verb.add_option("--surgeon-report", flags.reports.surgeon, "report that palp-surgeon wrote");
-  verb.add_option("--patient-report", flags.reports.patient, "report that palp-patient wrote");
-  verb.add_option("--relay", flags.relay, "report that palp-netem relay wrote");
-  verb.add_option("--report", flags.report, "write palp.demo/1 to this file");
-  verb.add_option("--outcome", flags.asked.outcome, "how the session ended");
-  verb.add_option("--preset", flags.asked.preset, "link preset that was asked for");
-  verb.add_option("--grip", flags.asked.grip, "grip that was asked for");
-  verb.add_option("--rtt-ms", flags.asked.rtt_ms, "round trip that was asked for");
-  verb.add_option("--jitter-ms", flags.asked.jitter_ms, "jitter that was asked for");
-  verb.add_option("--loss", flags.asked.loss, "share of datagrams lost that was asked for");
+void declare(config::CommandLine& line, MetricsFlags& flags) {
+  line.text("--surgeon", flags.sessions.surgeon, "FILE", "session file of the surgeon's site");
+  line.required();
+  line.text("--patient", flags.sessions.patient, "FILE", "session file of the patient's site");
+  line.required();
+  line.text("--surgeon-report", flags.reports.surgeon, "FILE", "report that palp-surgeon wrote");
+  line.text("--patient-report", flags.reports.patient, "FILE", "report that palp-patient wrote");
+  line.text("--relay", flags.relay, "FILE", "report that palp-netem relay wrote");
+  line.text("--report", flags.report, "FILE", "write palp.demo/1 to this file");
+  line.text("--outcome", flags.asked.outcome, "TEXT", "how the session ended");
+  line.text("--preset", flags.asked.preset, "NAME", "link preset that was asked for");
+  line.text("--grip", flags.asked.grip, "NAME", "grip that was asked for");
+  const config::NumberRange span{.min = 0, .max = 1e6, .unit = "ms"};
+  line.number("--rtt-ms", flags.asked.rtt_ms, span, "round trip that was asked for");
+  line.number("--jitter-ms", flags.asked.jitter_ms, span, "jitter that was asked for");
+  line.number("--loss", flags.asked.loss, {.min = 0, .max = 1, .unit = "share"}, "lost datagrams");
 }
 
-int run(int argc, char** argv) {
-  CLI::App app{"palp-review: what a session file says"};
-  app.require_subcommand(1);
+Ending run(int argc, char** argv) {
+  config::CommandLine line{"palp-review", "what a session file says"};
   std::string in;
   std::string out;
   MetricsFlags flags;
-  auto* info = app.add_subcommand("info", "duration, topics, counts, rates, drops, closed or not");
-  auto* check = app.add_subcommand("check", "exit code 1 and the first fault, if there is one");
-  auto* recovery = app.add_subcommand("recover", "write all that can be read of IN again, to OUT");
-  auto* metrics = app.add_subcommand("metrics", "taps, depth and counters of a session");
-  for (CLI::App* verb : {info, check, recovery}) {
-    verb->add_option("FILE", in, "session file, never changed")->required();
+  auto& info = line.verb("info", "duration, topics, counts, rates, drops, closed or not");
+  auto& check = line.verb("check", "exit code 1 and the first fault, if there is one");
+  auto& recovery = line.verb("recover", "write all that can be read of IN again, to OUT");
+  for (config::CommandLine* verb : {&info, &check, &recovery}) {
+    verb->argument(verb == &recovery ? "IN" : "FILE", in, "session file, never changed");
+    verb->required();
   }
-  recovery->add_option("OUT", out, "new file; must not exist")->required();
-  add_metrics_flags(*metrics, flags);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kBadInput;
-  }
-  if (info->parsed()) {
-    return run_info(in);
-  }
-  if (check->parsed()) {
-    return run_check(in);
-  }
-  return recovery->parsed() ? run_recover(in, out) : run_metrics(flags);
+  recovery.argument("OUT", out, "new file; must not exist");
+  recovery.required();
+  declare(line.verb("metrics", "taps, depth and counters of a session"), flags);
+  if (const auto ending = line.parse(argc, argv)) return *ending;
+  const std::string verb = line.chosen_verb();
+  if (verb == "info") return run_info(in);
+  if (verb == "check") return run_check(in);
+  return verb == "recover" ? run_recover(in, out) : run_metrics(flags);
 }
 
 }  // namespace
@@ -169,8 +160,8 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return palp::review::run(argc, argv);
+    return palp::config::leave(palp::review::run(argc, argv));
   } catch (const std::exception& error) {
-    return palp::review::complain(palp::review::kNotReached, error.what());
+    return palp::config::leave(palp::review::cannot_open(error.what()));
   }
 }

@@ -61,8 +61,8 @@ std::vector<Tap> match_taps(const SiteData& surgeon,
   for (const DepthEstimate& estimate : patient.estimates) {
     const Excursion* excursion = excursion_of(estimate, surgeon, excursions);
     const Duration span = excursion != nullptr
-                              ? excursion->ended_at - excursion->began_at
-                              : estimate.stroke_ended_at - estimate.stroke_began_at;
+                              ? elapsed(excursion->began_at, excursion->ended_at)
+                              : elapsed(estimate.stroke_began_at, estimate.stroke_ended_at);
     Tap tap{.place = place_at(estimate.lateral),
             .kind = span > kTapMax ? StrokeKind::Press : StrokeKind::Tap,
             .index = 0,

@@ -33,8 +33,8 @@ namespace palp::surgeon {
 namespace {
 
 using config::ExitCode;
-using site_program::bad_input;
 using site_program::Ending;
+using site_program::ending_of;
 
 constexpr Duration kDisplayPeriod = std::chrono::milliseconds{100};
 
@@ -88,7 +88,7 @@ struct Plan {
 };
 
 tl::expected<Plan, Ending> make_plan(const config::Document& document) {
-  const auto bad = [](const Error& error) { return tl::unexpected{bad_input(error.text)}; };
+  const auto bad = [](const Error& error) { return tl::unexpected{ending_of(error)}; };
   auto settings = make_settings(document);
   if (!settings) return bad(settings.error());
   const auto address = site_program::plain_address("--peer", settings->peer, settings->insecure, 1);

@@ -248,14 +248,14 @@ Result<ReplayRow> read_row(const std::vector<std::string_view>& cells, std::size
 Result<std::string> read_file(const std::string& path) {
   constexpr std::size_t kSizeMax = 256U << 20U;  // [bytes]: hours of motion at 1 kHz
   std::ifstream file{path, std::ios::binary};
-  if (!file) return fail("cannot open " + quoted(path));
+  if (!file) return fail_to_reach("cannot open " + quoted(path));
   std::string text;
   std::array<char, 65536> block{};
   while (file.read(block.data(), block.size()) || file.gcount() > 0) {
     text.append(block.data(), static_cast<std::size_t>(file.gcount()));
     if (text.size() > kSizeMax) return fail(quoted(path) + " is longer than 256 MiB");
   }
-  if (file.bad() || !file.eof()) return fail("cannot read " + quoted(path));
+  if (file.bad() || !file.eof()) return fail_to_reach("cannot read " + quoted(path));
   return text;
 }
 

@@ -11,6 +11,7 @@
 #include "common/config/number.h"
 #include "common/config/settings_text.h"
 #include "common/core/check.h"
+#include "common/core/printable.h"
 
 namespace palp::config {
 namespace {
@@ -271,12 +272,12 @@ void CommandLine::whole(const std::string& flag,
   });
 }
 
-void CommandLine::endpoint(const std::string& flag,
-                           std::optional<Endpoint>& value,
-                           std::uint16_t port_min,
-                           const std::string& meaning) {
+void CommandLine::address(const std::string& flag,
+                          std::optional<HostAndPort>& value,
+                          std::uint16_t port_min,
+                          const std::string& meaning) {
   parts_->declare(flag, "HOST:PORT", meaning, true, [flag, &value, port_min](const Values& given) {
-    return parse_endpoint(given.front(), port_min)
+    return parse_host_and_port(given.front(), port_min)
         .map(store_in(value))
         .map_error([&flag](const Error& error) { return Error{flag + ": " + error.text}; });
   });

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "common/config/document.h"
-#include "common/config/endpoint.h"
 #include "common/config/exit_code.h"
 #include "common/config/flag_value.h"
+#include "common/core/host_and_port.h"
 
 namespace palp::config {
 
@@ -65,11 +65,11 @@ class CommandLine {
              std::optional<std::uint64_t>& value,
              const WholeRange& range,
              const std::string& meaning);
-  /// parse_endpoint(); `port_min` 1 where the program sends to it.
-  void endpoint(const std::string& flag,
-                std::optional<Endpoint>& value,
-                std::uint16_t port_min,
-                const std::string& meaning);
+  /// HOST:PORT; `port_min` 1 where the program sends to it. Asks no resolver.
+  void address(const std::string& flag,
+               std::optional<HostAndPort>& value,
+               std::uint16_t port_min,
+               const std::string& meaning);
   /// True if given.
   void toggle(const std::string& flag, bool& value, const std::string& meaning);
 

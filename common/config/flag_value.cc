@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/config/number.h"
+#include "common/core/printable.h"
 
 namespace palp::config {
 namespace {

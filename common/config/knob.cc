@@ -8,6 +8,7 @@
 
 #include "common/config/number.h"
 #include "common/core/check.h"
+#include "common/core/printable.h"
 #include "proto/config.pb.h"
 
 namespace palp::config {

@@ -8,8 +8,6 @@
 namespace palp::config {
 namespace {
 
-constexpr std::size_t kPrintableMax = 80;
-
 template <class Number>
 std::optional<Number> parse(std::string_view text) noexcept {
   Number value{};
@@ -48,14 +46,6 @@ std::string number_text(double value) {
   std::array<char, 32> buffer{};  // the longest double is -2.2250738585072014e-308: 24 characters
   const auto written = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
   return {buffer.data(), written.ptr};
-}
-
-std::string printable(std::string_view text) {
-  std::string clean;
-  for (const char c : text.substr(0, kPrintableMax)) {
-    clean += c >= ' ' && c <= '~' ? c : '?';
-  }
-  return text.size() > kPrintableMax ? clean + "..." : clean;
 }
 
 std::string range_text(double min, double max, std::string_view unit) {

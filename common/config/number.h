@@ -22,10 +22,6 @@ namespace palp::config {
 /// The shortest text that reads back as the same double; "nan" and "inf" for what is not finite.
 [[nodiscard]] std::string number_text(double value);
 
-/// Foreign text made fit for a sentence: one line, printable ASCII ('?' for the rest), cut off
-/// with "..." after 80 characters.
-[[nodiscard]] std::string printable(std::string_view text);
-
 /// "0.1 to 10 N"; the unit "1" or "" is left out; "share": "0 to 1 (0% to 100%)".
 [[nodiscard]] std::string range_text(double min, double max, std::string_view unit);
 

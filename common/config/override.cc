@@ -9,6 +9,7 @@
 
 #include "common/config/knob.h"
 #include "common/config/number.h"
+#include "common/core/printable.h"
 
 namespace palp::config {
 namespace {

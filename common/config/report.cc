@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "common/config/number.h"
+#include "common/core/printable.h"
 
 namespace palp::config {
 namespace {

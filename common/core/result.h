@@ -9,6 +9,7 @@ namespace palp {
 /// Bad input in one clear sentence: what, the value, the limit.
 struct Error {
   std::string text;
+  bool unreachable{};  ///< nothing was read: a file that cannot be opened, a host nobody knows
 };
 
 /// A value, or the sentence that says why there is none.
@@ -17,6 +18,10 @@ using Result = tl::expected<T, Error>;
 
 [[nodiscard]] inline tl::unexpected<Error> fail(std::string text) {
   return tl::unexpected<Error>(Error{std::move(text)});
+}
+
+[[nodiscard]] inline tl::unexpected<Error> fail_to_reach(std::string text) {
+  return tl::unexpected<Error>(Error{std::move(text), true});
 }
 
 }  // namespace palp

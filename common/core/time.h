@@ -35,6 +35,18 @@ class Clock {
   [[nodiscard]] virtual TimePoint now() const noexcept = 0;
 };
 
+/// later - earlier for instants that come out of a file or off a wire and may be anything: where
+/// the difference does not fit, the longest span of its sign.
+template <class Line, class Span>
+[[nodiscard]] constexpr Span elapsed(std::chrono::time_point<Line, Span> earlier,
+                                     std::chrono::time_point<Line, Span> later) noexcept {
+  const auto from = earlier.time_since_epoch().count();
+  const auto to = later.time_since_epoch().count();
+  typename Span::rep difference{};
+  return __builtin_sub_overflow(to, from, &difference) ? (to < from ? Span::min() : Span::max())
+                                                       : Span{difference};
+}
+
 /// A span in seconds [s], for formulas.
 [[nodiscard]] constexpr double seconds(Duration span) noexcept {
   return std::chrono::duration<double>(span).count();

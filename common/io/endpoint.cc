@@ -1,7 +1,6 @@
 #include "common/io/endpoint.h"
 
 #include <array>
-#include <charconv>
 #include <cstring>
 #include <memory>
 
@@ -97,35 +96,6 @@ Endpoint Endpoint::any_of_family() const noexcept {
   sockaddr_in any{};
   any.sin_family = AF_INET;
   return {&any, sizeof any};
-}
-
-std::string HostAndPort::to_string() const {
-  const bool brackets = host.find(':') != std::string::npos;
-  return (brackets ? "[" + host + "]" : host) + ":" + std::to_string(port);
-}
-
-Result<HostAndPort> parse_host_and_port(std::string_view text) {
-  const std::string quoted = "address \"" + std::string{text} + "\"";
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string_view::npos) {
-    return fail(quoted + " has no port; expected HOST:PORT, for example 127.0.0.1:9000");
-  }
-  std::string_view host = text.substr(0, colon);
-  const std::string_view port = text.substr(colon + 1);
-  if (host.size() >= 2 && host.front() == '[' && host.back() == ']') {
-    host = host.substr(1, host.size() - 2);
-  } else if (host.find(':') != std::string_view::npos) {
-    return fail(quoted + " needs brackets around an IPv6 address, for example [::1]:9000");
-  }
-  if (host.empty()) {
-    return fail(quoted + " has no host; expected HOST:PORT, for example 127.0.0.1:9000");
-  }
-  std::uint16_t number = 0;
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
-  if (error != std::errc{} || end != port.data() + port.size()) {
-    return fail(quoted + " has the port \"" + std::string{port} + "\"; expected 0 to 65535");
-  }
-  return HostAndPort{.host = std::string{host}, .port = number};
 }
 
 Result<Endpoint> resolve(const HostAndPort& place) {

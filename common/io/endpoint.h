@@ -7,6 +7,7 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include "common/core/host_and_port.h"
 #include "common/core/result.h"
 
 namespace palp::io {
@@ -37,17 +38,6 @@ class Endpoint {
   sockaddr_storage storage_{};
   socklen_t size_{};
 };
-
-/// Where to listen or whom to call, as people write it.
-struct HostAndPort {
-  std::string host;  ///< name or address, IPv6 without brackets
-  std::uint16_t port{};
-  /// As it was written.
-  [[nodiscard]] std::string to_string() const;
-};
-
-/// `HOST:PORT`, `ADDRESS:PORT`, `[IPV6]:PORT`, port 0 to 65535. Asks nobody.
-[[nodiscard]] Result<HostAndPort> parse_host_and_port(std::string_view text);
 
 /// Asks the resolver, so it may take seconds for a host name; IPv4 is preferred.
 [[nodiscard]] Result<Endpoint> resolve(const HostAndPort& place);

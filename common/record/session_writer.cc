@@ -72,7 +72,7 @@ bool SessionWriter::put(const Prepared& prepared, TimePoint now) {
 }
 
 void SessionWriter::view(const SiteTick& tick, TimePoint now) {
-  if (view_.ticks > 0 && tick.at - view_.began_at >= kViewInterval) {
+  if (view_.ticks > 0 && elapsed(view_.began_at, tick.at) >= kViewInterval) {
     write_view(now);
   }
   view_.add(tick);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "common/config/exit_code.h"
+#include "common/core/result.h"
 
 namespace palp::site_program {
 
@@ -18,6 +19,11 @@ struct Ending {
 }
 [[nodiscard]] inline Ending cannot_start(std::string sentence) {
   return {config::ExitCode::CannotOpen, "cannot start", std::move(sentence)};
+}
+
+/// Of what was wrong, or could not be reached at all, before the session.
+[[nodiscard]] inline Ending ending_of(const Error& error) {
+  return error.unreachable ? cannot_start(error.text) : bad_input(error.text);
 }
 
 }  // namespace palp::site_program

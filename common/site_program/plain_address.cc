@@ -2,20 +2,16 @@
 
 namespace palp::site_program {
 
-tl::expected<io::HostAndPort, Ending> plain_address(const std::string& flag,
-                                                    const std::string& text,
-                                                    bool insecure,
-                                                    std::uint16_t port_min) {
+tl::expected<HostAndPort, Ending> plain_address(const std::string& flag,
+                                                const std::string& text,
+                                                bool insecure,
+                                                std::uint16_t port_min) {
   if (text.empty()) {
     return tl::unexpected{bad_input(flag + " is missing, an address such as 127.0.0.1:9000")};
   }
-  const Result<io::HostAndPort> place = io::parse_host_and_port(text);
+  const Result<HostAndPort> place = parse_host_and_port(text, port_min);
   if (!place) {
     return tl::unexpected{bad_input(flag + ": " + place.error().text)};
-  }
-  if (place->port < port_min) {
-    return tl::unexpected{bad_input(flag + " " + text + " has the port 0; expected " +
-                                    std::to_string(port_min) + " to 65535")};
   }
   if (!insecure) {
     return tl::unexpected{

@@ -12,9 +12,9 @@ namespace palp::site_program {
 /// Where to listen or whom to call with datagrams that are neither encrypted nor authenticated:
 /// only as --insecure, and only within this machine. `flag` is what the sentence calls the address.
 /// `port_min`: 1 where one calls. May ask the resolver.
-[[nodiscard]] tl::expected<io::HostAndPort, Ending> plain_address(const std::string& flag,
-                                                                  const std::string& text,
-                                                                  bool insecure,
-                                                                  std::uint16_t port_min);
+[[nodiscard]] tl::expected<HostAndPort, Ending> plain_address(const std::string& flag,
+                                                              const std::string& text,
+                                                              bool insecure,
+                                                              std::uint16_t port_min);
 
 }  // namespace palp::site_program

@@ -18,7 +18,7 @@ namespace palp::site_program {
 
 struct RunnerConfig {
   link::SessionConfig session;
-  io::HostAndPort address;
+  HostAndPort address;
   io::TransportWrap wrap_transport;
   settings::LoopSettings loop;
 };

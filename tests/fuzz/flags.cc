@@ -10,6 +10,7 @@
 #include "common/config/command_line.h"
 #include "common/config/number.h"
 #include "common/core/check.h"
+#include "common/core/printable.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace palp::config {
@@ -37,14 +38,15 @@ void number_laws(std::string_view text) {
 }
 
 void endpoint_laws(std::string_view text) {
-  const auto endpoint = parse_endpoint(text);
+  const auto endpoint = parse_host_and_port(text);
   if (!endpoint) {
     PALP_CHECK(!endpoint.error().text.empty(), "a refusal says why");
     return;
   }
-  const auto again = parse_endpoint(to_string(*endpoint));
+  const auto again = parse_host_and_port(endpoint->to_string());
   PALP_CHECK(again.has_value() && *again == *endpoint, "an address reads back as itself");
-  PALP_CHECK(parse_endpoint(text, 1).has_value() == (endpoint->port != 0), "0 is no port to call");
+  PALP_CHECK(parse_host_and_port(text, 1).has_value() == (endpoint->port != 0),
+             "0 is no port to call");
 }
 
 void program_laws(const std::vector<std::string>& arguments) {

@@ -32,7 +32,7 @@ struct Program {
   std::uint64_t count{10};
   std::optional<double> limit;
   std::optional<std::uint64_t> seed;
-  std::optional<Endpoint> peer;
+  std::optional<HostAndPort> peer;
   bool bare{};
 
   Program() {
@@ -42,7 +42,7 @@ struct Program {
     line.whole("--count", count, {.min = 1, .max = 100, .unit = "packets"}, "how many");
     line.number("--limit-n", limit, {.min = -1, .max = 1, .unit = "N"}, "how far");
     line.whole("--seed", seed, {.min = 0, .max = UINT64_MAX}, "seed of the run");
-    line.endpoint("--peer", peer, 1, "where to");
+    line.address("--peer", peer, 1, "where to");
     line.toggle("--bare", bare, "without bytes");
   }
 };
@@ -83,7 +83,7 @@ TEST(CommandLineTest, ReadsFlagsOfEveryKind) {
   EXPECT_EQ(program.count, 7U);
   EXPECT_EQ(program.limit, -0.5);
   EXPECT_EQ(program.seed, UINT64_MAX);
-  EXPECT_EQ(program.peer, (Endpoint{.address = "127.0.0.1", .port = 9000}));
+  EXPECT_EQ(program.peer, (HostAndPort{.host = "127.0.0.1", .port = 9000}));
   EXPECT_TRUE(program.bare);
   EXPECT_TRUE(program.line.given("--report"));
 }

@@ -46,19 +46,5 @@ TEST(NumberTest, LeavesOutTheUnitOfPlainNumbers) {
   EXPECT_EQ(range_text(0, 1, "1"), "0 to 1");
 }
 
-RC_GTEST_PROP(NumberTest, PrintableIsOneShortLine, (const std::string& text)) {
-  const std::string shown = printable(text);
-  RC_ASSERT(shown.size() <= 83U);
-  for (const char c : shown) {
-    RC_ASSERT(c >= ' ' && c <= '~');
-  }
-}
-
-TEST(NumberTest, PrintableMarksWhereItCutsOff) {
-  EXPECT_EQ(printable(std::string(80, 'a')), std::string(80, 'a'));
-  EXPECT_EQ(printable(std::string(81, 'a')), std::string(80, 'a') + "...");
-  EXPECT_EQ(printable("a\nb\x1b"), "a?b?");
-}
-
 }  // namespace
 }  // namespace palp::config

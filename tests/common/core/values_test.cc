@@ -35,6 +35,15 @@ RC_GTEST_PROP(TimeTest, SecondsAndBackIsTheIdentityForAYear, ()) {
   RC_ASSERT(from_seconds(seconds(span)) == span);
 }
 
+TEST(TimeTest, ElapsedIsTheDifferenceAndStaysAtTheBordersWhereThatDoesNotFit) {
+  const auto at = [](std::int64_t count) { return TimePoint{Duration{count}}; };
+  EXPECT_EQ(elapsed(at(5), at(12)), Duration{7});
+  EXPECT_EQ(elapsed(at(12), at(5)), Duration{-7});
+  EXPECT_EQ(elapsed(TimePoint::min(), at(1)), Duration::max());
+  EXPECT_EQ(elapsed(at(1), TimePoint::min()), Duration::min());
+  EXPECT_EQ(elapsed(TimePoint::max(), at(-2)), Duration::min());
+}
+
 TEST(TimeTest, FromSecondsRoundsToTheNearestOnBothSidesOfZero) {
   EXPECT_EQ(from_seconds(1.4e-9).count(), 1);
   EXPECT_EQ(from_seconds(1.6e-9).count(), 2);

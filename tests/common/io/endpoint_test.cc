@@ -8,28 +8,16 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string refusal(std::string_view text) {
-  const Result<Endpoint> endpoint = resolve_endpoint(text);
-  return endpoint ? "accepted " + endpoint->to_string() : endpoint.error().text;
-}
-
 TEST(EndpointTest, PrintsWhatItWasMadeFrom) {
   EXPECT_EQ(resolve_endpoint("127.0.0.1:9000")->to_string(), "127.0.0.1:9000");
   EXPECT_EQ(resolve_endpoint("[::1]:65535")->to_string(), "[::1]:65535");
   EXPECT_EQ(resolve_endpoint("0.0.0.0:0")->port(), 0);
 }
 
-TEST(EndpointTest, RefusesWithASentenceThatNamesTheFault) {
-  EXPECT_EQ(refusal("127.0.0.1"),
-            "address \"127.0.0.1\" has no port; expected HOST:PORT, for example 127.0.0.1:9000");
-  EXPECT_THAT(refusal("127.0.0.1:65536"), HasSubstr("the port \"65536\"; expected 0 to 65535"));
-  EXPECT_THAT(refusal("127.0.0.1:"), HasSubstr("the port \"\""));
-  EXPECT_THAT(refusal("127.0.0.1:-1"), HasSubstr("the port \"-1\""));
-  EXPECT_THAT(refusal("127.0.0.1:90x"), HasSubstr("the port \"90x\""));
-  EXPECT_THAT(refusal(":9000"), HasSubstr("has no host"));
-  EXPECT_THAT(refusal("::1:9000"), HasSubstr("needs brackets"));
-  EXPECT_THAT(refusal("no-such-host.invalid:9000"),
-              HasSubstr("cannot find host \"no-such-host.invalid\""));
+TEST(EndpointTest, AnUnknownHostIsNamed) {
+  const auto endpoint = resolve_endpoint("no-such-host.invalid:9000");
+  ASSERT_FALSE(endpoint);
+  EXPECT_THAT(endpoint.error().text, HasSubstr("cannot find host \"no-such-host.invalid\""));
 }
 
 TEST(EndpointTest, EqualMeansSameAddressAndPort) {

@@ -18,7 +18,7 @@ RunnerConfig config_of(link::Role role, const std::string& address) {
   RunnerConfig config;
   config.session.role = role;
   config.session.coupling = "direct";
-  config.address = io::parse_host_and_port(address).value();
+  config.address = parse_host_and_port(address).value();
   config.loop = {.priority = 0, .lock_memory = false};
   return config;
 }
