@@ -56,7 +56,7 @@ void program_laws(const std::vector<std::string>& arguments) {
   double number = 1;
   std::optional<double> loss;
   std::uint64_t whole = 1;
-  std::optional<Endpoint> listen;
+  std::optional<HostAndPort> listen;
   bool toggle = false;
   CommandLine program{"fuzz", "takes every kind of flag"};
   program.text("--text", text, "TEXT", "a text");
@@ -64,7 +64,7 @@ void program_laws(const std::vector<std::string>& arguments) {
   program.number("--number", number, NumberRange{-2.5, 3, "N"}, "a number");
   program.number("--loss", loss, NumberRange{0, 1, "share"}, "a share");
   program.whole("--whole", whole, WholeRange{1, 1000}, "a whole number");
-  program.endpoint("--listen", listen, 1, "an address");
+  program.address("--listen", listen, 1, "an address");
   program.toggle("--toggle", toggle, "a switch");
   CommandLine& verb = program.verb("run", "a verb");
   verb.argument("FILE", file, "a file");

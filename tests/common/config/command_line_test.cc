@@ -104,9 +104,8 @@ TEST(CommandLineTest, NamesFlagValueAndLimit) {
   EXPECT_EQ(refusal({"--count", "0"}), "--count = 0 is out of range: 1 to 100 packets");
   EXPECT_EQ(refusal({"--count", "-3"}), "--count = -3 is not a whole number: 1 to 100 packets");
   EXPECT_EQ(refusal({"--mode", "fast"}), "--mode = fast is not one of: exact, netem-6.1");
-  EXPECT_EQ(
-      refusal({"--peer", "here:9"}),
-      "--peer: \"here\" in \"here:9\" is not a numeric address: 127.0.0.1, [::1] or localhost");
+  EXPECT_EQ(refusal({"--peer", "here"}),
+            "--peer: address \"here\" has no port; expected HOST:PORT, for example 127.0.0.1:9000");
 }
 
 TEST(CommandLineTest, HoldsRangesOnBothSidesOfTheirBorders) {
