@@ -84,7 +84,7 @@ TEST_F(BadInputTest, MissingFile) {
   expect_refusal("palp-surgeon --config no-such-file", kNotReached, "no-such-file");
   expect_refusal("palp-patient --config no-such-file", kNotReached, "no-such-file");
   expect_refusal("palp-review check no-such-file", kNotReached, "no-such-file");
-  expect_refusal("palp-surgeon --peer 127.0.0.1:9 --insecure --script no-such-file",
+  expect_refusal("palp-surgeon --peer 127.0.0.1:9 --insecure --master script:no-such-file",
                  kNotReached,
                  "no-such-file");
   expect_refusal("palp-patient --listen 127.0.0.1:0 --insecure --phantom file:no-such-file",
