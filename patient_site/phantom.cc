@@ -84,10 +84,7 @@ Result<Phantom> closed_form_phantom(std::string_view spec, std::string_view dept
 Result<Phantom> file_phantom(std::string_view spec, std::string_view path) {
   if (path.empty()) return fail("phantom 'file:' names no file; write file:PATH.csv");
   Result<ForceTable> table = load_force_table(std::string{path});
-  if (!table) {
-    return tl::unexpected{Error{"phantom '" + std::string{spec} + "': " + table.error().text,
-                                table.error().unreachable}};
-  }
+  if (!table) return fail("phantom '" + std::string{spec} + "'", table.error());
   return Phantom{.name = std::string{spec},
                  .plain = embedded("neo_homog"),
                  .over = std::move(*table),

@@ -315,10 +315,10 @@ Result<GestureScript> load_script(const std::string& source, const ScriptSetting
   }
   const std::string path = source.substr(replay ? kReplay.size() : kScript.size());
   const Result<std::string> text = read_file(path);
-  if (!text) return fail((replay ? "replay: " : "script: ") + text.error().text);
+  if (!text) return fail(replay ? "replay" : "script", text.error());
   Result<GestureScript> script =
       replay ? parse_replay(*text) : parse_script(*text, setting.hand_stiffness);
-  if (!script) return fail(path + ": " + script.error().text);
+  if (!script) return fail(path, script.error());
   return script;
 }
 

@@ -24,4 +24,9 @@ using Result = tl::expected<T, Error>;
   return tl::unexpected<Error>(Error{std::move(text), true});
 }
 
+/// The same fault, seen from further out: `where` comes before the sentence.
+[[nodiscard]] inline tl::unexpected<Error> fail(const std::string& where, const Error& fault) {
+  return tl::unexpected<Error>(Error{where + ": " + fault.text, fault.unreachable});
+}
+
 }  // namespace palp
