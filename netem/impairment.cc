@@ -1,5 +1,6 @@
 #include "netem/impairment.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -48,15 +49,42 @@ std::string time_text(Duration time) {
   return "0ms";
 }
 
+std::string shape_name(const DelayLaw& law) {
+  switch (law.shape) {
+    case DelayShape::Uniform:
+      return "uniform";
+    case DelayShape::Normal:
+      return "normal";
+    case DelayShape::Pareto:
+      return "pareto";
+    case DelayShape::ParetoNormal:
+      return "paretonormal";
+    case DelayShape::Gamma:
+      return "gamma";
+    case DelayShape::LogNormal:
+      return "lognormal";
+    case DelayShape::Table:
+      return law.table.name;
+    case DelayShape::Histogram:
+      return law.histogram.name;
+  }
+  return {};
+}
+
 std::string delay_text(const DelayLaw& law) {
   if (law == DelayLaw{}) return {};
-  DelayLaw plain;
-  plain.mean = law.mean;
-  plain.floor = law.floor;
-  std::string text = "delay " + time_text(law.mean);
-  if (law != plain) text += " " + time_text(law.jitter);
-  if (law.correlation > 0) text += " " + share_text(law.correlation);
-  if (law.shape == DelayShape::Normal) text += " distribution normal";
+  std::string text;
+  if (law.shape == DelayShape::Histogram) {
+    text = "histogram " + law.histogram.name;
+  } else {
+    DelayLaw plain;
+    plain.mean = law.mean;
+    plain.floor = law.floor;
+    text = "delay " + time_text(law.mean);
+    if (law != plain) text += " " + time_text(law.jitter);
+    if (law.correlation > 0) text += " " + share_text(law.correlation);
+    if (law.shape != DelayShape::Uniform) text += " distribution " + shape_name(law);
+  }
   if (law.floor > 0) text += " floor " + share_text(law.floor);
   if (law.correlation_time > Duration{}) {
     text += " correlation-time " + time_text(law.correlation_time);
@@ -64,33 +92,126 @@ std::string delay_text(const DelayLaw& law) {
   return text;
 }
 
-std::string gilbert_text(const GilbertLaw& law) {
-  if (law == GilbertLaw{}) return {};
-  std::string text = "loss gilbert-time " + time_text(law.good) + " " + time_text(law.bad);
-  if (law.loss_bad < 1 || law.loss_good > 0) text += " " + share_text(law.loss_bad);
-  if (law.loss_good > 0) text += " " + share_text(law.loss_good);
+std::string chance_text(const Chance& chance) {
+  std::string text = share_text(chance.share);
+  if (chance.correlation > 0) text += " " + share_text(chance.correlation);
   return text;
+}
+
+/// Adds the clauses with a blank between.
+class Clauses {
+ public:
+  void add(const std::string& words) {
+    if (!words.empty()) text_ += (text_.empty() ? "" : " ") + words;
+  }
+  void add_chance(const char* clause, const Chance& chance, const std::string& more = {}) {
+    if (chance != Chance{}) add(clause + chance_text(chance) + more);
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+void add_losses(Clauses& clauses, const Impairment& impairment) {
+  clauses.add_chance("loss ", impairment.loss);
+  if (const auto& law = impairment.state) {
+    clauses.add("loss state " + share_text(law->p13) + " " + share_text(law->p31) + " " +
+                share_text(law->p32) + " " + share_text(law->p23) + " " + share_text(law->p14));
+  }
+  if (const auto& law = impairment.gemodel) {
+    clauses.add("loss gemodel " + share_text(law->to_bad) + " " + share_text(law->to_good) + " " +
+                share_text(law->loss_bad) + " " + share_text(law->loss_good));
+  }
+  if (const BurstLaw& burst = impairment.burst; burst != BurstLaw{}) {
+    clauses.add("loss burst " + decimal(burst.rate) + "/s " + time_text(burst.length));
+  }
+  if (const GilbertLaw& law = impairment.gilbert; law != GilbertLaw{}) {
+    std::string text = "loss gilbert-time " + time_text(law.good) + " " + time_text(law.bad);
+    if (law.loss_bad < 1 || law.loss_good > 0) text += " " + share_text(law.loss_bad);
+    if (law.loss_good > 0) text += " " + share_text(law.loss_good);
+    clauses.add(text);
+  }
+  if (!impairment.bitmap.lost.empty()) clauses.add("loss bitmap " + impairment.bitmap.name);
+  if (impairment.ecn) clauses.add("ecn");
+}
+
+void add_line(Clauses& clauses, const Impairment& impairment) {
+  if (const RateLaw& law = impairment.rate; law.bytes_per_s > 0) {
+    clauses.add("rate " + std::to_string(law.bytes_per_s) + "bps " + std::to_string(law.overhead) +
+                " " + std::to_string(law.cell) + " " + std::to_string(law.cell_overhead));
+  }
+  if (const QueueLaw& law = impairment.queue; law != QueueLaw{}) {
+    std::string text = "queue";
+    if (law.packets > 0) text += " packets " + std::to_string(law.packets);
+    if (law.bytes > 0) text += " bytes " + std::to_string(law.bytes);
+    if (law.wait > Duration{}) text += " time " + time_text(law.wait);
+    if (law.codel) {
+      text += " codel target " + time_text(law.target) + " interval " + time_text(law.interval);
+    }
+    clauses.add(text);
+  }
+  if (const SlotLaw& law = impairment.slot; law != SlotLaw{}) {
+    std::string text = "slot " + time_text(law.min) + " " + time_text(law.max);
+    if (law.spacing) {
+      text = "slot distribution " + shape_name(*law.spacing) + " " + time_text(law.spacing->mean) +
+             " " + time_text(law.spacing->jitter);
+    }
+    if (law.packets > 0) text += " packets " + std::to_string(law.packets);
+    if (law.bytes > 0) text += " bytes " + std::to_string(law.bytes);
+    clauses.add(text);
+  }
+  if (impairment.limit > 0) clauses.add("limit " + std::to_string(impairment.limit));
+  if (impairment.mtu > 0) clauses.add("mtu " + std::to_string(impairment.mtu));
+}
+
+void add_order(Clauses& clauses, const Impairment& impairment) {
+  const Order usual =
+      impairment.mode == Mode::Exact && impairment.replay.rows.empty() ? Order::Keep : Order::Netem;
+  if (impairment.order == usual) return;
+  if (impairment.order == Order::Keep) clauses.add("order keep");
+  if (impairment.order == Order::Netem) clauses.add("order netem");
+  if (impairment.order == Order::Swap) {
+    clauses.add("order swap " + chance_text(impairment.swap) + " depth " +
+                std::to_string(impairment.swap_depth));
+  }
 }
 
 }  // namespace
 
 std::string to_string(const Impairment& impairment) {
-  std::string text;
-  const auto add = [&text](const std::string& words) {
-    if (!words.empty()) text += (text.empty() ? "" : " ") + words;
-  };
-  add(delay_text(impairment.delay));
-  if (impairment.loss > 0) add("loss " + share_text(impairment.loss));
-  if (const BurstLaw& burst = impairment.burst; burst != BurstLaw{}) {
-    add("loss burst " + decimal(burst.rate) + "/s " + time_text(burst.length));
+  Clauses clauses;
+  clauses.add(delay_text(impairment.delay));
+  if (const DelayTrace& trace = impairment.trace; !trace.points.empty()) {
+    clauses.add("trace " + trace.name + (trace.loop ? " loop" : "") +
+                (trace.dither ? " dither" : ""));
   }
-  add(gilbert_text(impairment.gilbert));
-  if (impairment.duplicate > 0) add("duplicate " + share_text(impairment.duplicate));
+  if (!impairment.replay.rows.empty()) clauses.add("replay " + impairment.replay.name);
+  add_losses(clauses, impairment);
+  clauses.add_chance("duplicate ", impairment.duplicate);
+  if (impairment.corrupt != Chance{} || impairment.corrupt_payload) {
+    clauses.add("corrupt " + chance_text(impairment.corrupt) +
+                (impairment.corrupt_payload ? " payload" : ""));
+  }
+  if (impairment.truncate != Chance{} || impairment.truncate_to > 0) {
+    clauses.add("truncate " + chance_text(impairment.truncate) + " to " +
+                std::to_string(impairment.truncate_to));
+  }
+  if (const ReorderLaw& law = impairment.reorder; law != ReorderLaw{}) {
+    clauses.add("reorder " + chance_text(law.chance) + " gap " + std::to_string(law.gap));
+  }
+  add_line(clauses, impairment);
+  if (const StallLaw& law = impairment.stall; law != StallLaw{}) {
+    clauses.add("stall " + decimal(law.rate) + "/s " + time_text(law.median) + " " +
+                decimal(law.spread));
+  }
   for (const Blackout& blackout : impairment.blackouts) {
-    add("blackout " + time_text(blackout.from) + " " + time_text(blackout.length));
+    clauses.add("blackout " + time_text(blackout.from) + " " + time_text(blackout.length));
   }
-  if (impairment.order == Order::Free) add("order free");
-  return text.empty() ? "none" : text;
+  if (impairment.dscp_clear) clauses.add("dscp-clear");
+  add_order(clauses, impairment);
+  const std::string mode = impairment.mode == Mode::Netem61 ? "mode netem-6.1 " : "";
+  return mode + (clauses.text().empty() ? "none" : clauses.text());
 }
 
 Result<Impairment> impairment_from_delay(Duration delay, Duration jitter, double loss) {
@@ -110,9 +231,9 @@ Result<Impairment> impairment_from_delay(Duration delay, Duration jitter, double
     impairment.delay.jitter = jitter;
     impairment.delay.shape = DelayShape::Normal;
     impairment.delay.floor = 0.2;
-    impairment.order = Order::Free;
+    impairment.order = Order::Netem;
   }
-  impairment.loss = loss;
+  impairment.loss.share = loss;
   return impairment;
 }
 

@@ -1,312 +1,288 @@
-#include <algorithm>
-#include <array>
-#include <cctype>
-#include <charconv>
-#include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <optional>
 
+#include "netem/data_files.h"
 #include "netem/impairment.h"
+#include "netem/impairment_words.h"
 
 namespace palp::netem {
 namespace {
 
-constexpr std::string_view kBlank = " \t\r\n";
-constexpr std::string_view kClauses = "delay, loss, duplicate, blackout or order";
+constexpr std::string_view kTcClauses =
+    "delay, loss, ecn, duplicate, corrupt, reorder, gap, rate, slot, limit or distribution";
+constexpr std::string_view kOwnClauses =
+    ", or correlation-time, floor, histogram, trace, replay, stall, blackout, queue, mtu, "
+    "truncate, "
+    "dscp-clear or order";
 
-struct Word {
-  std::string_view text;  ///< empty: the end
-  std::size_t column{};   ///< from 1
-};
-
-std::string quoted(std::string_view text) {
-  return text.empty() ? std::string{"the end"} : "'" + std::string{text} + "'";
+/// tc takes the beginning of a clause's name for it, in this order.
+bool begins(std::string_view word, std::string_view name) {
+  return !word.empty() && name.substr(0, word.size()) == word;
 }
 
-/// Nanoseconds in one unit of tc's spelling `unit`; nullopt: no such unit.
-std::optional<double> unit_size(std::string_view unit) {
-  struct Unit {
-    std::string_view name;
-    double nanoseconds;
-  };
-  constexpr std::array<Unit, 12> kUnits{{{"s", 1e9},
-                                         {"sec", 1e9},
-                                         {"secs", 1e9},
-                                         {"ms", 1e6},
-                                         {"msec", 1e6},
-                                         {"msecs", 1e6},
-                                         {"us", 1e3},
-                                         {"usec", 1e3},
-                                         {"usecs", 1e3},
-                                         {"ns", 1},
-                                         {"nsec", 1},
-                                         {"nsecs", 1}}};
-  std::string lower{unit};
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](char c) {
-    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  });
-  for (const Unit& candidate : kUnits) {
-    if (candidate.name == lower) return candidate.nanoseconds;
-  }
-  return std::nullopt;
+void read_delay(const Word& word, WordReader& words, DelayLaw& law) {
+  words.once(word, "delay");
+  law.mean = words.time("the mean delay");
+  if (!words.next_is_number()) return;
+  law.jitter = words.time("the jitter");
+  words.once(word, "jitter");
+  if (!words.next_is_number()) return;
+  law.correlation = words.share("the correlation of successive delays");
+  words.once(word, "correlation");
 }
 
-/// A number and what stands glued behind it.
-struct Quantity {
-  double value{};
-  std::string_view digits;
-  std::string_view unit;
-};
-
-std::optional<Quantity> split(std::string_view text) {
-  Quantity quantity;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, quantity.value);
-  if (read.ec != std::errc{} || !std::isfinite(quantity.value)) return std::nullopt;
-  const auto length = static_cast<std::size_t>(read.ptr - text.data());
-  quantity.digits = text.substr(0, length);
-  quantity.unit = text.substr(length);
-  return quantity;
+FourStateLaw read_four_states(WordReader& words) {
+  FourStateLaw law;
+  law.p13 = words.share("p13, from good to a burst,");
+  law.p31 = 1 - law.p13;
+  if (words.next_is_number()) law.p31 = words.share("p31, from a burst to good,");
+  if (words.next_is_number()) law.p32 = words.share("p32, from lost to good inside a burst,");
+  if (words.next_is_number()) law.p23 = words.share("p23, from good to lost inside a burst,");
+  if (words.next_is_number()) law.p14 = words.share("p14, the single loss,");
+  return law;
 }
 
-/// 5% -> the number nearest to 0.05: two is taken from the exponent in the text, so that a share
-/// written by to_string reads back without rounding.
-double percent_to_share(std::string_view digits) {
-  std::string text{digits};
-  long exponent = 0;
-  if (const std::size_t e = text.find_first_of("eE"); e != std::string::npos) {
-    exponent = std::strtol(text.c_str() + e + 1, nullptr, 10);
-    text.erase(e);
-  }
-  // strtol stops at its least number, behind which two less would be undefined.
-  exponent = std::max(exponent, std::numeric_limits<long>::min() + 2);
-  text += "e" + std::to_string(exponent - 2);
-  double share = 0;
-  std::from_chars(text.data(), text.data() + text.size(), share);
-  return share;
+GemodelLaw read_gemodel(WordReader& words) {
+  GemodelLaw law;
+  law.to_bad = words.share("p, from good to bad,");
+  law.to_good = 1 - law.to_bad;
+  if (words.next_is_number()) law.to_good = words.share("r, from bad to good,");
+  if (words.next_is_number()) law.loss_bad = words.share("1-h, the loss in the bad state,");
+  if (words.next_is_number()) law.loss_good = words.share("1-k, the loss in the good state,");
+  return law;
 }
 
-/// Reads word by word; after the first refusal everything else is skipped and harmless.
-class Parser {
- public:
-  explicit Parser(std::string_view text) : text_{text} { advance(); }
+/// Sums that a chain of probabilities cannot have; Linux lets them overflow.
+void check_four_states(const Word& word, WordReader& words, const FourStateLaw& law, Mode mode) {
+  if (mode == Mode::Netem61) return;
+  if (law.p13 + law.p14 > 1) words.refuse(word, "p13 + p14 of at most 100%");
+  if (law.p31 + law.p32 > 1) words.refuse(word, "p31 + p32 of at most 100%");
+}
 
-  Result<Impairment> parse() {
-    if (word_.text == "none") {
-      take();
-      if (!at_end()) refuse(word_, "nothing after 'none'");
-    }
-    while (!error_ && !at_end()) clause(take());
-    if (error_) return tl::unexpected<Error>(*error_);
-    return impairment_;
-  }
-
- private:
-  void advance() {
-    const std::size_t begin = std::min(text_.find_first_not_of(kBlank, position_), text_.size());
-    const std::size_t end = std::min(text_.find_first_of(kBlank, begin), text_.size());
-    word_ = {text_.substr(begin, end - begin), begin + 1};
-    position_ = end;
-  }
-
-  Word take() {
-    const Word word = word_;
-    advance();
-    return word;
-  }
-
-  [[nodiscard]] bool at_end() const { return word_.text.empty(); }
-
-  [[nodiscard]] bool next_is_number() const {
-    return !at_end() && std::isalpha(static_cast<unsigned char>(word_.text.front())) == 0;
-  }
-
-  void refuse(const Word& word, const std::string& expected) {
-    if (error_) return;
-    error_ = Error{"impairment, column " + std::to_string(word.column) + ": found " +
-                   quoted(word.text) + ", expected " + expected};
-  }
-
-  void clause(const Word& word) {
-    if (word.text == "delay") return delay(word);
-    if (word.text == "loss") return loss();
-    if (word.text == "duplicate") {
-      once(word, seen_duplicate_);
-      impairment_.duplicate = share("the probability of a copy");
-      return;
-    }
-    if (word.text == "blackout") return blackout(word);
-    if (word.text == "order") return order(word);
-    refuse(word, std::string{kClauses});
-  }
-
-  void delay(const Word& word) {
-    once(word, seen_delay_);
-    DelayLaw& law = impairment_.delay;
-    law.mean = time("the mean delay");
-    bool jitter_given = false;
-    if (next_is_number()) {
-      law.jitter = time("the jitter");
-      jitter_given = true;
-    }
-    bool correlated = false;
-    if (jitter_given && next_is_number()) {
-      law.correlation = share("the correlation of successive delays");
-      correlated = true;
-    }
-    bool shaped = false;
-    bool floored = false;
-    for (; !error_;) {
-      if (word_.text == "distribution") {
-        const Word option = take();
-        once(option, shaped);
-        needs_jitter(option, jitter_given);
-        law.shape = shape();
-      } else if (word_.text == "floor") {
-        once(take(), floored);
-        law.floor = share("the least delay as a share of the mean");
-      } else if (word_.text == "correlation-time") {
-        const Word option = take();
-        needs_jitter(option, jitter_given);
-        if (correlated) refuse(option, "one correlation only: per datagram or in time");
-        correlated = true;
-        law.correlation_time = positive_time("the correlation time");
+void read_loss(WordReader& words, Impairment& into, const FileReader& read) {
+  const Word kind = words.peek();
+  const bool exact = into.mode == Mode::Exact;
+  if (exact && words.take_if("burst")) {
+    words.once(kind, "loss burst");
+    into.burst.rate = words.frequency("how often a burst begins");
+    into.burst.length = words.positive_time("the length of a burst");
+  } else if (exact && words.take_if("gilbert-time")) {
+    words.once(kind, "loss gilbert-time");
+    const auto stay = [&](std::string_view what) {
+      const Word word = words.peek();
+      const Duration span = words.time(what);
+      if (span < kStayMin) words.refuse(word, std::string{what} + " of at least 0.1ms");
+      return span;
+    };
+    into.gilbert.good = stay("the mean stay in the good state");
+    into.gilbert.bad = stay("the mean stay in the bad state");
+    if (words.next_is_number()) into.gilbert.loss_bad = words.share("the loss in the bad state");
+    if (words.next_is_number()) into.gilbert.loss_good = words.share("the loss in the good state");
+  } else if (exact && words.take_if("bitmap")) {
+    words.once(kind, "bitmap");
+    const Word name = words.take();
+    if (const auto text = read_named(name, words, "the name of a file of 0 and 1", read)) {
+      if (auto bitmap = parse_loss_bitmap(name.text, *text)) {
+        into.bitmap = *std::move(bitmap);
       } else {
-        return;
+        words.refuse(name, bitmap.error());
       }
     }
-  }
-
-  void needs_jitter(const Word& option, bool jitter_given) {
-    if (!jitter_given) refuse(option, "a jitter before it, as in 'delay 50ms 10ms'");
-  }
-
-  DelayShape shape() {
-    const Word word = take();
-    if (word.text == "normal") return DelayShape::Normal;
-    if (word.text != "uniform") refuse(word, "uniform or normal");
-    return DelayShape::Uniform;
-  }
-
-  void loss() {
-    const Word kind = word_;
-    if (kind.text == "burst") {
-      once(take(), seen_burst_);
-      impairment_.burst.rate = rate("the rate of bursts");
-      impairment_.burst.length = positive_time("the length of a burst");
-    } else if (kind.text == "gilbert-time") {
-      once(take(), seen_gilbert_);
-      GilbertLaw& law = impairment_.gilbert;
-      law.good = stay("the mean stay in the good state");
-      law.bad = stay("the mean stay in the bad state");
-      if (next_is_number()) law.loss_bad = share("the loss in the bad state");
-      if (next_is_number()) law.loss_good = share("the loss in the good state");
-    } else {
-      if (kind.text == "random") take();
-      if (!next_is_number() && kind.text != "random") {
-        return refuse(kind, "a share as 5%, or random, burst or gilbert-time");
-      }
-      once(kind, seen_loss_);
-      impairment_.loss = share("the probability of loss");
+  } else if (words.take_if("state")) {
+    words.once(kind, "loss model");
+    into.state = read_four_states(words);
+    check_four_states(kind, words, *into.state, into.mode);
+  } else if (words.take_if("gemodel")) {
+    words.once(kind, "loss model");
+    into.gemodel = read_gemodel(words);
+  } else {
+    const bool random = words.take_if("random");
+    if (!random && !words.next_is_number()) {
+      return words.refuse(kind,
+                          exact ? "a share as 5%, or random, state, gemodel, burst, gilbert-time "
+                                  "or bitmap"
+                                : "a share as 5%, or random, state or gemodel");
     }
+    words.once(kind, into.mode == Mode::Netem61 ? "loss model" : "loss");
+    into.loss = words.chance("the probability of loss");
   }
+}
 
-  void blackout(const Word& word) {
-    if (impairment_.blackouts.size() == kBlackoutsMax) {
-      refuse(word, "at most " + std::to_string(kBlackoutsMax) + " blackouts");
-    }
-    Blackout window;
-    window.from = time("the begin of the blackout");
-    window.length = positive_time("the length of the blackout");
-    impairment_.blackouts.push_back(window);
+void read_rate(WordReader& words, RateLaw& law) {
+  constexpr std::int64_t kOverheadMax = 1'000'000;
+  law.bytes_per_s = words.rate("the rate");
+  if (!words.next_is_number()) return;
+  law.overhead =
+      static_cast<std::int32_t>(words.count("the overhead in bytes", -kOverheadMax, kOverheadMax));
+  if (!words.next_is_number()) return;
+  law.cell = static_cast<std::uint32_t>(words.count("the cell size in bytes", 0, kOverheadMax));
+  if (!words.next_is_number()) return;
+  law.cell_overhead = static_cast<std::int32_t>(
+      words.count("the overhead of a cell in bytes", -kOverheadMax, kOverheadMax));
+}
+
+void read_slot(WordReader& words, Impairment& into, const FileReader& read) {
+  SlotLaw& law = into.slot;
+  const Word first = words.peek();
+  if (words.take_if("distribution")) {
+    law.spacing.emplace();
+    read_shape(words, into.mode, *law.spacing, read);
+    law.spacing->mean = words.positive_time("the mean time between slots");
+    law.spacing->jitter = words.positive_time("the jitter of that time");
+    law.min = law.max = law.spacing->mean;
+  } else {
+    law.min = words.time("the least time between slots");
+    law.max = words.next_is_number() ? words.time("the most time between slots") : law.min;
+    if (law.max < law.min) words.refuse(first, "the most time not below the least");
+    if (into.mode == Mode::Exact && law.min <= Duration{}) words.refuse(first, "a time above 0");
   }
+  constexpr std::uint64_t kMost = 2'147'483'647;
+  if (words.take_if("packets")) law.packets = words.size("the packets of a slot", kMost);
+  if (words.take_if("bytes")) law.bytes = words.size("the bytes of a slot", kMost);
+}
 
-  void order(const Word& word) {
-    once(word, seen_order_);
-    const Word policy = take();
-    if (policy.text == "free") {
-      impairment_.order = Order::Free;
-    } else if (policy.text != "keep") {
-      refuse(policy, "keep or free");
-    }
+/// What tc refuses only when it has read everything.
+void check_together(WordReader& words, Impairment& impairment) {
+  if (words.error()) return;
+  const Word end{{}, words.peek().column};
+  const DelayLaw& delay = impairment.delay;
+  if (words.said("distribution") && !words.said("jitter")) {
+    words.refuse(end, "a delay with a jitter for the distribution, as in 'delay 50ms 10ms'");
   }
-
-  void once(const Word& word, bool& seen) {
-    if (seen) refuse(word, "it only once");
-    seen = true;
+  ReorderLaw& reorder = impairment.reorder;
+  if (words.said("gap") && !words.said("reorder")) reorder.chance.share = 1;
+  if (reorder.chance.share > 0 && reorder.gap == 0) reorder.gap = 1;
+  const bool delayed = delay.mean > Duration{} || delay.shape == DelayShape::Histogram ||
+                       !impairment.trace.points.empty();
+  if (reorder.gap > 0 && reorder.chance.share > 0 && !delayed) {
+    words.refuse(end, "a delay: without one there is nothing to overtake");
   }
-
-  Duration time(std::string_view what) {
-    const Word word = take();
-    const auto quantity = split(word.text);
-    const auto size = quantity ? unit_size(quantity->unit) : std::nullopt;
-    if (!size) {
-      refuse(word, std::string{what} + " with its unit us, ms or s");
-      return {};
-    }
-    const double nanoseconds = quantity->value * *size;
-    if (!(nanoseconds >= 0 && nanoseconds <= static_cast<double>(kTimeMax.count()))) {
-      refuse(word, std::string{what} + " from 0s to 1000000s");
-      return {};
-    }
-    return Duration{std::llround(nanoseconds)};
+  const bool lossy = words.said("loss model") || words.said("loss") || words.said("loss burst") ||
+                     words.said("loss gilbert-time") || words.said("bitmap");
+  if (impairment.ecn && !lossy) words.refuse(end, "a loss model for 'ecn'");
+  if (impairment.queue != QueueLaw{} && impairment.rate.bytes_per_s == 0) {
+    words.refuse(end, "a rate for the queue to wait for");
   }
+}
 
-  Duration positive_time(std::string_view what) {
-    const Word word = word_;
-    const Duration span = time(what);
-    if (span <= Duration{}) refuse(word, std::string{what} + " above 0");
-    return span;
-  }
-
-  Duration stay(std::string_view what) {
-    const Word word = word_;
-    const Duration span = time(what);
-    if (span < kStayMin) refuse(word, std::string{what} + " of at least 0.1ms");
-    return span;
-  }
-
-  double share(std::string_view what) {
-    const Word word = take();
-    const auto quantity = split(word.text);
-    if (!quantity || quantity->unit != "%") {
-      refuse(word, std::string{what} + " with a % sign");
-      return 0;
-    }
-    if (!(quantity->value >= 0 && quantity->value <= 100)) {
-      refuse(word, std::string{what} + " from 0% to 100%");
-      return 0;
-    }
-    return percent_to_share(quantity->digits);
-  }
-
-  double rate(std::string_view what) {
-    const Word word = take();
-    const auto quantity = split(word.text);
-    if (!quantity || quantity->unit != "/s" || !(quantity->value >= 0) ||
-        quantity->value > kBurstRateMax) {
-      refuse(word, std::string{what} + " per second, as 0.2/s, from 0/s to 1000000/s");
-      return 0;
-    }
-    return quantity->value;
-  }
-
-  std::string_view text_;
-  std::size_t position_{};
-  Word word_;  ///< the next one
-  Impairment impairment_;
-  std::optional<Error> error_;
-  bool seen_delay_{};
-  bool seen_loss_{};
-  bool seen_burst_{};
-  bool seen_gilbert_{};
-  bool seen_duplicate_{};
-  bool seen_order_{};
-};
+Mode read_mode(WordReader& words, Mode mode) {
+  if (!words.take_if("mode")) return mode;
+  const Word name = words.take();
+  if (name.text == "exact") return Mode::Exact;
+  if (name.text != "netem-6.1") words.refuse(name, "exact or netem-6.1");
+  return Mode::Netem61;
+}
 
 }  // namespace
 
-Result<Impairment> parse_impairment(std::string_view text) { return Parser{text}.parse(); }
+std::optional<std::string> read_named(const Word& name,
+                                      WordReader& words,
+                                      const std::string& expected,
+                                      const FileReader& read) {
+  if (words.error()) return std::nullopt;
+  if (name.text.empty()) {
+    words.refuse(name, expected);
+    return std::nullopt;
+  }
+  auto text = read(std::string{name.text});
+  if (text) return *std::move(text);
+  words.refuse(name, text.error());
+  return std::nullopt;
+}
+
+void read_shape(WordReader& words, Mode mode, DelayLaw& law, const FileReader& read) {
+  const Word word = words.take();
+  const std::string name{word.text};
+  if (name == "normal") {
+    law.shape = DelayShape::Normal;
+  } else if (name == "pareto") {
+    law.shape = DelayShape::Pareto;
+  } else if (name == "paretonormal") {
+    law.shape = DelayShape::ParetoNormal;
+  } else if (name == "uniform" && mode == Mode::Exact) {
+    law.shape = DelayShape::Uniform;
+  } else if (name == "gamma" && mode == Mode::Exact) {
+    law.shape = DelayShape::Gamma;
+  } else if (name == "lognormal" && mode == Mode::Exact) {
+    law.shape = DelayShape::LogNormal;
+  } else {
+    const std::string known = mode == Mode::Exact
+                                  ? "uniform, normal, pareto, paretonormal, gamma, lognormal"
+                                  : "normal, pareto, paretonormal";
+    const auto text = name.empty() ? Result<std::string>{fail("no name")}
+                                   : read(name.ends_with(".dist") ? name : name + ".dist");
+    if (!text)
+      return words.refuse(word, known + " or the name of a table (" + text.error().text + ")");
+    auto table = parse_delay_table(name, *text);
+    if (!table) return words.refuse(word, Error{table.error().text});
+    law.shape = DelayShape::Table;
+    law.table = *std::move(table);
+  }
+}
+
+bool read_tc_clause(const Word& word, WordReader& words, Impairment& into, const FileReader& read) {
+  constexpr std::uint64_t kLimitMax = 4'294'967'295;
+  if (begins(word.text, "limit")) {
+    words.once(word, "limit");
+    into.limit = words.size("how many datagrams may be on their way", kLimitMax);
+  } else if (begins(word.text, "delay") || begins(word.text, "latency")) {
+    read_delay(word, words, into.delay);
+  } else if (begins(word.text, "loss") || begins(word.text, "drop")) {
+    read_loss(words, into, read);
+  } else if (begins(word.text, "ecn")) {
+    words.once(word, "ecn");
+    into.ecn = true;
+  } else if (begins(word.text, "reorder")) {
+    words.once(word, "reorder");
+    into.reorder.chance = words.chance("the probability of being sent at once");
+  } else if (begins(word.text, "corrupt")) {
+    words.once(word, "corrupt");
+    into.corrupt = words.chance("the probability of a flipped bit");
+    if (into.mode == Mode::Exact) into.corrupt_payload = words.take_if("payload");
+  } else if (begins(word.text, "gap")) {
+    words.once(word, "gap");
+    into.reorder.gap = static_cast<std::uint32_t>(
+        words.count("the gap", 0, std::numeric_limits<std::uint32_t>::max()));
+  } else if (begins(word.text, "duplicate")) {
+    words.once(word, "duplicate");
+    into.duplicate = words.chance("the probability of a copy");
+  } else if (begins(word.text, "distribution")) {
+    words.once(word, "distribution");
+    read_shape(words, into.mode, into.delay, read);
+  } else if (begins(word.text, "rate")) {
+    words.once(word, "rate");
+    read_rate(words, into.rate);
+  } else if (begins(word.text, "slot")) {
+    words.once(word, "slot");
+    read_slot(words, into, read);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+Result<Impairment> parse_impairment(std::string_view text, Mode mode) {
+  return parse_impairment(text, mode, read_data_file);
+}
+
+Result<Impairment> parse_impairment(std::string_view text, Mode mode, const FileReader& read) {
+  WordReader words{text};
+  Impairment impairment;
+  impairment.mode = read_mode(words, mode);
+  if (impairment.mode == Mode::Netem61) impairment.order = Order::Netem;
+  if (words.take_if("none") && !words.at_end()) words.refuse(words.peek(), "nothing after 'none'");
+  while (!words.error() && !words.at_end()) {
+    const Word word = words.take();
+    const bool known =
+        (impairment.mode == Mode::Exact && read_own_clause(word, words, impairment, read)) ||
+        read_tc_clause(word, words, impairment, read);
+    if (!known) {
+      const bool exact = impairment.mode == Mode::Exact;
+      words.refuse(word, std::string{kTcClauses} + std::string{exact ? kOwnClauses : ""});
+    }
+  }
+  check_together(words, impairment);
+  if (words.error()) return tl::unexpected<Error>(*words.error());
+  return impairment;
+}
 
 }  // namespace palp::netem

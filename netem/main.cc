@@ -13,10 +13,12 @@
 #include "common/config/number.h"
 #include "common/config/report.h"
 #include "common/core/printable.h"
+#include "common/core/random.h"
 #include "common/io/endpoint.h"
 #include "netem/presets.h"
 #include "netem/relay.h"
 #include "netem/relay_report.h"
+#include "netem/simulation.h"
 
 namespace palp::netem {
 namespace {
@@ -27,17 +29,6 @@ using config::ExitCode;
 /// Below the 80 of a site's control loop: the path must not delay the sites themselves.
 constexpr int kPriority = 60;
 constexpr double kDurationMax = 1e6;  ///< [s]
-
-constexpr const char* kWords = R"(Impairments (SPEC), words in any order:
-  delay MEAN [JITTER [CORRELATION]] [distribution uniform|normal] [floor SHARE]
-        [correlation-time TIME]
-  loss [random] SHARE
-  loss burst RATE LENGTH                        as: loss burst 0.2/s 200ms
-  loss gilbert-time GOOD BAD [LOSS_IN_BAD [LOSS_IN_GOOD]]
-  duplicate SHARE
-  blackout FROM LENGTH                          from the start; may be repeated
-  order keep|free                               keep: nothing overtakes (default)
-Times need their unit (us, ms, s), shares their %. Delays are one way.)";
 
 /// The command line, as given; texts are empty where it says nothing.
 struct Flags {
@@ -55,6 +46,19 @@ struct Flags {
   std::string report;
   double duration_s{};  ///< 0: until told to stop
   std::string shown;    ///< presets NAME
+};
+
+/// The command line of `simulate`.
+struct SimulateFlags {
+  std::string spec;
+  std::string mode{"exact"};
+  std::string direction{"up"};
+  std::uint64_t packets{};
+  double interval_us{1000};
+  std::uint64_t burst{1};
+  std::uint64_t length{142};  ///< [bytes]
+  std::uint64_t seed{1};
+  std::string csv;
 };
 
 struct Impairments {
@@ -247,7 +251,82 @@ void declare_relay(config::CommandLine& relay, Flags& flags) {
                flags.duration_s,
                {.min = 0, .max = kDurationMax, .unit = "s"},
                "end after this time; 0: never");
-  relay.footer(kWords);
+  relay.footer(std::string{impairment_help()});
+}
+
+/// How long as many draws of the plain generator take, for comparison.
+Duration plain_draws(std::uint64_t count, std::uint64_t seed) {
+  const TimePoint begin = monotonic_now();
+  std::uint64_t sum = 0;
+  for (std::uint64_t i = 0; i < count; ++i) sum ^= random_bits(seed, 0, i);
+  const TimePoint end = monotonic_now();
+  // The sum is used, so that the draws are made.
+  return end - begin + Duration{sum == 0 ? 1 : 0};
+}
+
+Ending run_simulate(const SimulateFlags& flags) {
+  const Mode mode = flags.mode == "exact" ? Mode::Exact : Mode::Netem61;
+  auto impairment = parse_impairment(flags.spec, mode);
+  if (!impairment) return {ExitCode::BadInput, "palp-netem: --spec: " + impairment.error().text};
+  const SimulationConfig simulation{
+      .plan = {.impairment = *std::move(impairment)},
+      .packets = flags.packets,
+      .interval = from_seconds(flags.interval_us * 1e-6),
+      .burst = flags.burst,
+      .frame_length = flags.length,
+      .direction = flags.direction == "up" ? Direction::Up : Direction::Down,
+      .seed = flags.seed};
+  std::string csv{flags.csv.empty() ? "" : std::string{kRecordingHeader} + '\n'};
+  DecisionOrder::Sink each;
+  if (!flags.csv.empty()) {
+    each = [&csv](const Decision& decision) {
+      append_recording_line(csv, decision, TimePoint{});
+      csv += '\n';
+    };
+  }
+  const TimePoint begin = monotonic_now();
+  const SimulationResult result = simulate(simulation, each);
+  const Duration taken = monotonic_now() - begin;
+  if (!flags.csv.empty()) {
+    if (const auto written = config::write_whole_file(flags.csv, csv); !written) {
+      return {ExitCode::CannotOpen, "palp-netem: " + written.error().text};
+    }
+  }
+  char timing[160];
+  std::snprintf(timing,
+                sizeof timing,
+                "%.1f ms for the decisions; as many plain draws of the generator take %.1f ms\n",
+                seconds(taken) * 1e3,
+                seconds(plain_draws(flags.packets, flags.seed)) * 1e3);
+  return {ExitCode::Done, to_string(result) + timing};
+}
+
+void declare_simulate(config::CommandLine& line, SimulateFlags& flags) {
+  /// Frames are at least the headers and at most what IPv4 can carry in one datagram.
+  constexpr std::uint64_t kLengthMax = 65'535 + kEthernetHeader;
+  constexpr double kIntervalMax = 1e9;  // [us]
+  line.text("--spec", flags.spec, "SPEC", "impairment of the direction");
+  line.required();
+  line.whole("--packets", flags.packets, {.min = 1, .max = 1'000'000'000}, "how many are sent");
+  line.required();
+  line.number("--interval-us",
+              flags.interval_us,
+              {.min = 0, .max = kIntervalMax, .unit = "us"},
+              "from one to the next");
+  line.whole("--burst", flags.burst, {.min = 1, .max = 1'000'000}, "so many with one time stamp");
+  line.whole("--length-bytes",
+             flags.length,
+             {.min = kFrameHeaders, .max = kLengthMax},
+             "on the link as a qdisc counts them: UDP payload + 42");
+  line.choice("--direction", flags.direction, {"up", "down"}, "each has draws of its own");
+  line.whole("--seed",
+             flags.seed,
+             {.min = 0, .max = std::numeric_limits<std::uint64_t>::max()},
+             "of everything random");
+  line.choice(
+      "--mode", flags.mode, {"exact", "netem-6.1"}, "what the numbers say, or what Linux does");
+  line.text("--csv", flags.csv, "FILE", "a line for each datagram and copy");
+  line.footer(std::string{impairment_help()});
 }
 
 int run(int argc, char** argv) {
@@ -256,7 +335,10 @@ int run(int argc, char** argv) {
   declare_relay(line.verb("relay", "forward datagrams between two UDP ports"), flags);
   config::CommandLine& shown = line.verb("presets", "the named links and where they come from");
   shown.argument("NAME", flags.shown, "only this one");
+  SimulateFlags simulation;
+  declare_simulate(line.verb("simulate", "decide about datagrams without any socket"), simulation);
   if (const auto ending = line.parse(argc, argv)) return leave(*ending);
+  if (line.chosen_verb() == "simulate") return leave(run_simulate(simulation));
   return leave(line.chosen_verb() == "relay" ? run_relay(flags) : show_presets(flags.shown));
 }
 

@@ -31,8 +31,15 @@ Pipe::Pipe(const Impairment& up,
            std::uint64_t seed,
            std::size_t in_flight_max,
            TimePoint start)
-    : up_{up, seed, Direction::Up, in_flight_max, start},
-      down_{down, seed, Direction::Down, in_flight_max, start} {}
+    : Pipe{PathPlan{.impairment = up}, PathPlan{.impairment = down}, seed, in_flight_max, start} {}
+
+Pipe::Pipe(const PathPlan& up,
+           const PathPlan& down,
+           std::uint64_t seed,
+           std::size_t in_flight_max,
+           TimePoint start)
+    : up_{up, seed, Direction::Up, in_flight_max, start, link::kDatagramSizeMax},
+      down_{down, seed, Direction::Down, in_flight_max, start, link::kDatagramSizeMax} {}
 
 std::unique_ptr<link::Transport> Pipe::surgeon_end() {
   return std::make_unique<PipeEnd>(up_, down_);

@@ -17,9 +17,14 @@ namespace palp::netem {
 /// Thread: one for both ends. The ends refer to the pipe, which outlives them and does not move.
 class Pipe {
  public:
-  /// `start`: where the blackouts' times begin.
   Pipe(const Impairment& up,
        const Impairment& down,
+       std::uint64_t seed,
+       std::size_t in_flight_max,
+       TimePoint start = {});
+  /// `start`: where the times of the plans begin.
+  Pipe(const PathPlan& up,
+       const PathPlan& down,
        std::uint64_t seed,
        std::size_t in_flight_max,
        TimePoint start = {});

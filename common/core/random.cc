@@ -6,15 +6,6 @@
 namespace palp {
 namespace {
 
-/// SplitMix64's output function (Steele, Lea, Flood 2014): a bijection with full avalanche.
-constexpr std::uint64_t mix(std::uint64_t z) noexcept {
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31);
-}
-
-constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15ULL;
-
 double polynomial(const std::array<double, 8>& coefficients, double x) noexcept {
   double sum = 0;
   for (auto it = coefficients.rbegin(); it != coefficients.rend(); ++it) sum = sum * x + *it;
@@ -24,10 +15,11 @@ double polynomial(const std::array<double, 8>& coefficients, double x) noexcept 
 }  // namespace
 
 std::uint64_t random_bits(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) noexcept {
-  std::uint64_t z = mix(seed + kGolden);
-  z = mix(z ^ (stream * kGolden + 1));
-  return mix(z + (index + 1) * kGolden);
+  return RandomStream{seed, stream}.bits(index);
 }
+
+RandomStream::RandomStream(std::uint64_t seed, std::uint64_t stream) noexcept
+    : key_{random_mix(random_mix(seed + kGolden) ^ (stream * kGolden + 1))} {}
 
 double random_uniform(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) noexcept {
   return static_cast<double>(random_bits(seed, stream, index) >> 11) * 0x1.0p-53;

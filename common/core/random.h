@@ -6,6 +6,13 @@
 /// alone and switching one user on or off changes nobody else's draws. All functions are pure.
 namespace palp {
 
+/// SplitMix64's output function (Steele, Lea, Flood 2014): a bijection with full avalanche.
+[[nodiscard]] constexpr std::uint64_t random_mix(std::uint64_t z) noexcept {
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  return z ^ (z >> 31);
+}
+
 /// 64 well mixed bits (SplitMix64's finaliser applied to the three words in turn).
 [[nodiscard]] std::uint64_t random_bits(std::uint64_t seed,
                                         std::uint64_t stream,
@@ -27,5 +34,27 @@ namespace palp {
 
 /// Cumulative distribution of the standard normal.
 [[nodiscard]] double normal_cdf(double z) noexcept;
+
+/// One stream of the generator, for who draws from it often: bits(index) is
+/// random_bits(seed, stream, index), with the work on seed and stream done once.
+class RandomStream {
+ public:
+  RandomStream(std::uint64_t seed, std::uint64_t stream) noexcept;
+
+  [[nodiscard]] std::uint64_t bits(std::uint64_t index) const noexcept {
+    return random_mix(key_ + (index + 1) * kGolden);
+  }
+  /// As random_uniform() and random_normal().
+  [[nodiscard]] double uniform(std::uint64_t index) const noexcept {
+    return static_cast<double>(bits(index) >> 11) * 0x1.0p-53;
+  }
+  [[nodiscard]] double normal(std::uint64_t index) const noexcept {
+    return normal_quantile((static_cast<double>(bits(index) >> 11) + 0.5) * 0x1.0p-53);
+  }
+
+ private:
+  static constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15ULL;
+  std::uint64_t key_;
+};
 
 }  // namespace palp

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
@@ -27,67 +28,96 @@ inline rc::Gen<double> any_share() {
         })}});
 }
 
-inline rc::Gen<DelayLaw> any_delay(Duration most) {
-  return rc::gen::map(rc::gen::tuple(any_time({}, most),
-                                     any_time({}, most / 4),
-                                     rc::gen::arbitrary<bool>(),
-                                     any_share(),
-                                     rc::gen::inRange(0, 3),
-                                     any_share(),
-                                     any_time(Duration{1}, most)),
+/// Of a thing that may be off.
+inline rc::Gen<Chance> any_chance() {
+  return rc::gen::map(rc::gen::tuple(rc::gen::arbitrary<bool>(), any_share(), any_share()),
                       [](const auto& parts) {
-                        const auto& [mean, jitter, normal, floor, kind, correlation, memory] =
-                            parts;
-                        DelayLaw law;
-                        law.mean = mean;
-                        law.floor = floor;
-                        law.jitter = jitter;
-                        if (jitter == Duration{}) return law;
-                        law.shape = normal ? DelayShape::Normal : DelayShape::Uniform;
-                        if (kind == 1) law.correlation = correlation;
-                        if (kind == 2) law.correlation_time = memory;
-                        return law;
+                        const auto& [on, share, correlation] = parts;
+                        return on ? Chance{share, correlation} : Chance{};
                       });
 }
 
-/// Anything that can be said, with times up to `most`.
-inline rc::Gen<Impairment> any_impairment(Duration most) {
-  const auto burst = rc::gen::map(
-      rc::gen::tuple(rc::gen::arbitrary<bool>(), any_share(), any_time(Duration{1}, most)),
-      [](const auto& parts) {
-        const auto& [on, rate, length] = parts;
-        return on ? BurstLaw{50 * rate, length} : BurstLaw{};
-      });
-  const auto gilbert =
-      rc::gen::map(rc::gen::tuple(rc::gen::arbitrary<bool>(),
-                                  any_time(kStayMin, most),
-                                  any_time(kStayMin, most),
-                                  any_share(),
-                                  any_share()),
-                   [](const auto& parts) {
-                     const auto& [on, good, bad, loss_bad, loss_good] = parts;
-                     return on ? GilbertLaw{good, bad, loss_bad, loss_good} : GilbertLaw{};
-                   });
-  const auto blackout = rc::gen::map(rc::gen::pair(any_time({}, most), any_time(Duration{1}, most)),
-                                     [](const auto& parts) {
-                                       return Blackout{parts.first, parts.second};
-                                     });
-  const auto blackouts = rc::gen::mapcat(rc::gen::inRange<std::size_t>(0, 4), [=](std::size_t n) {
-    return rc::gen::container<std::vector<Blackout>>(n, blackout);
-  });
-  return rc::gen::map(
-      rc::gen::tuple(any_delay(most),
-                     any_share(),
-                     burst,
-                     gilbert,
-                     any_share(),
-                     blackouts,
-                     rc::gen::arbitrary<bool>()),
-      [](const auto& parts) {
-        const auto& [delay, loss, bursts, stays, duplicate, dark, free] = parts;
-        return Impairment{
-            delay, loss, bursts, stays, duplicate, dark, free ? Order::Free : Order::Keep};
-      });
+inline DelayLaw make_delay(Duration most) {
+  constexpr std::array kShapes{DelayShape::Uniform,
+                               DelayShape::Normal,
+                               DelayShape::Pareto,
+                               DelayShape::ParetoNormal,
+                               DelayShape::LogNormal};
+  DelayLaw law;
+  law.mean = *any_time({}, most);
+  law.floor = *any_share();
+  law.jitter = *any_time({}, most / 4);
+  if (law.jitter == Duration{}) return law;
+  law.shape = *rc::gen::elementOf(kShapes);
+  const int kind = *rc::gen::inRange(0, 3);
+  if (kind == 1) law.correlation = *any_share();
+  if (kind == 2) law.correlation_time = *any_time(Duration{1}, most);
+  return law;
+}
+
+inline void add_losses(Impairment& impairment, Duration most) {
+  impairment.loss = *any_chance();
+  const auto half = [] { return *any_share() / 2; };
+  if (*rc::gen::arbitrary<bool>()) {
+    impairment.state = FourStateLaw{half(), half(), half(), *any_share(), half()};
+  } else if (*rc::gen::arbitrary<bool>()) {
+    impairment.gemodel = GemodelLaw{*any_share(), *any_share(), *any_share(), *any_share()};
+  }
+  if (*rc::gen::arbitrary<bool>()) {
+    impairment.burst = {50 * *any_share(), *any_time(Duration{1}, most)};
+  }
+  if (*rc::gen::arbitrary<bool>()) {
+    impairment.gilbert = {
+        *any_time(kStayMin, most), *any_time(kStayMin, most), *any_share(), *any_share()};
+  }
+}
+
+inline void add_line(Impairment& impairment, Duration most) {
+  if (*rc::gen::arbitrary<bool>()) {
+    impairment.rate = {*rc::gen::inRange<std::uint64_t>(1000, 1'000'000'000),
+                       *rc::gen::inRange(-20, 20),
+                       *rc::gen::inRange<std::uint32_t>(0, 100),
+                       *rc::gen::inRange(-5, 5)};
+    impairment.queue.packets = *rc::gen::inRange<std::uint64_t>(0, 100);
+    impairment.queue.codel = *rc::gen::arbitrary<bool>();
+  }
+  if (*rc::gen::arbitrary<bool>()) {
+    impairment.slot.min = *any_time(std::chrono::microseconds{100}, most);
+    impairment.slot.max = *any_time(impairment.slot.min, most);
+    impairment.slot.packets = *rc::gen::inRange<std::uint64_t>(0, 10);
+  }
+}
+
+/// Anything that can be said without a file, with times up to `most`. Draws as it goes: to be
+/// called inside a property.
+inline Impairment make_impairment(Duration most) {
+  Impairment impairment;
+  impairment.delay = make_delay(most);
+  add_losses(impairment, most);
+  add_line(impairment, most);
+  impairment.duplicate = *any_chance();
+  impairment.corrupt = *any_chance();
+  impairment.corrupt_payload = *rc::gen::arbitrary<bool>();
+  impairment.truncate = *any_chance();
+  if (impairment.truncate != Chance{})
+    impairment.truncate_to = *rc::gen::inRange<std::uint64_t>(0, 300);
+  if (impairment.delay.mean > Duration{} && *rc::gen::arbitrary<bool>()) {
+    impairment.reorder = {*any_chance(), *rc::gen::inRange<std::uint32_t>(1, 10)};
+  }
+  if (*rc::gen::arbitrary<bool>()) {
+    impairment.stall = {*any_share(), *any_time(Duration{1}, most), *any_share()};
+  }
+  for (int i = *rc::gen::inRange(0, 4); i > 0; --i) {
+    impairment.blackouts.push_back({*any_time({}, most), *any_time(Duration{1}, most)});
+  }
+  impairment.limit = *rc::gen::inRange<std::uint64_t>(0, 200);
+  impairment.dscp_clear = *rc::gen::arbitrary<bool>();
+  impairment.order = *rc::gen::element(Order::Keep, Order::Netem, Order::Swap);
+  if (impairment.order == Order::Swap) {
+    impairment.swap = {*any_share(), *any_share()};
+    impairment.swap_depth = *rc::gen::inRange<std::uint32_t>(1, 10);
+  }
+  return impairment;
 }
 
 }  // namespace palp::netem

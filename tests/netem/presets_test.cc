@@ -40,7 +40,7 @@ TEST(PresetsTest, ReadsDirectionsApartOrTogether) {
 }
 
 TEST(PresetsTest, RefusesWithTheLine) {
-  const auto wrong = parse_preset("x", "summary: s\nsource: a\nboth: delay 1\n");
+  const auto wrong = parse_preset("x", "summary: s\nsource: a\nboth: delay x\n");
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error().text.rfind("preset x, line 3: impairment, column 7", 0), 0U)
       << wrong.error().text;

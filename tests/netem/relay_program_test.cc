@@ -128,7 +128,7 @@ TEST_F(RelayProgramTest, ShowsItsPresets) {
 
 TEST_F(RelayProgramTest, BadInputIsExitCode2AndASentence) {
   for (const std::vector<std::string>& wrong :
-       std::vector<std::vector<std::string>>{{"--spec", "delay 5"},
+       std::vector<std::vector<std::string>>{{"--spec", "delay 5minutes"},
                                              {"--up", "loss 200%"},
                                              {"--preset", "moon"},
                                              {"--rtt-ms", "-1"},

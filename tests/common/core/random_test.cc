@@ -37,6 +37,15 @@ TEST(RandomTest, SeedStreamAndIndexAreNotInterchangeable) {
   EXPECT_EQ(draws.size(), 16U * 16U * 16U);
 }
 
+TEST(RandomTest, AStreamIsTheGeneratorWithTheFirstTwoNumbersSet) {
+  const RandomStream stream{kSeed, 7};
+  for (std::uint64_t index = 0; index < 100; ++index) {
+    EXPECT_EQ(stream.bits(index), random_bits(kSeed, 7, index));
+    EXPECT_EQ(stream.uniform(index), random_uniform(kSeed, 7, index));
+    EXPECT_EQ(stream.normal(index), random_normal(kSeed, 7, index));
+  }
+}
+
 using Argument = std::function<std::uint64_t(std::uint64_t base, std::uint64_t changed)>;
 
 /// Flips each bit of one argument; each of the 64 bits of the draw must flip with probability 1/2.

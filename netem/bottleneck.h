@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/core/time.h"
+#include "netem/impairment.h"
+
+namespace palp::netem {
+
+/// [bytes] that a frame takes on a line with this rate law.
+[[nodiscard]] std::uint64_t line_length(const RateLaw& law, std::uint64_t frame) noexcept;
+/// Time of one frame on the line, rounded down as Linux does.
+[[nodiscard]] Duration line_time(const RateLaw& law, std::uint64_t frame) noexcept;
+
+/// A line of a given rate with a queue before it: tail drop, CoDel or both. First in, first out, so
+/// that when a datagram arrives it is known when it will leave; CoDel (RFC 8289) is run on the
+/// instants at which datagrams reach the head, with the queue as each found it.
+/// Thread: its owner's, fit for rt.
+class Bottleneck {
+ public:
+  explicit Bottleneck(const Impairment& impairment);
+
+  void change(const Impairment& impairment) noexcept;
+  [[nodiscard]] bool off() const noexcept { return rate_.bytes_per_s == 0; }
+  /// When the last bit of a frame of `length` bytes that comes at `at` has left. nullopt: dropped.
+  [[nodiscard]] std::optional<TimePoint> pass(TimePoint at, std::uint64_t length) noexcept;
+
+ private:
+  struct Waiting {
+    TimePoint begins{};      ///< to be sent; from then on it no longer waits
+    std::uint64_t length{};  ///< [bytes]
+  };
+  [[nodiscard]] bool full(TimePoint at, std::uint64_t length) const noexcept;
+  [[nodiscard]] bool codel_drops(TimePoint at, TimePoint head) noexcept;
+  void forget(TimePoint at) noexcept;
+
+  RateLaw rate_;
+  QueueLaw queue_;
+  TimePoint free_at_{};           ///< when the line has sent all it was given
+  std::vector<Waiting> waiting_;  ///< a ring
+  std::size_t first_{};
+  std::size_t count_{};
+  std::uint64_t bytes_{};  ///< [bytes], waiting
+
+  bool above_{};             ///< the wait has been above the target ...
+  TimePoint above_until_{};  ///< ... and if it still is then, dropping begins
+  bool dropping_{};
+  TimePoint drop_next_{};
+  std::uint32_t drops_{};  ///< in this or the last dropping state
+  std::uint32_t drops_before_{};
+};
+
+}  // namespace palp::netem

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "common/core/random.h"
+#include "netem/impairment.h"
+
+namespace palp::netem {
+
+/// The quantile function of a delay law of mode exact: a uniform share or a standard normal number
+/// becomes a delay of exactly the asked mean, spread and shape, before it is truncated at 0.
+/// The constructor computes; at() allocates nothing. Thread: its owner's, fit for rt.
+class DelayCurve {
+ public:
+  explicit DelayCurve(const DelayLaw& law);
+
+  /// In units of the jitter around the mean, of the share `p` (0 < p < 1) of all that are shorter.
+  [[nodiscard]] double at_share(double p) const noexcept;
+  /// The same where the standard normal is `z`.
+  [[nodiscard]] double at_normal(double z) const noexcept;
+
+  /// The law's own mean and spread; of a histogram those of its counts [ns].
+  [[nodiscard]] double mean() const noexcept { return mean_; }
+  [[nodiscard]] double jitter() const noexcept { return jitter_; }
+
+  /// The correlation of successive normals that gives the delays, truncation included, the
+  /// correlation asked for [1].
+  [[nodiscard]] double normal_correlation(double asked) const;
+
+ private:
+  void make_table(std::vector<double> sorted);
+  void make_histogram(const DelayHistogram& histogram);
+  void make_gamma();
+
+  DelayShape shape_;
+  double mean_;                 ///< [ns]
+  double jitter_;               ///< [ns]
+  double floor_;                ///< [ns]
+  double log_spread_{};         ///< [1], of the log-normal
+  double log_scale_{};          ///< [1], of the log-normal
+  std::vector<double> values_;  ///< [1]: table: by rank; gamma: by z; histogram: edges
+  std::vector<double> shares_;  ///< [1]: histogram: what lies below each edge
+};
+
+}  // namespace palp::netem

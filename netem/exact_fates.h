@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/core/time.h"
+#include "netem/bottleneck.h"
+#include "netem/fate_types.h"
+#include "netem/impairment.h"
+#include "netem/loss_laws.h"
+#include "netem/prepared_law.h"
+
+namespace palp::netem {
+
+/// FateSequence's mode exact: what the numbers say. The parts act independently, in this order:
+/// duplicate, blackout, losses, length, flipped bits, stall, rate and queue, delay, order, slot.
+/// Thread: its owner's, fit for rt.
+class ExactFates {
+ public:
+  ExactFates(const PreparedLaw& law, const Streams& streams, TimePoint start);
+
+  [[nodiscard]] std::span<const CopyFate> next(const Arrival& arrival) noexcept;
+  /// From the next datagram on; `law` outlives this object or the next change.
+  void change(const PreparedLaw& law) noexcept;
+
+  /// Copies beside those of the law, of each datagram from now on: a flood. Below kCopiesMax - 1.
+  void flood(std::size_t copies) noexcept { flood_ = copies; }
+  /// Delay, jitter and random losses go this share of the way towards those of another law.
+  void lean(const Impairment& towards, double share) noexcept;
+
+ private:
+  /// What holds for a datagram and all its copies.
+  struct Common {
+    TimePoint onward{};  ///< behind the stall
+    bool dark{};
+    bool lost{};
+    bool jumps{};           ///< the original goes ahead of its delay
+    bool swaps{};           ///< the original overtakes some
+    double loss_state{};    ///< [1], of Gilbert-Elliott in time
+    double loss_gemodel{};  ///< [1]
+  };
+
+  /// The original's stream is at hand; those of copies are made when needed.
+  [[nodiscard]] RandomStream stream_of(RandomStream original,
+                                       Stage stage,
+                                       std::size_t copy) const noexcept {
+    return copy == 0 ? original : streams_.of(stage, copy);
+  }
+  [[nodiscard]] Common common_fate(TimePoint at) noexcept;
+  [[nodiscard]] bool jumps() noexcept;
+  [[nodiscard]] bool in_blackout(TimePoint at) const noexcept;
+  [[nodiscard]] bool lost(const Common& common, std::size_t copy) noexcept;
+  void damage(CopyFate& fate, std::size_t copy) noexcept;
+  void draw_delay(CopyFate& fate, std::size_t copy, const Common& common) noexcept;
+  [[nodiscard]] double draw_normal(std::size_t copy) noexcept;
+  [[nodiscard]] Duration traced_delay(TimePoint onward, std::size_t copy) noexcept;
+  void correlate(Duration gap) noexcept;
+  void put_in_order(CopyFate& fate, bool swaps) noexcept;
+  void fit_slot(CopyFate& fate) noexcept;
+  std::span<const CopyFate> replay(const Arrival& arrival) noexcept;
+
+  const PreparedLaw* law_;
+  Streams streams_;
+  TimePoint start_;
+
+  std::uint64_t index_{};  ///< of the datagram being judged
+  TimePoint last_at_{};
+  bool first_{true};
+  std::size_t flood_{};
+  std::array<CopyFate, kCopiesMax> copies_;
+
+  ChanceProcess duplicate_;
+  ChanceProcess loss_;
+  ChanceProcess corrupt_;
+  ChanceProcess truncate_;
+  ChanceProcess reorder_;
+  ChanceProcess swap_;
+  FourStateProcess state_;
+  GemodelProcess gemodel_;
+  BurstProcess burst_;
+  GilbertTimeProcess gilbert_;
+  StallProcess stall_;
+  Bottleneck bottleneck_;
+
+  double mean_{};    ///< [ns], as it holds now, on a ramp too
+  double jitter_{};  ///< [ns]
+  double least_{};   ///< [ns], floor
+  RandomStream delay_stream_;
+  RandomStream stay_loss_stream_;
+  RandomStream gemodel_loss_stream_;
+  RandomStream slot_stream_;
+  bool drawn_{};  ///< the delay is random
+  bool correlated_{};
+  double carry_{};          ///< [1], a of z_n = a z_(n-1) + sqrt(1 - a^2) e_n
+  double fresh_{1};         ///< [1], sqrt(1 - a^2)
+  Duration carry_gap_{-1};  ///< the gap that carry_ belongs to
+  double z_before_{};       ///< [1], z_(n-1)
+  double z_{};              ///< [1], z_n, once drawn
+  std::size_t trace_at_{};  ///< the segment of the trace looked up last
+  std::size_t replay_at_{};
+  std::uint32_t since_reorder_{};
+
+  TimePoint last_release_{};
+  std::array<TimePoint, kSwapDepthMax> releases_{};  ///< of the last ones, a ring
+  std::uint64_t released_{};
+
+  std::uint64_t slot_number_{};
+  bool slots_begun_{};
+  TimePoint slot_at_{};
+  std::uint64_t slot_packets_{};
+  std::uint64_t slot_bytes_{};  ///< [bytes]
+};
+
+}  // namespace palp::netem

@@ -1,0 +1,284 @@
+#include "netem/passage.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+
+#include "common/core/check.h"
+
+namespace palp::netem {
+namespace {
+
+constexpr std::size_t kKernelLimit = 1000;  ///< tc's default
+
+std::size_t limit_of(const Impairment& impairment) {
+  if (impairment.limit > 0) return impairment.limit;
+  if (impairment.mode == Mode::Netem61) return kKernelLimit;
+  return std::numeric_limits<std::size_t>::max();
+}
+
+}  // namespace
+
+PreparedChange prepare(const Change& change) {
+  PreparedChange prepared{.at = change.at,
+                          .kind = change.kind,
+                          .span = change.span,
+                          .copies = change.copies,
+                          .law = {}};
+  if (change.kind == Change::Kind::Set || change.kind == Change::Kind::Ramp) {
+    prepared.law = std::make_unique<PreparedLaw>(change.impairment);
+  }
+  return prepared;
+}
+
+Passage::Passage(const PathPlan& plan,
+                 std::uint64_t seed,
+                 Direction direction,
+                 std::size_t in_flight_max,
+                 std::size_t waiting_max,
+                 TimePoint start)
+    : fates_{plan.impairment, seed, direction, start},
+      in_flight_max_{in_flight_max},
+      limit_{},
+      start_{start},
+      last_arrival_{TimePoint::min()},
+      plan_words_{plan.changes},
+      plan_loop_{plan.loop},
+      dark_until_{TimePoint::min()},
+      held_until_{TimePoint::min()},
+      flood_until_{TimePoint::min()},
+      due_{in_flight_max + waiting_max},
+      line_{in_flight_max + waiting_max},
+      slot_stream_{Streams{seed, direction}.of(Stage::Slot)},
+      places_{in_flight_max + waiting_max} {
+  PALP_CHECK(in_flight_max > 0, "a passage has room for one datagram");
+  for (const Change& change : plan.changes) plan_.push_back(prepare(change));
+  heap_.reserve(places_);
+  collected_.reserve(places_);
+  held_.reserve(places_);
+  free_places_.reserve(places_);
+  last_arrival_ = start;
+  hold_law();
+  last_arrival_ = TimePoint::min();
+}
+
+/// What follows from the law that holds now.
+void Passage::hold_law() noexcept {
+  const Impairment& law = impairment();
+  limit_ = limit_of(law);
+  const bool slots = law.mode == Mode::Netem61 && law.slot.max > Duration{};
+  if (!slots) {
+    kernel_slots_.reset();
+  } else if (kernel_slots_) {
+    kernel_slots_->change(fates_.law());
+  } else {
+    kernel_slots_.emplace(fates_.law(), slot_stream_, last_arrival_);
+  }
+}
+
+std::span<const Decision> Passage::push(const Arrival& arrival) noexcept {
+  const TimePoint at = std::max(arrival.at, last_arrival_);
+  apply_due(at);
+  settle(at);
+  last_arrival_ = at;
+  Arrival told = arrival;
+  told.at = at;
+  told.room = std::min(arrival.room, room());
+  if (held_until_ > at) told.held_until = held_until_;
+  const std::span<const CopyFate> fates = fates_.next(told);
+  for (std::size_t copy = 0; copy < fates.size(); ++copy) {
+    const CopyFate& fate = fates[copy];
+    Decision& decision = decisions_[copy];
+    decision = {.index = index_,
+                .copy = static_cast<std::uint32_t>(copy),
+                .verdict = at < dark_until_ ? Verdict::Blackout : fate.verdict,
+                .floored = fate.floored,
+                .tos = fate.tos,
+                .flipped_bit = fate.flipped_bit,
+                .length = fate.length,
+                .place = 0,
+                .intended = fate.delay,
+                .arrived_at = at,
+                .released_at = fate.release};
+    if (decision.verdict == Verdict::Delivered) enter(decision, fate.immediate);
+  }
+  ++index_;
+  if (kernel_slots_) let_out(at);
+  return std::span{decisions_}.first(fates.size());
+}
+
+std::optional<TimePoint> Passage::next_release() const noexcept {
+  if (!due_.empty()) return due_.front().release();
+  const Entry* first = first_on_way();
+  if (first == nullptr) return std::nullopt;
+  return kernel_slots_ ? kernel_slots_->look_at(first->release()) : first->release();
+}
+
+std::optional<Decision> Passage::pop(TimePoint now) noexcept {
+  if (kernel_slots_) settle(now);
+  Entry entry{};
+  if (!due_.empty()) {
+    entry = due_.front();
+    if (entry.release() > now) return std::nullopt;
+    due_.pop();
+  } else {
+    const Entry* first = first_on_way();
+    if (first == nullptr || first->release() > now || kernel_slots_) return std::nullopt;
+    entry = take_first_on_way();
+  }
+  if (entry.release() > last_arrival_) {
+    collected_.push_back(entry.release());
+    std::push_heap(collected_.begin(), collected_.end(), std::greater<>{});
+  }
+  Decision& decision = held_[entry.place];
+  decision.released_at = entry.release();
+  free_places_.push_back(entry.place);
+  return decision;
+}
+
+void Passage::apply(PreparedChange& change, TimePoint now) noexcept {
+  const TimePoint until = now + change.span;
+  switch (change.kind) {
+    case Change::Kind::Set:
+      ramp_.reset();
+      fates_.change(change.law);
+      hold_law();
+      break;
+    case Change::Kind::Ramp:
+      if (ramp_) lean(now);
+      std::swap(ramp_, change.law);
+      ramp_from_ = now;
+      ramp_span_ = change.span;
+      break;
+    case Change::Kind::Blackout:
+      dark_until_ = std::max(dark_until_, until);
+      break;
+    case Change::Kind::Stall:
+      held_until_ = std::max(held_until_, until);
+      break;
+    case Change::Kind::Flood:
+      fates_.flood(change.copies);
+      flooding_ = true;
+      flood_until_ = until;
+      break;
+    case Change::Kind::Rebind:
+      ++rebinds_;
+      break;
+  }
+  ++changes_applied_;
+}
+
+/// The plan's changes up to `at`, and what changes with time itself.
+void Passage::apply_due(TimePoint at) noexcept {
+  while (plan_at_ < plan_.size() && start_ + plan_shift_ + plan_[plan_at_].at <= at) {
+    PreparedChange& change = plan_[plan_at_];
+    apply(change, start_ + plan_shift_ + change.at);
+    // What a law replaced is not what the plan says: when it comes round it is made again.
+    if (plan_loop_ > Duration{}) change = prepare(plan_words_[plan_at_]);
+    if (++plan_at_ == plan_.size() && plan_loop_ > Duration{}) {
+      plan_at_ = 0;
+      plan_shift_ += plan_loop_;
+    }
+  }
+  if (ramp_) lean(at);
+  if (flooding_ && at >= flood_until_) {
+    flooding_ = false;
+    fates_.flood(0);
+  }
+}
+
+void Passage::lean(TimePoint at) noexcept {
+  const Duration since = at - ramp_from_;
+  if (since >= ramp_span_) {
+    fates_.change(ramp_);
+    hold_law();
+    ramp_.reset();
+  } else {
+    fates_.lean(ramp_->impairment, seconds(since) / seconds(ramp_span_));
+  }
+}
+
+std::size_t Passage::room() const noexcept {
+  const std::size_t taken = line_.size() + heap_.size() + collected_.size();
+  const std::size_t most = std::min(in_flight_max_, limit_);
+  return taken < most ? most - taken : 0;
+}
+
+const Passage::Entry* Passage::first_on_way() const noexcept {
+  if (heap_.empty()) return line_.empty() ? nullptr : &line_.front();
+  if (line_.empty() || later(line_.front(), heap_.front())) return &heap_.front();
+  return &line_.front();
+}
+
+/// There is one: first_on_way() said so.
+Passage::Entry Passage::take_first_on_way() noexcept {
+  const bool from_line = heap_.empty() || (!line_.empty() && later(heap_.front(), line_.front()));
+  if (from_line) {
+    const Entry entry = line_.front();
+    line_.pop();
+    return entry;
+  }
+  std::pop_heap(heap_.begin(), heap_.end(), later);
+  const Entry entry = heap_.back();
+  heap_.pop_back();
+  return entry;
+}
+
+/// Sorts out what is no longer on its way at `now`.
+void Passage::settle(TimePoint now) noexcept {
+  while (!collected_.empty() && collected_.front() <= now) {
+    std::pop_heap(collected_.begin(), collected_.end(), std::greater<>{});
+    collected_.pop_back();
+  }
+  if (kernel_slots_) {
+    // The timer rings again and again until nothing is due any more.
+    for (const Entry* first = first_on_way(); first != nullptr; first = first_on_way()) {
+      const TimePoint look = kernel_slots_->look_at(first->release());
+      if (look > now) return;
+      let_out(look);
+    }
+    return;
+  }
+  // Linux's timer rings after its time: whoever comes on the same instant still finds the other.
+  const TimePoint gone = impairment().mode == Mode::Netem61 ? now - Duration{1} : now;
+  for (const Entry* first = first_on_way(); first != nullptr && first->release() <= gone;
+       first = first_on_way()) {
+    due_.push(take_first_on_way());
+  }
+}
+
+/// Linux looks at its queue at `now` and takes out what may leave.
+void Passage::let_out(TimePoint now) noexcept {
+  for (const Entry* first = first_on_way(); first != nullptr; first = first_on_way()) {
+    if (!kernel_slots_->opens(first->release(), now)) return;
+    Entry entry = take_first_on_way();
+    kernel_slots_->left(held_[entry.place].length + kFrameHeaders, now);
+    entry.release_ns = now.time_since_epoch().count();
+    due_.push(entry);
+  }
+}
+
+void Passage::enter(Decision& decision, bool immediate) noexcept {
+  if (!free_places_.empty()) {
+    decision.place = free_places_.back();
+    free_places_.pop_back();
+    held_[decision.place] = decision;
+  } else if (held_.size() < places_) {
+    decision.place = static_cast<std::uint32_t>(held_.size());
+    held_.push_back(decision);
+  } else {
+    decision.verdict = Verdict::OverLimit;
+    return;
+  }
+  const Entry entry{decision.released_at.time_since_epoch().count(), number_++, decision.place};
+  if (immediate && kernel_slots_) {
+    due_.push(entry);
+  } else if (line_.empty() || line_.back().release_ns <= entry.release_ns) {
+    line_.push(entry);
+  } else {
+    heap_.push_back(entry);
+    std::push_heap(heap_.begin(), heap_.end(), later);
+  }
+}
+
+}  // namespace palp::netem

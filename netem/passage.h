@@ -1,0 +1,146 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/core/time.h"
+#include "netem/fate.h"
+#include "netem/kernel_slots.h"
+#include "netem/path_plan.h"
+#include "netem/ring.h"
+
+namespace palp::netem {
+
+/// A change that is ready to be applied at any moment.
+struct PreparedChange {
+  Duration at{};
+  Change::Kind kind{};
+  Duration span{};
+  std::size_t copies{};
+  std::unique_ptr<PreparedLaw> law;  ///< Set and Ramp
+};
+[[nodiscard]] PreparedChange prepare(const Change& change);
+
+/// What happened to one copy of a datagram: a line of the decision log.
+struct Decision {
+  std::uint64_t index{};  ///< of the datagram, in order of arrival from 0
+  std::uint32_t copy{};   ///< 0: the original
+  Verdict verdict{};
+  bool floored{};
+  std::uint8_t tos{};
+  std::int32_t flipped_bit{-1};
+  std::uint32_t length{};  ///< [bytes] of payload, as it leaves
+  std::uint32_t place{};   ///< where its holder keeps it, when it is on its way
+  Duration intended{};     ///< delay as the law drew it
+  TimePoint arrived_at{};
+  TimePoint released_at{};  ///< set when delivered
+};
+
+/// One direction of an impaired path without the bytes: who arrives, what becomes of it, who leaves
+/// when. The decisions depend on the arrivals alone, never on how often anybody looks.
+/// At most `in_flight_max` datagrams are on their way, fewer if the impairment says so; somewhat
+/// more may wait, due, for a host that does not collect them.
+/// Thread: its owner's, fit for rt: all memory is taken by the constructor.
+class Passage {
+ public:
+  /// `start`: where the times of the plan begin. `waiting_max`: places for what is due.
+  Passage(const PathPlan& plan,
+          std::uint64_t seed,
+          Direction direction,
+          std::size_t in_flight_max,
+          std::size_t waiting_max,
+          TimePoint start);
+
+  /// A datagram of `length` bytes of payload arrives; a time before the newest one counts as that.
+  /// @returns what becomes of it and its copies; those that are delivered are on their way, each
+  /// in its `place`. Valid until the next call.
+  [[nodiscard]] std::span<const Decision> push(const Arrival& arrival) noexcept;
+
+  /// When the next one leaves. @returns nullopt: nobody is on the way.
+  [[nodiscard]] std::optional<TimePoint> next_release() const noexcept;
+  /// The next one due at `now`; its place is free again at the next push.
+  [[nodiscard]] std::optional<Decision> pop(TimePoint now) noexcept;
+
+  /// Applies a change now; the next datagram is the first to feel it. What it needs no more comes
+  /// back in `change`, to be freed elsewhere.
+  void apply(PreparedChange& change, TimePoint now) noexcept;
+
+  /// On their way, or due and not collected.
+  [[nodiscard]] std::size_t in_flight() const noexcept {
+    return line_.size() + heap_.size() + due_.size();
+  }
+  [[nodiscard]] std::size_t places() const noexcept { return places_; }
+  /// What push() said of releases is final; not so where slots decide when they come.
+  [[nodiscard]] bool decides_at_once() const noexcept { return !kernel_slots_; }
+  [[nodiscard]] const Impairment& impairment() const noexcept { return fates_.law().impairment; }
+  /// Of the plan, counted from the start: how many changes have been applied.
+  [[nodiscard]] std::uint64_t changes_applied() const noexcept { return changes_applied_; }
+  [[nodiscard]] std::uint64_t rebinds() const noexcept { return rebinds_; }
+
+ private:
+  struct Entry {
+    TimePoint::rep release_ns;
+    std::uint32_t number;  ///< breaks ties: first in, first out; it may come round
+    std::uint32_t place;
+    [[nodiscard]] TimePoint release() const noexcept { return TimePoint{Duration{release_ns}}; }
+  };
+
+  static bool later(const Entry& left, const Entry& right) noexcept {
+    return left.release_ns != right.release_ns
+               ? left.release_ns > right.release_ns
+               : static_cast<std::int32_t>(left.number - right.number) > 0;
+  }
+  void hold_law() noexcept;
+  void apply_due(TimePoint at) noexcept;
+  void lean(TimePoint at) noexcept;
+  [[nodiscard]] std::size_t room() const noexcept;
+  [[nodiscard]] const Entry* first_on_way() const noexcept;
+  Entry take_first_on_way() noexcept;
+  void settle(TimePoint now) noexcept;
+  void let_out(TimePoint now) noexcept;
+  void enter(Decision& decision, bool immediate) noexcept;
+
+  FateSequence fates_;
+  std::size_t in_flight_max_;
+  std::size_t limit_;
+  TimePoint start_;
+  TimePoint last_arrival_;
+  std::uint64_t index_{};
+
+  std::vector<PreparedChange> plan_;
+  std::vector<Change> plan_words_;  ///< to prepare the plan again when it loops
+  std::size_t plan_at_{};
+  Duration plan_shift_{};
+  Duration plan_loop_{};
+  std::uint64_t changes_applied_{};
+  std::uint64_t rebinds_{};
+  std::unique_ptr<PreparedLaw> ramp_;
+  TimePoint ramp_from_{};
+  Duration ramp_span_{};
+  TimePoint dark_until_;
+  TimePoint held_until_;
+  TimePoint flood_until_;
+  bool flooding_{};
+
+  std::array<Decision, kCopiesMax> decisions_;
+  Ring<Entry> due_;          ///< released before the newest arrival, not yet collected
+  Ring<Entry> line_;         ///< on their way, sorted as they came: all, if nothing overtakes
+  std::vector<Entry> heap_;  ///< on their way, those that overtake
+  /// A heap of releases after the newest arrival that were collected already: they still take
+  /// room, so that the limit does not depend on when somebody collects.
+  std::vector<TimePoint> collected_;
+  std::uint32_t number_{};
+  RandomStream slot_stream_;
+  std::optional<KernelSlots> kernel_slots_;
+
+  std::size_t places_;
+  std::vector<Decision> held_;              ///< by place; grows to places_ as they are used
+  std::vector<std::uint32_t> free_places_;  ///< a stack: few places stay warm
+};
+
+}  // namespace palp::netem
