@@ -15,9 +15,9 @@
 #include "common/core/printable.h"
 #include "common/core/random.h"
 #include "common/io/endpoint.h"
+#include "netem/datagram_socket.h"
 #include "netem/presets.h"
-#include "netem/relay.h"
-#include "netem/relay_report.h"
+#include "netem/relay_program.h"
 #include "netem/simulation.h"
 
 namespace palp::netem {
@@ -26,8 +26,6 @@ namespace {
 using config::Ending;
 using config::ExitCode;
 
-/// Below the 80 of a site's control loop: the path must not delay the sites themselves.
-constexpr int kPriority = 60;
 constexpr double kDurationMax = 1e6;  ///< [s]
 
 /// The command line, as given; texts are empty where it says nothing.
@@ -38,12 +36,17 @@ struct Flags {
   std::string up;
   std::string down;
   std::string preset;
+  std::string timeline;
+  std::string mode{"exact"};
   std::optional<double> rtt_ms;
   std::optional<double> delay_ms;
   std::optional<double> jitter_ms;
   std::string loss;
-  std::uint64_t seed{1};
+  std::optional<std::uint64_t> seed;
+  std::string record;
+  std::string control;
   std::string report;
+  std::optional<double> status_s;
   double duration_s{};  ///< 0: until told to stop
   std::string shown;    ///< presets NAME
 };
@@ -61,9 +64,11 @@ struct SimulateFlags {
   std::string csv;
 };
 
-struct Impairments {
-  Impairment up;
-  Impairment down;
+struct Plans {
+  PathPlan up;
+  PathPlan down;
+  std::optional<std::uint64_t> seed;
+  std::string preset;  ///< of a timeline
 };
 
 Ending bad_input(const std::string& sentence) {
@@ -84,6 +89,7 @@ Result<void> one_way_only(const Flags& flags) {
                        {"--up", !flags.up.empty(), 1},
                        {"--down", !flags.down.empty(), 1},
                        {"--preset", !flags.preset.empty(), 2},
+                       {"--timeline", !flags.timeline.empty(), 4},
                        {"--rtt-ms", flags.rtt_ms.has_value(), 3},
                        {"--delay-ms", flags.delay_ms.has_value(), 3},
                        {"--jitter-ms", flags.jitter_ms.has_value(), 3},
@@ -112,7 +118,7 @@ Result<double> loss_flag(const std::string& text) {
   return *loss;
 }
 
-Result<Impairments> plain_impairments(const Flags& flags) {
+Result<Plans> plain_impairments(const Flags& flags) {
   const auto loss = loss_flag(flags.loss);
   if (!loss) return tl::unexpected<Error>(loss.error());
   const Duration jitter = from_seconds(flags.jitter_ms.value_or(0) * 1e-3);
@@ -121,24 +127,37 @@ Result<Impairments> plain_impairments(const Flags& flags) {
           ? impairment_from_rtt(from_seconds(*flags.rtt_ms * 1e-3), jitter, *loss)
           : impairment_from_delay(from_seconds(flags.delay_ms.value_or(0) * 1e-3), jitter, *loss);
   if (!impairment) return tl::unexpected<Error>(impairment.error());
-  return Impairments{*impairment, *impairment};
+  return Plans{{.impairment = *impairment}, {.impairment = *impairment}, {}, {}};
 }
 
-Result<Impairments> asked_impairments(const Flags& flags) {
+/// The timeline's file; a name of a preset in it is understood.
+Result<Timeline> load_timeline(const std::string& path) {
+  const auto text = read_data_file(path);
+  if (!text) return fail("--timeline: " + text.error().text);
+  return parse_timeline(path, *text, [](const std::string& name) { return find_preset(name); });
+}
+
+Result<Plans> asked_plans(const Flags& flags) {
   if (const auto one = one_way_only(flags); !one) return tl::unexpected<Error>(one.error());
   if (!flags.preset.empty()) {
     auto preset = find_preset(flags.preset);
     if (!preset) return tl::unexpected<Error>(preset.error());
-    return Impairments{preset->up, preset->down};
+    return Plans{preset->up, preset->down, preset->seed, flags.preset};
+  }
+  if (!flags.timeline.empty()) {
+    auto timeline = load_timeline(flags.timeline);
+    if (!timeline) return tl::unexpected<Error>(timeline.error());
+    return Plans{timeline->up, timeline->down, timeline->seed, timeline->preset};
   }
   if (flags.rtt_ms || flags.delay_ms || flags.jitter_ms || !flags.loss.empty()) {
     return plain_impairments(flags);
   }
-  const auto up = parse_impairment(flags.spec.empty() ? flags.up : flags.spec);
+  const Mode mode = flags.mode == "exact" ? Mode::Exact : Mode::Netem61;
+  const auto up = parse_impairment(flags.spec.empty() ? flags.up : flags.spec, mode);
   if (!up) return fail((flags.spec.empty() ? "--up: " : "--spec: ") + up.error().text);
-  const auto down = parse_impairment(flags.spec.empty() ? flags.down : flags.spec);
+  const auto down = parse_impairment(flags.spec.empty() ? flags.down : flags.spec, mode);
   if (!down) return fail("--down: " + down.error().text);
-  return Impairments{*up, *down};
+  return Plans{{.impairment = *up}, {.impairment = *down}, {}, {}};
 }
 
 /// A descriptor that becomes readable at SIGINT or SIGTERM.
@@ -154,76 +173,59 @@ int stop_signals() {
   return ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 
-/// Serves until told to stop; the report is written at once as well: a path that cannot be written
-/// is known before the session.
-Ending serve(Relay& relay, const Flags& flags, RelayRun run) {
-  const TimePoint began = monotonic_now();
-  const auto write_report = [&]() -> Result<void> {
-    if (flags.report.empty()) return {};
-    run.duration = monotonic_now() - began;
-    return config::write_whole_file(flags.report, relay_report(relay, run));
-  };
-  if (const auto written = write_report(); !written) return cannot_open(written.error().text);
-  if (!relay.real_time()) {
-    std::fputs(
-        "palp-netem: no right to SCHED_FIFO: releases may be late when the machine is busy\n",
-        stderr);
-  }
-  std::printf("listening on %s\n", relay.listening_on().to_string().c_str());
-  std::printf("forwarding to %s\nup   %s\ndown %s\n",
-              run.forward.to_string().c_str(),
-              to_string(run.up).c_str(),
-              to_string(run.down).c_str());
-  std::fflush(stdout);
-  relay.serve(from_seconds(flags.duration_s > 0 ? flags.duration_s : kDurationMax));
-  std::fputs(relay_summary(relay).c_str(), stdout);
-  if (const auto written = write_report(); !written) return cannot_open(written.error().text);
+Ending serve(const Flags& flags) {
+  RelayProgramConfig config;
+  const auto listen = io::resolve(*flags.listen);
+  if (!listen) return bad_input("--listen: " + listen.error().text);
+  config.listen = *listen;
+  const auto forward = io::resolve(*flags.forward);
+  if (!forward) return bad_input("--forward: " + forward.error().text);
+  config.forward = *forward;
+  const auto asked = asked_plans(flags);
+  if (!asked) return bad_input(asked.error().text);
+  config.up = asked->up;
+  config.down = asked->down;
+  config.mode = asked->up.impairment.mode;
+  config.preset = flags.preset.empty() ? asked->preset : flags.preset;
+  config.seed = flags.seed ? *flags.seed : asked->seed.value_or(1);
+  config.record = flags.record;
+  config.control = flags.control;
+  config.report = flags.report;
+  config.duration = from_seconds(flags.duration_s > 0 ? flags.duration_s : kDurationMax);
+  config.status_every =
+      from_seconds(flags.status_s.value_or(::isatty(STDOUT_FILENO) != 0 ? 1.0 : 0.0));
+  config.stop_descriptor = stop_signals();
+  if (const auto served = run_relay(config); !served) return cannot_open(served.error().text);
   return {ExitCode::Done, ""};
 }
 
-Ending run_relay(const Flags& flags) {
-  const auto listen = io::resolve(*flags.listen);
-  if (!listen) return bad_input("--listen: " + listen.error().text);
-  const auto forward = io::resolve(*flags.forward);
-  if (!forward) return bad_input("--forward: " + forward.error().text);
-  const auto asked = asked_impairments(flags);
-  if (!asked) return bad_input(asked.error().text);
-  Relay relay{{.listen = *listen,
-               .forward = *forward,
-               .up = asked->up,
-               .down = asked->down,
-               .seed = flags.seed,
-               .priority = kPriority,
-               .stop_descriptor = stop_signals()}};
-  return serve(relay,
-               flags,
-               {.preset = flags.preset,
-                .up = asked->up,
-                .down = asked->down,
-                .seed = flags.seed,
-                .forward = *forward,
-                .duration = {}});
-}
-
-std::string description(const Preset& preset) {
-  std::string text = preset.name + ": " + preset.summary + '\n';
-  if (preset.up == preset.down) {
-    text += "  both ways  " + to_string(preset.up) + '\n';
+std::string description(const std::string& name, const Timeline& preset) {
+  std::string text = name + ": " + preset.means + '\n';
+  if (preset.up.impairment == preset.down.impairment) {
+    text += "  both ways  " + to_string(preset.up.impairment) + '\n';
   } else {
-    text += "  up         " + to_string(preset.up) + '\n';
-    text += "  down       " + to_string(preset.down) + '\n';
+    text += "  up         " + to_string(preset.up.impairment) + '\n';
+    text += "  down       " + to_string(preset.down.impairment) + '\n';
   }
-  return text + "  source     " + preset.source + '\n';
+  if (const std::size_t changes = preset.up.changes.size(); changes > 0) {
+    text += "  events     " + std::to_string(changes) + " each way, ";
+    text += "again every " + config::number_text(seconds(preset.up.loop)) + " s\n";
+  }
+  for (const std::string& source : preset.sources) text += "  source     " + source + '\n';
+  return text;
 }
 
+/// All in short, or the file of one.
 Ending show_presets(const std::string& name) {
-  if (!name.empty()) {
-    const auto preset = find_preset(name);
-    if (!preset) return bad_input(preset.error().text);
-    return {ExitCode::Done, description(*preset)};
-  }
   std::string text;
-  for (const Preset& preset : presets()) text += description(preset);
+  for (const std::string& known : preset_names()) {
+    if (!name.empty() && known != name) continue;
+    const auto preset = find_preset(known);
+    if (!preset) return cannot_open(preset.error().text);
+    text += description(known, *preset);
+  }
+  if (text.empty()) return bad_input(find_preset(name).error().text);
+  if (!name.empty()) text += '\n' + std::string{preset_text(name)};
   return {ExitCode::Done, text};
 }
 
@@ -237,6 +239,9 @@ void declare_relay(config::CommandLine& relay, Flags& flags) {
   relay.text("--up", flags.up, "SPEC", "impairment from surgeon to patient");
   relay.text("--down", flags.down, "SPEC", "impairment from patient to surgeon");
   relay.text("--preset", flags.preset, "NAME", "a named link, see presets");
+  relay.text("--timeline", flags.timeline, "FILE", "events over time, message Timeline as text");
+  relay.choice(
+      "--mode", flags.mode, {"exact", "netem-6.1"}, "what the numbers say, or what Linux does");
   relay.number("--rtt-ms", flags.rtt_ms, milliseconds, "round trip, half of it each way");
   relay.number("--delay-ms", flags.delay_ms, milliseconds, "delay of each way");
   relay.number(
@@ -246,7 +251,15 @@ void declare_relay(config::CommandLine& relay, Flags& flags) {
               flags.seed,
               {.min = 0, .max = std::numeric_limits<std::uint64_t>::max()},
               "of everything random");
+  relay.text(
+      "--record", flags.record, "PREFIX", "to PREFIX-up.csv, PREFIX-down.csv, PREFIX.pcapng");
+  relay.text(
+      "--control", flags.control, "ADDRESS", "127.0.0.1:PORT or unix:PATH: events as JSON lines");
   relay.text("--report", flags.report, "FILE", "JSON report, written when the relay ends");
+  relay.number("--status-s",
+               flags.status_s,
+               {.min = 0, .max = kDurationMax, .unit = "s"},
+               "a line so often; 0: none (default: 1 on a terminal)");
   relay.number("--duration-s",
                flags.duration_s,
                {.min = 0, .max = kDurationMax, .unit = "s"},
@@ -339,7 +352,7 @@ int run(int argc, char** argv) {
   declare_simulate(line.verb("simulate", "decide about datagrams without any socket"), simulation);
   if (const auto ending = line.parse(argc, argv)) return leave(*ending);
   if (line.chosen_verb() == "simulate") return leave(run_simulate(simulation));
-  return leave(line.chosen_verb() == "relay" ? run_relay(flags) : show_presets(flags.shown));
+  return leave(line.chosen_verb() == "relay" ? serve(flags) : show_presets(flags.shown));
 }
 
 }  // namespace

@@ -5,27 +5,18 @@
 #include <vector>
 
 #include "common/core/result.h"
-#include "netem/impairment.h"
+#include "netem/timeline.h"
 
 namespace palp::netem {
 
-/// A named link. The numbers and their sources are data: profiles/NAME.txt, built into the program.
-struct Preset {
-  std::string name;
-  std::string summary;  ///< one line
-  std::string source;   ///< where the numbers come from; says "assumed" where they do not
-  Impairment up;
-  Impairment down;
-};
-
-/// All of them, in the order of rising delay.
-[[nodiscard]] const std::vector<Preset>& presets();
+/// The names of the links there are, in the order of rising delay. Each is a timeline with the
+/// sources of its numbers: profiles/NAME.textproto, built into the program.
+[[nodiscard]] std::vector<std::string> preset_names();
 
 /// @returns or a sentence that lists the names there are.
-[[nodiscard]] Result<Preset> find_preset(std::string_view name);
+[[nodiscard]] Result<Timeline> find_preset(std::string_view name);
 
-/// Reads one profile: lines `summary: TEXT`, `source: TEXT` (joined when repeated), `up: SPEC`,
-/// `down: SPEC` or `both: SPEC`; `#` begins a comment line. @returns or a sentence with the line.
-[[nodiscard]] Result<Preset> parse_preset(std::string_view name, std::string_view text);
+/// The words of a preset's file, for people. Empty: there is none of that name.
+[[nodiscard]] std::string_view preset_text(std::string_view name);
 
 }  // namespace palp::netem

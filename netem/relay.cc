@@ -3,13 +3,15 @@
 #include <algorithm>
 
 #include <poll.h>
-#include <sched.h>
 #include <time.h>
+
+#include "common/io/realtime.h"
 
 namespace palp::netem {
 namespace {
 
 using std::chrono::microseconds;
+using std::chrono::milliseconds;
 
 /// The kernel wakes a sleeper some 10-50 us late; this much of a wait is spun instead.
 constexpr Duration kSpin = microseconds{60};
@@ -23,13 +25,9 @@ constexpr Duration kAwakeMax = microseconds{2000};
 constexpr Duration kNap = microseconds{120};
 /// Batches of one drain: bounds the time the other socket and the releases wait.
 constexpr int kBatchesPerDrain = 4;
-
-bool become_real_time(int priority) noexcept {
-  if (priority <= 0) return false;
-  sched_param parameters{};
-  parameters.sched_priority = priority;
-  return ::sched_setscheduler(0, SCHED_FIFO, &parameters) == 0;
-}
+constexpr Duration kShowEvery = milliseconds{250};
+/// Commands from outside are looked for at least so often.
+constexpr Duration kRestMax = milliseconds{10};
 
 timespec to_timespec(Duration span) noexcept {
   const auto whole = std::chrono::duration_cast<std::chrono::seconds>(span);
@@ -39,23 +37,43 @@ timespec to_timespec(Duration span) noexcept {
 }  // namespace
 
 Relay::Relay(const RelayConfig& config)
-    : client_side_{DatagramSocket::bound(config.listen)},
-      server_side_{DatagramSocket::connected(config.forward)},
-      up_{config.up, config.seed, Direction::Up, config.in_flight_max, monotonic_now()},
-      down_{config.down, config.seed, Direction::Down, config.in_flight_max, monotonic_now()},
+    : client_side_{DatagramSocket::bound(config.listen, config.datagram_max)},
+      server_side_{DatagramSocket::connected(config.forward, config.datagram_max)},
+      forward_{config.forward},
+      datagram_max_{config.datagram_max},
+      start_{monotonic_now()},
+      up_{config.up, config.seed, Direction::Up, config.in_flight_max, start_, config.datagram_max},
+      down_{config.down,
+            config.seed,
+            Direction::Down,
+            config.in_flight_max,
+            start_,
+            config.datagram_max},
       stop_descriptor_{config.stop_descriptor},
-      real_time_{become_real_time(config.priority)},
-      awake_since_{monotonic_now()} {}
+      priority_{config.priority},
+      awake_since_{start_} {
+  waiting_.reserve(64);
+}
 
 bool Relay::serve(Duration span) {
+  if (priority_ > 0) {
+    real_time_ = io::request_realtime(priority_, false, io::read_realtime_limits()).priority > 0;
+    priority_ = 0;
+  }
   const TimePoint until = monotonic_now() + span;
+  Readable readable{.client_side = true, .server_side = true};
   for (;;) {
-    drain();
+    recording_on_ = recording.wanted.load(std::memory_order_acquire);
+    take_commands(monotonic_now());
+    drain(readable);
     const TimePoint now = monotonic_now();
-    release(now);
-    if (told_to_stop()) return false;
+    release(Direction::Up, now);
+    release(Direction::Down, now);
+    rebind_if_asked();
+    if (stopped_) return false;
     if (now >= until) return true;
-    rest(now, until);
+    if (now >= show_at_) show(now);
+    readable = rest(now, until);
   }
 }
 
@@ -66,78 +84,159 @@ RelayTraffic Relay::traffic(Direction direction) const {
   return traffic;
 }
 
-void Relay::drain() noexcept {
-  for (int batch = 0; batch < kBatchesPerDrain; ++batch) {
+void Relay::drain(Readable readable) noexcept {
+  for (int batch = 0; readable.client_side && batch < kBatchesPerDrain; ++batch) {
     const auto datagrams = client_side_.receive();
     if (datagrams.empty()) break;
-    for (const ReceivedDatagram& datagram : datagrams) {
-      up_.push(datagram.bytes, datagram.arrived_at);
-    }
-    client_ = datagrams.back().from;
+    client_ = client_side_.sender_of_last();
+    push(Direction::Up, datagrams);
+    if (datagrams.size() < kDatagramBatch) break;
   }
-  for (int batch = 0; batch < kBatchesPerDrain; ++batch) {
+  for (int batch = 0; readable.server_side && batch < kBatchesPerDrain; ++batch) {
     const auto datagrams = server_side_.receive();
-    if (datagrams.empty()) break;
-    for (const ReceivedDatagram& datagram : datagrams) {
-      down_.push(datagram.bytes, datagram.arrived_at);
-    }
+    push(Direction::Down, datagrams);
+    if (datagrams.size() < kDatagramBatch) break;
   }
 }
 
-void Relay::release(TimePoint now) noexcept {
-  release(Direction::Up, up_, now);
-  release(Direction::Down, down_, now);
+void Relay::push(Direction direction, std::span<const ReceivedDatagram> datagrams) noexcept {
+  Channel& channel = way(direction);
+  const std::uint8_t side = direction == Direction::Up ? 0 : 1;
+  for (const ReceivedDatagram& datagram : datagrams) {
+    const auto decisions = channel.push(datagram.bytes, datagram.arrived_at, datagram.tos);
+    if (!recording_on_) continue;
+    recording.decided(decisions, direction, channel.passage().decides_at_once());
+    recording.crossed(datagram.bytes, datagram.arrived_at, side, false, datagram.tos);
+  }
 }
 
-void Relay::release(Direction direction, Channel& channel, TimePoint now) noexcept {
-  RelayTraffic& traffic = traffic_[static_cast<std::size_t>(direction)];
+/// Changes whose time has come act on what arrives from now on.
+void Relay::take_commands(TimePoint now) {
+  RelayCommand command;
+  while (waiting_.size() < waiting_.capacity() && commands.try_dequeue(command)) {
+    waiting_.push_back(std::move(command));
+  }
+  for (std::size_t i = 0; i < waiting_.size();) {
+    if (waiting_[i].at > now) {
+      ++i;
+      continue;
+    }
+    way(waiting_[i].direction).apply(waiting_[i].change, now);
+    waiting_[i].at = now;
+    // What the change replaced is freed by the other thread, or here if it does not keep up.
+    (void)spent.try_enqueue(std::move(waiting_[i]));
+    waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
+/// Sends what is due, in batches: their bytes stay where they are until the next push.
+void Relay::release(Direction direction, TimePoint now) noexcept {
+  Channel& channel = way(direction);
+  DatagramSocket& socket = direction == Direction::Up ? server_side_ : client_side_;
+  const bool known = direction == Direction::Up || client_.has_value();
+  const io::Endpoint* to = direction == Direction::Down && client_ ? &*client_ : nullptr;
+  const std::uint8_t side = direction == Direction::Up ? 1 : 0;
   TimePoint before = now;
-  while (const auto released = channel.pop(buffer_, before + lead_)) {
-    const auto bytes = std::span<const std::byte>{buffer_}.first(released->size);
-    const bool sent = direction == Direction::Up ? server_side_.send(bytes, std::nullopt)
-                                                 : client_ && client_side_.send(bytes, client_);
-    const TimePoint after = monotonic_now();
-    if (sent) {
-      ++traffic.forwarded;
-      traffic.delay.record(after - released->arrived_at);
-      const Duration late = after - released->released_at;
-      traffic.release_error.record(late < Duration{} ? -late : late);
-      if (late > kLate) ++traffic.late_releases;
-      // A step up or down at each call ends where half of the calls take longer.
-      lead_ += after - before > lead_ ? kLeadStep : -kLeadStep;
-      lead_ = std::clamp(lead_, Duration{}, kLeadMax);
-    } else {
-      ++traffic.unsent;
+  for (;;) {
+    std::size_t count = 0;
+    while (count < kDatagramBatch) {
+      const auto popped = channel.pop_in_place(before + lead_);
+      if (!popped) break;
+      leaving_[count] = popped->decision;
+      outgoing_[count] = {popped->bytes, popped->decision.tos};
+      ++count;
     }
-    before = after;
+    if (count == 0) return;
+    const std::size_t sent = known ? socket.send(std::span{outgoing_}.first(count), to) : 0;
+    traffic_[static_cast<std::size_t>(direction)].unsent += count - sent;
+    account(direction, sent, before);
+    if (recording_on_) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!channel.passage().decides_at_once()) recording.left(leaving_[i], direction);
+        if (i < sent) {
+          recording.crossed(outgoing_[i].bytes, monotonic_now(), side, true, outgoing_[i].tos);
+        }
+      }
+    }
+    if (count < kDatagramBatch) return;
+    before = monotonic_now();
   }
 }
 
-/// Waits in the kernel until shortly before the next release, or returns at once to spin.
-void Relay::rest(TimePoint now, TimePoint until) noexcept {
-  TimePoint next = until;
+void Relay::account(Direction direction, std::size_t sent, TimePoint before) noexcept {
+  if (sent == 0) return;
+  RelayTraffic& traffic = traffic_[static_cast<std::size_t>(direction)];
+  const TimePoint after = monotonic_now();
+  traffic.forwarded += sent;
+  for (std::size_t i = 0; i < sent; ++i) {
+    traffic.delay.record(after - leaving_[i].arrived_at);
+    const Duration late = after - leaving_[i].released_at;
+    traffic.release_error.record(late < Duration{} ? -late : late);
+    if (late > kLate) ++traffic.late_releases;
+  }
+  // A step up or down at each call ends where half of the calls take longer.
+  const Duration each = (after - before) / static_cast<std::int64_t>(sent);
+  lead_ += each > lead_ ? kLeadStep : -kLeadStep;
+  lead_ = std::clamp(lead_, Duration{}, kLeadMax);
+}
+
+/// As a router that forgets a mapping: the server sees another port, and what it sends to the old
+/// one is lost.
+void Relay::rebind_if_asked() {
+  const std::uint64_t asked = up_.passage().rebinds() + down_.passage().rebinds();
+  if (asked == rebinds_) return;
+  rebinds_ = asked;
+  server_side_ = DatagramSocket::connected(forward_, datagram_max_);
+}
+
+/// Waits in the kernel until something arrives or shortly before the next release; then it looks
+/// without waiting, which is the spin.
+Relay::Readable Relay::rest(TimePoint now, TimePoint until) noexcept {
+  TimePoint next = std::min(until, now + kRestMax);
   if (const auto release = up_.next_release()) next = std::min(next, *release - lead_);
   if (const auto release = down_.next_release()) next = std::min(next, *release - lead_);
   if (real_time_ && now - awake_since_ > kAwakeMax) {
     const timespec nap = to_timespec(kNap);
     ::clock_nanosleep(CLOCK_MONOTONIC, 0, &nap, nullptr);
     awake_since_ = monotonic_now();
-    return;
+    return {.client_side = true, .server_side = true};
   }
-  if (next - now <= kSpin) return;
   std::array<pollfd, 3> watched{{{client_side_.descriptor(), POLLIN, 0},
                                  {server_side_.descriptor(), POLLIN, 0},
                                  {stop_descriptor_, POLLIN, 0}}};
-  const timespec wait = to_timespec(next - now - kSpin);
-  ::ppoll(watched.data(), watched.size(), &wait, nullptr);
-  const TimePoint woken = monotonic_now();
-  if (woken - now > kNap / 4) awake_since_ = woken;
+  const timespec wait = to_timespec(std::max(next - now - kSpin, Duration{}));
+  const int ready = ::ppoll(watched.data(), watched.size(), &wait, nullptr);
+  const bool slept = wait.tv_sec > 0 || wait.tv_nsec > 0;
+  if (slept) {
+    const TimePoint woken = monotonic_now();
+    if (woken - now > kNap / 4) awake_since_ = woken;
+  }
+  if (ready <= 0) return {};
+  stopped_ = (watched[2].revents & POLLIN) != 0;
+  return {.client_side = watched[0].revents != 0, .server_side = watched[1].revents != 0};
 }
 
-bool Relay::told_to_stop() const noexcept {
-  if (stop_descriptor_ < 0) return false;
-  pollfd watched{stop_descriptor_, POLLIN, 0};
-  return ::poll(&watched, 1, 0) > 0;
+void Relay::show(TimePoint now) noexcept {
+  show_at_ = now + kShowEvery;
+  RelayStatus shown;
+  shown.at = now;
+  if (client_) shown.client = *client_;
+  for (const Direction direction : {Direction::Up, Direction::Down}) {
+    const auto i = static_cast<std::size_t>(direction);
+    const Channel& channel = this->channel(direction);
+    const RelayTraffic& traffic = traffic_[i];
+    shown.ways[i] = {
+        .counters = channel.counters(),
+        .forwarded = traffic.forwarded,
+        .late_releases = traffic.late_releases,
+        .socket_errors = direction == Direction::Up ? server_side_.errors() : client_side_.errors(),
+        .changes = channel.passage().changes_applied(),
+        .in_flight = channel.in_flight(),
+        .delay_p50 = traffic.delay.quantile(0.5),
+        .delay_p99 = traffic.delay.quantile(0.99),
+        .error_p99 = traffic.release_error.quantile(0.99)};
+  }
+  status.put(shown);
 }
 
 }  // namespace palp::netem

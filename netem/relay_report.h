@@ -10,8 +10,8 @@ namespace palp::netem {
 /// What the report says beside the relay's own numbers.
 struct RelayRun {
   std::string preset;  ///< empty: none
-  Impairment up;
-  Impairment down;
+  std::string up;      ///< the words in force at the start
+  std::string down;
   std::uint64_t seed{};
   io::Endpoint forward;
   Duration duration{};
@@ -22,5 +22,12 @@ struct RelayRun {
 
 /// Two lines for people.
 [[nodiscard]] std::string relay_summary(const Relay& relay);
+
+/// One line for people while it runs, and the same as one line of JSON.
+[[nodiscard]] std::string status_line(const RelayStatus& status, TimePoint start);
+[[nodiscard]] std::string status_json(const RelayStatus& status, TimePoint start);
+
+/// {"error": "..."}
+[[nodiscard]] std::string error_line(const std::string& sentence);
 
 }  // namespace palp::netem

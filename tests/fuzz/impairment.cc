@@ -1,9 +1,9 @@
-// Input: an impairment as text, and the text of a profile.
+// Input: an impairment as text, the text of a timeline, and a line of live control.
 #include "netem/impairment.h"
 
 #include "common/core/check.h"
 #include "netem/fate.h"
-#include "netem/presets.h"
+#include "netem/timeline.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace palp::netem {
@@ -78,13 +78,22 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   } else {
     PALP_CHECK(!impairment.error().text.empty(), "a refusal says why");
   }
-  if (const auto preset = palp::netem::parse_preset("fuzz", text)) {
-    for (const auto& direction : {preset->up, preset->down}) {
-      palp::netem::limits(direction);
-      palp::netem::round_trip(direction);
+  const auto no_preset = [](const std::string&) -> palp::Result<palp::netem::Timeline> {
+    return palp::fail("no preset");
+  };
+  if (const auto timeline =
+          palp::netem::parse_timeline("fuzz", text, no_preset, palp::netem::any_file)) {
+    for (const auto& plan : {timeline->up, timeline->down}) {
+      palp::netem::limits(plan.impairment);
+      for (const auto& change : plan.changes) palp::netem::limits(change.impairment);
     }
   } else {
-    PALP_CHECK(!preset.error().text.empty(), "a refusal says why");
+    PALP_CHECK(!timeline.error().text.empty(), "a refusal says why");
+  }
+  if (const auto request = palp::netem::parse_control_line(text, {}, palp::netem::any_file)) {
+    palp::netem::limits(request->change_up.impairment);
+  } else {
+    PALP_CHECK(!request.error().text.empty(), "a refusal says why");
   }
   return 0;
 }

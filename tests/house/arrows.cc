@@ -121,7 +121,8 @@ const std::vector<std::string_view>& protobuf_files() {
                                                    "common/settings/*.cc",
                                                    "surgeon_site/settings*.cc",
                                                    "patient_site/settings*.cc",
-                                                   "lab/scenario*.cc"};
+                                                   "lab/scenario*.cc",
+                                                   "netem/timeline.cc"};
   return files;
 }
 

@@ -33,8 +33,8 @@ inline void hear(DatagramSocket& socket, Heard& heard) {
       std::uint32_t number = 0;
       std::memcpy(&number, datagram.bytes.data(), sizeof number);
       heard.numbers.push_back(number);
-      heard.from = datagram.from;
     }
+    heard.from = socket.sender_of_last();
   }
 }
 

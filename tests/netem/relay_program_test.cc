@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "netem/relay_report.h"
+#include "tests/netem/control_line.h"
 #include "tests/netem/datagrams.h"
 #include "tests/system/process.h"
 
@@ -113,6 +114,62 @@ TEST_F(RelayProgramTest, PassesBetweenTheFamiliesOfAddresses) {
   EXPECT_THAT(program.output(), HasSubstr("listening on [::1]:"));
 }
 
+TEST_F(RelayProgramTest, SimulatesIntoACsv) {
+  const std::string csv = folder_ + "/decisions.csv";
+  Process program = start({"simulate",
+                           "--spec",
+                           "delay 10ms rate 2mbit",
+                           "--packets",
+                           "20",
+                           "--interval-us",
+                           "1000",
+                           "--burst",
+                           "10",
+                           "--mode",
+                           "netem-6.1",
+                           "--seed",
+                           "5",
+                           "--direction",
+                           "down",
+                           "--csv",
+                           csv});
+  EXPECT_EQ(program.wait(kLimit), 0) << program.output();
+  std::ifstream file{csv};
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "index,sent_ns,arrived_ns,copy,verdict,flipped_bit");
+  std::getline(file, line);
+  EXPECT_EQ(line, "0,0,10568000,0,delivered,");
+  for (int i = 0; i < 10; ++i) std::getline(file, line);
+  EXPECT_EQ(line, "10,10000000,20568000,0,delivered,");
+}
+
+TEST_F(RelayProgramTest, SimulateRefusesWithTheColumn) {
+  Process program = start({"simulate", "--spec", "delay 10ms los 5x%", "--packets", "20"});
+  EXPECT_EQ(program.wait(kLimit), 2);
+  EXPECT_THAT(program.output(), HasSubstr("column 16"));
+}
+
+TEST_F(RelayProgramTest, FollowsATimelineAndItsControl) {
+  const std::string timeline = folder_ + "/day.textproto";
+  std::ofstream{timeline} << "event { set: \"delay 1ms\" }\n";
+  Process program =
+      start_relay({"--timeline", timeline, "--control", "127.0.0.1:0", "--report", report_path()});
+  const TimePoint until = monotonic_now() + kDeadline;
+  std::string address;
+  while (monotonic_now() < until && program.output().find("\ndown ") == std::string::npos) {
+  }
+  const std::string output = program.output();
+  const std::size_t at = output.find("control on ") + 11;
+  address = output.substr(at, output.find('\n', at) - at);
+  EXPECT_THAT(ask(address, "{\"set\":\"delay 5ms\"}"), HasSubstr("applied_at_s"));
+  EXPECT_THAT(ask(address, "{\"set\":\"delay 5minutes\"}"), HasSubstr("column 7"));
+  EXPECT_THAT(ask(address, "{\"stats\":true}"), HasSubstr("\"up\":{\"sent\":0"));
+  EXPECT_THAT(ask(address, "{\"quit\":true}"), HasSubstr("quit"));
+  EXPECT_EQ(program.wait(kLimit), 0) << program.output();
+  EXPECT_EQ(nlohmann::json::parse(std::ifstream{report_path()})["down"]["changes_applied"], 1);
+}
+
 TEST_F(RelayProgramTest, HelpExplainsTheWordsOfAnImpairment) {
   Process program = start({"relay", "--help"});
   EXPECT_EQ(program.wait(kLimit), 0);
@@ -131,6 +188,7 @@ TEST_F(RelayProgramTest, BadInputIsExitCode2AndASentence) {
        std::vector<std::vector<std::string>>{{"--spec", "delay 5minutes"},
                                              {"--up", "loss 200%"},
                                              {"--preset", "moon"},
+                                             {"--timeline", "no such file"},
                                              {"--rtt-ms", "-1"},
                                              {"--loss", "1.5"},
                                              {"--loss", "101%"},

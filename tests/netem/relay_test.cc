@@ -25,8 +25,8 @@ class RelayTest : public ::testing::Test {
   Relay relay(std::string_view up, std::string_view down = "none") {
     return Relay{{.listen = kAnyPort,
                   .forward = server_.local(),
-                  .up = impaired(up),
-                  .down = impaired(down),
+                  .up = {.impairment = impaired(up)},
+                  .down = {.impairment = impaired(down)},
                   .in_flight_max = 1024}};
   }
   /// Lets the relay work until `socket` has heard `count` datagrams or the deadline has passed.
