@@ -11,7 +11,7 @@ namespace palp::house {
 namespace {
 
 /// Rooms, the longer name first where one lies in another.
-constexpr std::array<std::string_view, 18> kRooms{"common/core",
+constexpr std::array<std::string_view, 19> kRooms{"common/core",
                                                   "common/coupling",
                                                   "common/link",
                                                   "common/config",
@@ -20,6 +20,7 @@ constexpr std::array<std::string_view, 18> kRooms{"common/core",
                                                   "common/io",
                                                   "common/site_program",
                                                   "netem",
+                                                  "fem",
                                                   "surgeon_site/devices",
                                                   "surgeon_site",
                                                   "patient_site/devices",
@@ -53,6 +54,9 @@ const std::vector<Arrow>& arrows() {
       {"netem/datagram_socket.*", {"common/link/transport.h", "common/io"}},
       {"netem/main.cc", {"common/link/transport.h", "common/io", "common/config"}},
       {"netem/*", {"common/link/transport.h"}},
+      {"fem/main.cc", {"common/config"}},
+      {"fem/*_command.*", {"common/config"}},
+      {"fem/*", {}},
       // A site: main puts it together, settings reads its configuration, devices are adapters.
       {"surgeon_site/main.cc",
        {"surgeon_site/devices",
@@ -122,7 +126,8 @@ const std::vector<std::string_view>& protobuf_files() {
                                                    "surgeon_site/settings*.cc",
                                                    "patient_site/settings*.cc",
                                                    "lab/scenario*.cc",
-                                                   "netem/timeline.cc"};
+                                                   "netem/timeline.cc",
+                                                   "fem/depth_table.cc"};
   return files;
 }
 
@@ -139,7 +144,9 @@ const std::vector<Fence>& fences() {
       {"readerwriterqueue/", {"common/core/spsc_queue.h"}},
       // link answers with reasons of its own, not with sentences.
       {"tl/expected.hpp", {"common/core/result.h"}},
-      {"nlohmann/", {"common/site_program/*.cc", "netem/*.cc", "lab/*.cc", "review/*.cc"}},
+      {"nlohmann/",
+       {"common/site_program/*.cc", "netem/*.cc", "lab/*.cc", "review/*.cc", "fem/*_command.cc"}},
+      {"Eigen/", {"fem/*"}},
       {"gtest/", {}},
       {"gmock/", {}},
       {"rapidcheck", {}},

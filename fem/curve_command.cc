@@ -1,0 +1,157 @@
+#include "fem/curve_command.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "common/config/number.h"
+#include "common/config/report.h"
+#include "common/core/conventions.h"
+#include "fem/vtu.h"
+
+namespace palp::fem {
+namespace {
+
+using config::Ending;
+using config::ExitCode;
+
+constexpr std::size_t kRowsMax = 1000;
+
+std::vector<std::string> split(const std::string& text, char mark) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == mark) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+Ending bad_input(const std::string& sentence) {
+  return {ExitCode::BadInput, "palp-fem: " + sentence};
+}
+
+}  // namespace
+
+void declare_curve(config::CommandLine& line, CurveFlags& flags) {
+  // What can be solved is for check() to say, in one place; flags only are numbers.
+  const auto length = [&](const char* flag, double& value, const char* meaning) {
+    line.number(flag, value, {.min = -1e6, .max = 1e6, .unit = "mm"}, meaning);
+  };
+  const auto plain = [&](const char* flag, double& value, const char* meaning) {
+    line.number(flag, value, {.min = -1e9, .max = 1e9}, meaning);
+  };
+  line.choice("--shape", flags.shape, {"ball", "cylinder", "column", "none"}, "of the inclusion");
+  length("--depth-mm", flags.depth_mm, "of the inclusion's top below the surface");
+  length("--radius-mm", flags.radius_mm, "of the inclusion");
+  length("--cylinder-height-mm", flags.cylinder_height_mm, "of a cylinder");
+  plain("--ratio", flags.ratio, "Young's modulus of the inclusion over that of the block");
+  plain("--inclusion-poisson", flags.inclusion_poisson, "below 0.5");
+  line.number("--youngs-modulus-kpa",
+              flags.youngs_modulus_kpa,
+              {.min = -1e12, .max = 1e12, .unit = "kPa"},
+              "of the block");
+  plain("--poisson", flags.poisson, "of the block, below 0.5");
+  length("--half-width-mm", flags.half_width_mm, "of the block");
+  length("--height-mm", flags.height_mm, "of the block, bonded at its base");
+  length("--indenter-radius-mm", flags.indenter_radius_mm, "of the rigid sphere");
+  line.choice("--model", flags.model, {"l1", "neo"}, "small strain, or finite neo-Hookean");
+  line.text("--indentations-mm", flags.indentations_mm, "LIST", "0.5,1,2 or from:to:step");
+  line.choice("--accuracy", flags.accuracy, {"normal", "fine"}, "of the mesh");
+  line.text("--csv", flags.csv, "FILE", "rows d_mm,F_N,contact_radius_mm,err_N");
+  line.text("--vtu", flags.vtu, "FILE", "deformed section at the largest indentation");
+}
+
+Result<std::vector<double>> parse_indentations(const std::string& text) {
+  const auto wrong = [&](const std::string& part) {
+    return fail("--indentations-mm is \"" + config::printable(text) + "\": \"" +
+                config::printable(part) + "\" is no number, expected 0.5,1,2 or from:to:step");
+  };
+  std::vector<double> values;
+  const std::vector<std::string> range = split(text, ':');
+  for (const std::string& part : range.size() == 3 ? range : split(text, ',')) {
+    const auto value = config::parse_number(part);
+    if (!value || !(std::abs(*value) < 1e6)) return wrong(part);
+    values.push_back(*value * kMillimetre);
+  }
+  if (range.size() != 3) {
+    if (values.size() > kRowsMax) return fail("--indentations-mm: expected at most 1000 values");
+    return values;
+  }
+  const double from = values[0];
+  const double step = values[2];
+  if (!(step > 0) || !(values[1] >= from)) {
+    return fail("--indentations-mm is \"" + config::printable(text) +
+                "\", expected from:to:step with from <= to and step > 0");
+  }
+  const double count = std::floor((values[1] - from) / step + 1e-6) + 1;
+  if (!(count <= static_cast<double>(kRowsMax))) {
+    return fail("--indentations-mm: expected at most 1000 values");
+  }
+  std::vector<double> out;
+  for (int i = 0; i < static_cast<int>(count); ++i) out.push_back(from + i * step);
+  return out;
+}
+
+Result<CurveRequest> curve_request(const CurveFlags& flags) {
+  auto indentations = parse_indentations(flags.indentations_mm);
+  if (!indentations) return tl::unexpected<Error>(indentations.error());
+  CurveRequest request;
+  Specimen& specimen = request.specimen;
+  specimen.block = {.half_width = flags.half_width_mm * kMillimetre,
+                    .height = flags.height_mm * kMillimetre,
+                    .youngs_modulus = flags.youngs_modulus_kpa * 1e3,
+                    .poisson = flags.poisson};
+  specimen.inclusion = {.shape = InclusionShape::None,
+                        .depth = flags.depth_mm * kMillimetre,
+                        .radius = flags.radius_mm * kMillimetre,
+                        .height = flags.cylinder_height_mm * kMillimetre,
+                        .ratio = flags.ratio,
+                        .poisson = flags.inclusion_poisson};
+  for (const InclusionShape shape :
+       {InclusionShape::Ball, InclusionShape::Cylinder, InclusionShape::Column}) {
+    if (flags.shape == to_string(shape)) specimen.inclusion.shape = shape;
+  }
+  specimen.indenter.radius = flags.indenter_radius_mm * kMillimetre;
+  request.model = flags.model == "l1" ? Model::Linear : Model::NeoHookean;
+  request.accuracy = flags.accuracy == "fine" ? Accuracy::Fine : Accuracy::Normal;
+  request.indentations = std::move(*indentations);
+  return request;
+}
+
+std::string csv_text(const std::vector<CurveRow>& rows) {
+  std::string text = "d_mm,F_N,contact_radius_mm,err_N\n";
+  for (const CurveRow& row : rows) {
+    char line[128];
+    std::snprintf(line,
+                  sizeof line,
+                  "%.9g,%.9g,%.9g,%.9g\n",
+                  row.indentation / kMillimetre,
+                  row.force,
+                  row.contact_radius / kMillimetre,
+                  row.error);
+    text += line;
+  }
+  return text;
+}
+
+Ending run_curve(const CurveFlags& flags) {
+  const auto request = curve_request(flags);
+  if (!request) return bad_input(request.error().text);
+  const auto curve = solve_curve(*request);
+  if (!curve) return bad_input(curve.error().text);
+  const std::string text = csv_text(curve->rows);
+  if (!flags.vtu.empty()) {
+    const auto written =
+        config::write_whole_file(flags.vtu, vtu_text(*curve, request->specimen, request->model));
+    if (!written) return {ExitCode::CannotOpen, "palp-fem: " + written.error().text};
+  }
+  if (flags.csv.empty()) return {ExitCode::Done, text};
+  if (const auto written = config::write_whole_file(flags.csv, text); !written) {
+    return {ExitCode::CannotOpen, "palp-fem: " + written.error().text};
+  }
+  return {ExitCode::Done, ""};
+}
+
+}  // namespace palp::fem

@@ -1,0 +1,249 @@
+#include "fem/database_command.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "common/config/number.h"
+#include "common/config/report.h"
+#include "common/config/settings_text.h"
+#include "common/core/conventions.h"
+#include "fem/database_builder.h"
+#include "fem/depth_table.h"
+
+namespace palp::fem {
+namespace {
+
+using config::Ending;
+using config::ExitCode;
+
+constexpr int kSaveEvery = 4;  // cells
+
+struct Shard {
+  std::size_t index{};  ///< from 0
+  std::size_t count{1};
+};
+
+Ending bad_input(const std::string& sentence) {
+  return {ExitCode::BadInput, "palp-fem: " + sentence};
+}
+Ending cannot_open(const std::string& sentence) {
+  return {ExitCode::CannotOpen, "palp-fem: " + sentence};
+}
+
+Result<Shard> parse_shard(const std::string& text) {
+  if (text.empty()) return Shard{};
+  const auto slash = text.find('/');
+  const auto index = config::parse_whole(text.substr(0, slash));
+  const auto count =
+      slash == std::string::npos ? std::nullopt : config::parse_whole(text.substr(slash + 1));
+  if (!index || !count || *index < 1 || *index > *count || *count > 10'000) {
+    return fail("--shard is \"" + config::printable(text) + "\", expected i/n with 1 <= i <= n");
+  }
+  return Shard{static_cast<std::size_t>(*index - 1), static_cast<std::size_t>(*count)};
+}
+
+Result<DepthTable> load(const std::string& path) {
+  const auto bytes = config::read_whole_file(path);
+  if (!bytes) return tl::unexpected<Error>(bytes.error());
+  auto table = parse_table(*bytes);
+  if (!table) return fail(path + ": " + table.error().text);
+  return table;
+}
+
+auto place(const GridCell& cell) { return std::tuple{cell.shape, cell.depth, cell.radius}; }
+
+/// One process: the cells of its share that `table` lacks.
+Result<void> solve_share(DepthTable table,
+                         const Shard& shard,
+                         const std::string& path,
+                         bool show_progress) {
+  std::set<std::tuple<InclusionShape, std::uint32_t, std::uint32_t>> have;
+  for (const DepthMember& member : table.members) {
+    have.insert({member.shape, member.depth, member.radius});
+  }
+  std::vector<GridCell> mine;
+  const std::vector<GridCell> cells = cells_of(table.grid);
+  for (std::size_t i = shard.index; i < cells.size(); i += shard.count) mine.push_back(cells[i]);
+  int unsaved = 0;
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    if (have.contains(place(mine[i]))) continue;
+    for (DepthMember& member : solve_cell(table.grid, mine[i])) {
+      table.members.push_back(std::move(member));
+    }
+    if (show_progress) {
+      std::fprintf(stderr, "\rpalp-fem: %3zu %% of the grid", 100 * (i + 1) / mine.size());
+    }
+    if (++unsaved < kSaveEvery && i + 1 < mine.size()) continue;
+    unsaved = 0;
+    const auto written = config::write_whole_file(path, table_bytes(table));
+    if (!written) return tl::unexpected<Error>(written.error());
+  }
+  if (show_progress) std::fputs("\n", stderr);
+  return {};
+}
+
+std::string part_name(const std::string& out, std::size_t core) {
+  return out + ".part" + std::to_string(core);
+}
+
+/// Everything found so far: the file itself and what the processes of an earlier run left.
+Result<DepthTable> start_table(const DatabaseFlags& flags) {
+  DepthTable table;
+  table.grid = default_grid();
+  table.made_by = "palp-fem database, model neo, coarse mesh relative to its own plain block";
+  for (std::size_t core = 0; core <= flags.cores; ++core) {
+    const std::string name = core == 0 ? flags.out : part_name(flags.out, core - 1);
+    if (::access(name.c_str(), F_OK) != 0) continue;
+    auto found = load(name);
+    if (!found) return found;
+    if (auto merged = merge_table(table, *found); !merged) {
+      return fail(name + ": " + merged.error().text + " than asked for; remove it first");
+    }
+    if (table.plain.empty()) table.plain = found->plain;
+  }
+  if (!table.plain.empty()) return table;
+  auto plain = solve_plain(table.grid);
+  if (!plain) return tl::unexpected<Error>(plain.error());
+  table.plain = *plain;
+  return table;
+}
+
+Result<void> solve_on_all_cores(const DepthTable& table,
+                                const Shard& shard,
+                                const DatabaseFlags& flags) {
+  std::vector<pid_t> children;
+  for (std::size_t core = 0; core < flags.cores; ++core) {
+    const pid_t child = ::fork();
+    if (child < 0) return fail("cannot start a process for each core");
+    if (child > 0) {
+      children.push_back(child);
+      continue;
+    }
+    const Shard share{shard.index + shard.count * core, shard.count * flags.cores};
+    const auto done = solve_share(table, share, part_name(flags.out, core), core == 0);
+    if (!done) std::fprintf(stderr, "palp-fem: %s\n", done.error().text.c_str());
+    std::_Exit(done ? 0 : 1);
+  }
+  bool all = true;
+  for (const pid_t child : children) {
+    int status = 0;
+    all &= ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  }
+  if (!all) return fail("a process ended before its share was done; start again to go on");
+  return {};
+}
+
+nlohmann::ordered_json describe(const DepthTable& table) {
+  const DepthGrid& grid = table.grid;
+  nlohmann::ordered_json out;
+  out["schema"] = "palp.depth-database/1";
+  out["model"] = table.model;
+  out["made_by"] = table.made_by;
+  out["youngs_modulus_kpa"] = grid.block.youngs_modulus / 1e3;
+  out["poisson"] = grid.block.poisson;
+  out["half_width_mm"] = grid.block.half_width / kMillimetre;
+  out["height_mm"] = grid.block.height / kMillimetre;
+  out["indenter_radius_mm"] = grid.indenter_radius / kMillimetre;
+  out["depth_mm"] = {grid.depths.front() / kMillimetre, grid.depths.back() / kMillimetre};
+  out["radius_mm"] = {grid.radii.front() / kMillimetre, grid.radii.back() / kMillimetre};
+  out["ratio"] = {grid.ratios.front(), grid.ratios.back()};
+  out["indentation_max_mm"] = grid.indentations.back() / kMillimetre;
+  out["members"] = table.members.size();
+  out["members_wanted"] = cells_of(grid).size() * grid.ratios.size();
+  out["checked_count"] = table.checked_count;
+  out["checked_rms_share"] = table.checked_rms;
+  out["checked_max_share"] = table.checked_max;
+  return out;
+}
+
+Ending tell(const DepthTable& table, const std::string& report) {
+  const std::string text = describe(table).dump(2) + "\n";
+  if (!report.empty()) {
+    if (const auto written = config::write_whole_file(report, text); !written) {
+      return cannot_open(written.error().text);
+    }
+  }
+  return {ExitCode::Done, text};
+}
+
+Ending save(const DepthTable& table, const DatabaseFlags& flags) {
+  if (const auto written = config::write_whole_file(flags.out, table_bytes(table)); !written) {
+    return cannot_open(written.error().text);
+  }
+  return tell(table, flags.report);
+}
+
+}  // namespace
+
+void declare_database(config::CommandLine& line, DatabaseFlags& flags) {
+  line.text("--out", flags.out, "FILE", "the database; an unfinished one is completed");
+  line.text("--shard", flags.shard, "i/n", "one share of the grid; merge puts them together");
+  line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "processes at a time");
+  line.text("--report", flags.report, "FILE", "JSON report");
+}
+
+void declare_merge(config::CommandLine& line, DatabaseFlags& flags) {
+  line.text("--out", flags.out, "FILE", "the database");
+  line.text("--report", flags.report, "FILE", "JSON report");
+  line.arguments("FILE", flags.files, "databases of one grid");
+}
+
+void declare_info(config::CommandLine& line, DatabaseFlags& flags) {
+  line.text("--report", flags.report, "FILE", "JSON report");
+  line.argument("FILE", flags.file, "a database");
+  line.required();
+}
+
+Ending run_database(const DatabaseFlags& flags) {
+  const auto shard = parse_shard(flags.shard);
+  if (!shard) return bad_input(shard.error().text);
+  auto table = start_table(flags);
+  if (!table) return bad_input(table.error().text);
+  if (const auto done = solve_on_all_cores(*table, *shard, flags); !done) {
+    return cannot_open(done.error().text);
+  }
+  for (std::size_t core = 0; core < flags.cores; ++core) {
+    const std::string name = part_name(flags.out, core);
+    if (::access(name.c_str(), F_OK) != 0) continue;
+    const auto part = load(name);
+    if (!part) return bad_input(part.error().text);
+    if (auto merged = merge_table(*table, *part); !merged) return bad_input(merged.error().text);
+  }
+  const Ending ending = save(*table, flags);
+  for (std::size_t core = 0; core < flags.cores; ++core) {
+    static_cast<void>(std::remove(part_name(flags.out, core).c_str()));
+  }
+  return ending;
+}
+
+Ending run_merge(const DatabaseFlags& flags) {
+  std::optional<DepthTable> table;
+  for (const std::string& name : flags.files) {
+    auto found = load(name);
+    if (!found) return bad_input(found.error().text);
+    if (!table) {
+      table = std::move(*found);
+      continue;
+    }
+    if (auto merged = merge_table(*table, *found); !merged) {
+      return bad_input(name + ": " + merged.error().text);
+    }
+  }
+  return save(*table, flags);
+}
+
+Ending run_info(const DatabaseFlags& flags) {
+  const auto table = load(flags.file);
+  if (!table) return bad_input(table.error().text);
+  return tell(*table, flags.report);
+}
+
+}  // namespace palp::fem

@@ -1,0 +1,37 @@
+// palp-fem: the finite element solver of indented phantoms as a program.
+#include <exception>
+
+#include "common/config/command_line.h"
+#include "fem/curve_command.h"
+#include "fem/database_command.h"
+
+namespace palp::fem {
+namespace {
+
+int run(int argc, char** argv) {
+  config::CommandLine line{"palp-fem", "Force of a round tip pressed into a block."};
+  CurveFlags curve;
+  declare_curve(line.verb("curve", "one force-indentation curve"), curve);
+  DatabaseFlags database;
+  declare_database(line.verb("database", "solve the depth database"), database);
+  declare_merge(line.verb("merge", "put databases of one grid together"), database);
+  declare_info(line.verb("info", "what a database holds"), database);
+  if (const auto ending = line.parse(argc, argv)) return leave(*ending);
+  const std::string verb = line.chosen_verb();
+  if (verb == "database") return leave(run_database(database));
+  if (verb == "merge") return leave(run_merge(database));
+  if (verb == "info") return leave(run_info(database));
+  return leave(run_curve(curve));
+}
+
+}  // namespace
+}  // namespace palp::fem
+
+int main(int argc, char** argv) {
+  try {
+    return palp::fem::run(argc, argv);
+  } catch (const std::exception& error) {
+    return palp::config::leave(
+        {palp::config::ExitCode::CannotOpen, std::string{"palp-fem: "} + error.what()});
+  }
+}

@@ -1,0 +1,88 @@
+#include "fem/depth_table.h"
+
+#include <gtest/gtest.h>
+
+#include "fem/database_builder.h"
+#include "fem/database_command.h"
+
+namespace palp::fem {
+namespace {
+
+DepthTable small_table() {
+  DepthTable table;
+  table.grid.depths = {5e-3, 10e-3};
+  table.grid.radii = {5e-3, 8e-3};
+  table.grid.ratios = {10, 100};
+  table.grid.indentations = {1e-3, 2e-3};
+  table.plain = {0.06, 0.16};
+  table.members = {{InclusionShape::Ball, 0, 1, 0, {0.1F, 0.2F}},
+                   {InclusionShape::Cylinder, 1, 0, 1, {0.3F}}};
+  return table;
+}
+
+TEST(DepthTableTest, ComesBackFromItsBytes) {
+  const DepthTable table = small_table();
+  const auto back = parse_table(table_bytes(table));
+  ASSERT_TRUE(back) << back.error().text;
+  EXPECT_TRUE(back->grid == table.grid);
+  ASSERT_EQ(back->members.size(), 2U);
+  EXPECT_EQ(back->members[0].excess, table.members[0].excess);
+  EXPECT_EQ(table_bytes(*back), table_bytes(table));
+}
+
+TEST(DepthTableTest, RefusesWhatIsTruncatedForeignOrDamaged) {
+  const std::string bytes = table_bytes(small_table());
+  for (const std::size_t length :
+       {std::size_t{0}, std::size_t{7}, std::size_t{15}, bytes.size() - 1}) {
+    EXPECT_FALSE(parse_table(bytes.substr(0, length))) << length;
+  }
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    std::string damaged = bytes;
+    damaged[i] = static_cast<char>(damaged[i] ^ 4);
+    EXPECT_FALSE(parse_table(damaged)) << i;
+  }
+}
+
+TEST(DepthTableTest, RefusesAMemberTwiceOrOutsideTheGrid) {
+  DepthTable twice = small_table();
+  twice.members.push_back(twice.members[0]);
+  EXPECT_FALSE(parse_table(table_bytes(twice)));
+  DepthTable outside = small_table();
+  outside.members[0].radius = 2;
+  EXPECT_FALSE(parse_table(table_bytes(outside)));
+  DepthTable falling = small_table();
+  falling.grid.depths = {10e-3, 5e-3};
+  EXPECT_FALSE(parse_table(table_bytes(falling)));
+}
+
+TEST(DepthTableTest, MergeKeepsBothAndRefusesAnotherGrid) {
+  DepthTable one = small_table();
+  DepthTable other = small_table();
+  other.members[0].ratio = 1;
+  ASSERT_TRUE(merge_table(one, other));
+  EXPECT_EQ(one.members.size(), 3U);
+  other.grid.block.poisson = 0.4;
+  EXPECT_FALSE(merge_table(one, other));
+}
+
+TEST(DatabaseBuilderTest, LeavesOutWhatDoesNotFit) {
+  const DepthGrid grid = default_grid();
+  const auto cells = cells_of(grid);
+  EXPECT_LT(cells.size(), 2 * grid.depths.size() * grid.radii.size());
+  for (const GridCell& cell : cells) {
+    EXPECT_LT(grid.depths[cell.depth] + 2 * grid.radii[cell.radius], grid.block.height);
+  }
+  EXPECT_NEAR(indentation_limit(grid, 3e-3), 2.4e-3, 1e-6);
+  EXPECT_NEAR(indentation_limit(grid, 20e-3), 5e-3, 1e-12);
+}
+
+TEST(DatabaseCommandTest, SaysWhatIsWrong) {
+  DatabaseFlags flags;
+  flags.shard = "3/2";
+  EXPECT_EQ(run_database(flags).code, config::ExitCode::BadInput);
+  flags.file = "/nonexistent";
+  EXPECT_EQ(run_info(flags).code, config::ExitCode::BadInput);
+}
+
+}  // namespace
+}  // namespace palp::fem
