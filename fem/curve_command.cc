@@ -6,6 +6,7 @@
 #include "common/config/number.h"
 #include "common/config/report.h"
 #include "common/core/conventions.h"
+#include "common/core/printable.h"
 #include "fem/vtu.h"
 
 namespace palp::fem {
@@ -65,8 +66,8 @@ void declare_curve(config::CommandLine& line, CurveFlags& flags) {
 
 Result<std::vector<double>> parse_indentations(const std::string& text) {
   const auto wrong = [&](const std::string& part) {
-    return fail("--indentations-mm is \"" + config::printable(text) + "\": \"" +
-                config::printable(part) + "\" is no number, expected 0.5,1,2 or from:to:step");
+    return fail("--indentations-mm is \"" + printable(text) + "\": \"" + printable(part) +
+                "\" is no number, expected 0.5,1,2 or from:to:step");
   };
   std::vector<double> values;
   const std::vector<std::string> range = split(text, ':');
@@ -82,7 +83,7 @@ Result<std::vector<double>> parse_indentations(const std::string& text) {
   const double from = values[0];
   const double step = values[2];
   if (!(step > 0) || !(values[1] >= from)) {
-    return fail("--indentations-mm is \"" + config::printable(text) +
+    return fail("--indentations-mm is \"" + printable(text) +
                 "\", expected from:to:step with from <= to and step > 0");
   }
   const double count = std::floor((values[1] - from) / step + 1e-6) + 1;

@@ -13,10 +13,10 @@ struct CurveFlags {
   double depth_mm{10};
   double radius_mm{15};
   double cylinder_height_mm{20};
-  double ratio{Inclusion{}.ratio};
-  double inclusion_poisson{0.49};
-  double youngs_modulus_kpa{15.3};
-  double poisson{0.49};
+  double ratio{Inclusion{}.ratio};  ///< [-]
+  double inclusion_poisson{0.49};   ///< [-]
+  double youngs_modulus_kpa{15.3};  ///< [kPa]
+  double poisson{0.49};             ///< [-]
   double half_width_mm{45};
   double height_mm{57};
   double indenter_radius_mm{5};

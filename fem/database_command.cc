@@ -15,6 +15,7 @@
 #include "common/config/report.h"
 #include "common/config/settings_text.h"
 #include "common/core/conventions.h"
+#include "common/core/printable.h"
 #include "fem/database_builder.h"
 #include "fem/depth_table.h"
 
@@ -45,7 +46,7 @@ Result<Shard> parse_shard(const std::string& text) {
   const auto count =
       slash == std::string::npos ? std::nullopt : config::parse_whole(text.substr(slash + 1));
   if (!index || !count || *index < 1 || *index > *count || *count > 10'000) {
-    return fail("--shard is \"" + config::printable(text) + "\", expected i/n with 1 <= i <= n");
+    return fail("--shard is \"" + printable(text) + "\", expected i/n with 1 <= i <= n");
   }
   return Shard{static_cast<std::size_t>(*index - 1), static_cast<std::size_t>(*count)};
 }

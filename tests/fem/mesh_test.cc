@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "fem/element.h"
+#include "fem/mesh_sizes.h"
 
 namespace palp::fem {
 namespace {
@@ -69,6 +70,16 @@ TEST(MeshTest, SurfaceRunsFromTheAxisToTheSide) {
   for (std::size_t i = 1; i < mesh.surface.size(); ++i) {
     EXPECT_EQ(mesh.surface[i][0], mesh.surface[i - 1][2]);
   }
+}
+
+TEST(MeshTest, FinerSettingsHaveSmallerElementsAndMoreRows) {
+  const MeshSizes coarse{Accuracy::Coarse};
+  const MeshSizes normal{Accuracy::Normal};
+  const MeshSizes fine{Accuracy::Fine};
+  EXPECT_GT(coarse.contact, normal.contact);
+  EXPECT_DOUBLE_EQ(normal.contact, 2 * fine.contact);
+  EXPECT_LT(normal.rows, fine.rows);
+  for (const auto& sizes : {coarse, normal, fine}) EXPECT_EQ(sizes.side % 2, 0);
 }
 
 }  // namespace
