@@ -4,14 +4,18 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/config/command_line.h"
 #include "common/config/exit_code.h"
 #include "common/config/report.h"
+#include "common/io/parallel.h"
 #include "common/io/process_time.h"
+#include "lab/plan.h"
 #include "lab/run_report.h"
 #include "lab/scenario_file.h"
 #include "lab/trial.h"
+#include "lab/verbs.h"
 
 namespace palp::lab {
 namespace {
@@ -26,6 +30,7 @@ struct Arguments {
   std::string phantom;
   std::string report;
   std::string session_files;
+  std::string trace;
   bool bare{};
 };
 
@@ -88,7 +93,18 @@ Ending run(const Arguments& arguments) {
         config::write_whole_file(arguments.report, run_report(*scenario, result, account));
     if (!written) return {ExitCode::CannotOpen, "palp-lab: " + written.error().text};
   }
+  if (!arguments.trace.empty()) {
+    const auto written = config::write_whole_file(arguments.trace, trace_csv(result));
+    if (!written) return {ExitCode::CannotOpen, "palp-lab: " + written.error().text};
+  }
   return {ExitCode::Done, run_summary(*scenario, result, account)};
+}
+
+Machine machine() {
+  return {.processors = io::processors(), .for_each_index = io::for_each_index, .used = [] {
+            const io::ProcessTime used = io::process_time();
+            return std::pair{seconds(used.cpu), seconds(used.wall)};
+          }};
 }
 
 }  // namespace
@@ -111,11 +127,19 @@ int main(int argc, char** argv) {
            "PREFIX",
            "keep the session files: PREFIXsurgeon.mcap, PREFIXpatient.mcap");
   run.text("--report", arguments.report, "FILE", "report as JSON");
+  run.text("--trace", arguments.trace, "FILE", "every tick of the script as CSV");
+  palp::lab::BatchArguments batch;
+  palp::lab::declare_batch_verbs(line, batch);
   line.verb("scenarios", "lists the scenarios that come with the lab");
   if (const auto ending = line.parse(argc, argv)) return leave(*ending);
   try {
+    if (const auto ending =
+            palp::lab::run_batch_verb(line.chosen_verb(), batch, palp::lab::machine())) {
+      return leave(*ending);
+    }
     if (line.chosen_verb() == "scenarios") {
-      return leave({palp::config::ExitCode::Done, palp::lab::describe_scenarios()});
+      return leave({palp::config::ExitCode::Done,
+                    palp::lab::describe_scenarios() + palp::lab::describe_sets()});
     }
     return leave(palp::lab::run(arguments));
   } catch (const std::exception& failure) {

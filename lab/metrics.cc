@@ -55,9 +55,12 @@ struct Slopes {
   }
 };
 
-double ratio_of_slopes(const Slopes& a, const Slopes& b) {
-  if (!a.defined() || !b.defined()) return kUndefined;
-  return b.felt.slope() / a.felt.slope() / (b.truth.slope() / a.truth.slope()) - 1;
+void judge_ratio(const Slopes& a, const Slopes& b, TrialMetrics& metrics) {
+  if (!a.defined() || !b.defined()) return;
+  const double felt = b.felt.slope() / a.felt.slope();
+  metrics.ratio_true = b.truth.slope() / a.truth.slope();
+  metrics.ratio_error = felt / metrics.ratio_true - 1;
+  metrics.contrast = (felt - 1) / (metrics.ratio_true - 1);
 }
 
 /// Means over the last 40 % of a press hold.
@@ -131,6 +134,60 @@ void judge_stability(const std::vector<TrialTick>& ticks,
   }
 }
 
+constexpr double kContactForce = 0.1;                 ///< [N], two steps of the transducer
+constexpr double kLearningDepth = 1.0 * kMillimetre;  ///< [m]
+constexpr double kLearningForce = 0.02;               ///< [N]
+constexpr double kLearningShare = 0.1;                ///< [-]
+constexpr double kLearningTime = 0.05;                ///< [s], of right force
+
+/// How long the force at a new site is wrong.
+double learning_time(const std::vector<TrialTick>& ticks, Site site, double period) {
+  double began_at = kUndefined;
+  double right_for = 0;
+  for (const TrialTick& tick : ticks) {
+    const bool here = tick.phase.site == site && tick.phase.kind != PhaseKind::FreeAir;
+    if (!here || !tick.counted) continue;
+    if (std::isnan(began_at) && tick.contact_force >= kContactForce) began_at = tick.at;
+    if (std::isnan(began_at) || tick.hand <= kLearningDepth) continue;
+    const double allowed = std::max(kLearningForce, kLearningShare * tick.force_true);
+    right_for = std::abs(tick.hand_force - tick.force_true) <= allowed ? right_for + period : 0;
+    if (right_for >= kLearningTime) return tick.at - began_at;
+  }
+  return kUndefined;
+}
+
+/// rms of felt - true over all ticks of all taps.
+double tap_force_rms(std::span<const std::span<const TrialTick>> phases) {
+  double square = 0;
+  double count = 0;
+  for (const auto& phase : phases) {
+    if (phase.front().phase.kind != PhaseKind::Tap) continue;
+    for (const TrialTick& tick : phase) {
+      if (!tick.counted) continue;
+      square += (tick.hand_force - tick.force_true) * (tick.hand_force - tick.force_true);
+      ++count;
+    }
+  }
+  return std::sqrt(square / count);
+}
+
+constexpr double kInTheAir = -1.5 * kMillimetre;  ///< [m]
+
+void judge_blackout(const std::vector<TrialTick>& ticks,
+                    const MetricsConfig& config,
+                    TrialMetrics& metrics) {
+  if (config.blackout_to <= config.blackout_from) return;
+  metrics.phantom_force = 0;
+  metrics.stage_speed_max = 0;
+  for (const TrialTick& tick : ticks) {
+    if (tick.at < config.blackout_from || tick.at > config.blackout_to) continue;
+    if (tick.hand < kInTheAir) {
+      metrics.phantom_force = std::max(metrics.phantom_force, std::abs(tick.hand_force));
+    }
+    metrics.stage_speed_max = std::max(metrics.stage_speed_max, std::abs(tick.tip_velocity));
+  }
+}
+
 void judge_taps(std::span<const std::span<const TrialTick>> phases, TrialMetrics& metrics) {
   std::array<Slopes, 2> pooled;
   for (const auto& phase : phases) {
@@ -152,7 +209,7 @@ void judge_taps(std::span<const std::span<const TrialTick>> phases, TrialMetrics
   }
   metrics.tap_error[0] = pooled[0].error();
   metrics.tap_error[1] = pooled[1].error();
-  metrics.ratio_error = ratio_of_slopes(pooled[0], pooled[1]);
+  judge_ratio(pooled[0], pooled[1], metrics);
 }
 
 void judge_holds(std::span<const std::span<const TrialTick>> phases, TrialMetrics& metrics) {
@@ -181,7 +238,9 @@ void judge_holds(std::span<const std::span<const TrialTick>> phases, TrialMetric
   metrics.static_ratio_error = b.felt / a.felt / (b.truth / a.truth) - 1;
 }
 
-void judge_forces(const std::vector<TrialTick>& ticks, TrialMetrics& metrics) {
+void judge_forces(const std::vector<TrialTick>& ticks,
+                  const MetricsConfig& config,
+                  TrialMetrics& metrics) {
   double square = 0;
   double count = 0;
   double peak = 0;
@@ -189,7 +248,10 @@ void judge_forces(const std::vector<TrialTick>& ticks, TrialMetrics& metrics) {
     const TrialTick& tick = ticks[k];
     metrics.force_peak = std::max(metrics.force_peak, std::abs(tick.hand_force));
     metrics.contact_force_max = std::max(metrics.contact_force_max, tick.contact_force);
-    if (k >= kStepTicks) {
+    // Across a break of the session there is no step.
+    const bool whole =
+        k >= kStepTicks && tick.at - ticks[k - kStepTicks].at < (kStepTicks + 0.5) * config.period;
+    if (whole) {
       metrics.force_step_10ms = std::max(
           metrics.force_step_10ms, std::abs(tick.hand_force - ticks[k - kStepTicks].hand_force));
     }
@@ -220,7 +282,11 @@ TrialMetrics judge(const std::vector<TrialTick>& ticks, const MetricsConfig& con
   judge_stability(ticks, phases, config, metrics);
   judge_taps(phases, metrics);
   judge_holds(phases, metrics);
-  judge_forces(ticks, metrics);
+  judge_forces(ticks, config, metrics);
+  judge_blackout(ticks, config, metrics);
+  metrics.force_rms = tap_force_rms(phases);
+  metrics.learning[0] = learning_time(ticks, Site::A, config.period);
+  metrics.learning[1] = learning_time(ticks, Site::B, config.period);
   return metrics;
 }
 

@@ -25,6 +25,7 @@ struct PhaseTag {
 
 /// True states of one 1 kHz tick. Positions are relative to the true surface at rest.
 struct TrialTick {
+  double at{};  ///< [s], since the start of the run
   PhaseTag phase;
   bool counted{};                ///< the surgeon's site was Engaged or in Hold
   double hand{};                 ///< [m], x_m
@@ -33,6 +34,7 @@ struct TrialTick {
   double force_true{};           ///< [N], static law of the tissue at the hand's position
   double contact_force{};        ///< [N], F_c, largest since the last tick
   double tip{};                  ///< [m], x_s
+  double tip_velocity{};         ///< [m/s], of the stage
   double energy_operator{};      ///< [J], E_op: work of the hand on the device since the start
   double energy_operator_min{};  ///< [J], least E_op so far, at plant steps
   double energy_net_min{};       ///< [J], least (E_op - E_tissue) so far
@@ -41,6 +43,9 @@ struct TrialTick {
 struct MetricsConfig {
   double force_cap{8.5};  ///< [N], of the haptic device
   double period{1e-3};    ///< [s]
+  /// Of the blackout and 2 s after it, in seconds of the recorded ticks; equal: there was none.
+  double blackout_from{};  ///< [s]
+  double blackout_to{};    ///< [s]
 };
 
 inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
@@ -62,16 +67,24 @@ struct TrialMetrics {
   double tap1_error[2]{kUndefined, kUndefined};    ///< [-]
   double tap2_error[2]{kUndefined, kUndefined};    ///< [-]
   double ratio_error{kUndefined};                  ///< [-]
+  double ratio_true{kUndefined};                   ///< [-], of the slopes B/A
+  double contrast{kUndefined};                     ///< [-], (ratio felt - 1)/(ratio true - 1)
   double static_error[2]{kUndefined, kUndefined};  ///< [-], press holds
   double static_ratio_error{kUndefined};           ///< [-]
-  double drag_rms{kUndefined};                     ///< [N]
-  double drag_peak{kUndefined};                    ///< [N]
-  double drift{kUndefined};                        ///< [m]
-  double energy_operator{};                        ///< [J], most the operator ever got
-  double energy_net{};                             ///< [J], most excess delivered to the tissue
-  double force_step_10ms{};                        ///< [N], worst change of F_h in 10 ms
-  double force_peak{};                             ///< [N]
-  double contact_force_max{};                      ///< [N]
+  /// [s], from the first contact of 0.1 N at a site until the force is right, to 0.02 N or 10 %,
+  /// through 50 ms of contact deeper than 1 mm.
+  double learning[2]{kUndefined, kUndefined};
+  double force_rms{kUndefined};        ///< [N], of felt - true over all taps
+  double drag_rms{kUndefined};         ///< [N]
+  double drag_peak{kUndefined};        ///< [N]
+  double drift{kUndefined};            ///< [m]
+  double energy_operator{};            ///< [J], most the operator ever got
+  double energy_net{};                 ///< [J], most excess delivered to the tissue
+  double force_step_10ms{};            ///< [N], worst change of F_h in 10 ms
+  double force_peak{};                 ///< [N]
+  double contact_force_max{};          ///< [N]
+  double phantom_force{kUndefined};    ///< [N], |F_h| in the air in and after a blackout
+  double stage_speed_max{kUndefined};  ///< [m/s], in and after a blackout
   std::vector<TapMetrics> taps;
 };
 

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lab/metric_table.h"
 #include "patient_site/estimator/depth_summary.h"
 #include "patient_site/phantom.h"
 
@@ -73,24 +74,9 @@ Json metrics_json(const TrialMetrics& m) {
   Json json;
   json["unstable"] = m.unstable;
   json["unstable_reason"] = m.unstable_reason;
-  json["tap_a_error"] = number(m.tap_error[0]);
-  json["tap_b_error"] = number(m.tap_error[1]);
-  json["tap1_a_error"] = number(m.tap1_error[0]);
-  json["tap1_b_error"] = number(m.tap1_error[1]);
-  json["tap2_a_error"] = number(m.tap2_error[0]);
-  json["tap2_b_error"] = number(m.tap2_error[1]);
-  json["ratio_error"] = number(m.ratio_error);
-  json["stat_a_error"] = number(m.static_error[0]);
-  json["stat_b_error"] = number(m.static_error[1]);
-  json["stat_ratio_error"] = number(m.static_ratio_error);
-  json["drag_rms_n"] = number(m.drag_rms);
-  json["drag_peak_n"] = number(m.drag_peak);
-  json["drift_mm"] = number(m.drift * 1e3);
-  json["energy_operator_mj"] = number(m.energy_operator * 1e3);
-  json["energy_net_mj"] = number(m.energy_net * 1e3);
-  json["force_step_10ms_n"] = number(m.force_step_10ms);
-  json["force_peak_n"] = number(m.force_peak);
-  json["contact_force_max_n"] = number(m.contact_force_max);
+  for (const Metric& metric : metric_table()) {
+    json[std::string{metric.name}] = number(metric.value(m));
+  }
   return json;
 }
 
@@ -188,6 +174,27 @@ std::string run_summary(const Scenario& scenario,
          account.cpu,
          seconds(result.virtual_span) / account.cpu);
   append(text, "digest     %s\n", hexadecimal(result.digest).c_str());
+  return text;
+}
+
+std::string trace_csv(const TrialResult& result) {
+  std::string text =
+      "t_s,site,phase,index,hand_mm,tip_mm,force_felt_n,force_true_n,contact_force_n,energy_mj\n";
+  constexpr std::array kKinds{"other", "air", "tap", "press", "lift"};
+  for (const TrialTick& tick : result.ticks) {
+    append(text,
+           "%.4f,%s,%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n",
+           tick.at,
+           name_of(tick.phase.site),
+           kKinds[static_cast<std::size_t>(tick.phase.kind)],
+           tick.phase.index,
+           tick.hand * 1e3,
+           tick.tip * 1e3,
+           tick.hand_force,
+           tick.force_true,
+           tick.contact_force,
+           tick.energy_operator * 1e3);
+  }
   return text;
 }
 

@@ -25,4 +25,7 @@ struct RunAccount {
                                       const TrialResult& result,
                                       const RunAccount& account);
 
+/// The ticks as CSV: where hand and tip were, what was felt and what is true.
+[[nodiscard]] std::string trace_csv(const TrialResult& result);
+
 }  // namespace palp::lab

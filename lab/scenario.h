@@ -34,6 +34,10 @@ struct Scenario {
   netem::Impairment down;  ///< patient to surgeon
   Duration duration{};     ///< virtual; 0: until the script is done
   bool bare{};             ///< telegrams as raw structs and no session log: the laws alone, fast
+  bool depths{true};       ///< the estimator of the inclusion's depth runs too
+  bool lying{};            ///< the patient site's models are random (adversary.h)
+  /// > 0: nothing passes for 2 s from there on.
+  Duration blackout_at_script_time{};
 };
 
 }  // namespace palp::lab

@@ -10,8 +10,10 @@
 #include "common/link/codec_protobuf.h"
 #include "common/link/packet_protection.h"
 #include "common/record/session_writer.h"
+#include "lab/adversary.h"
 #include "lab/phase_finder.h"
 #include "lab/state_digest.h"
+#include "lab/valve.h"
 #include "lab/world.h"
 #include "netem/pipe.h"
 #include "patient_site/estimator_worker.h"
@@ -23,6 +25,7 @@ namespace {
 constexpr Duration kRunMax = std::chrono::hours{5};
 /// What happens after the script: the pedal goes up and the force fades.
 constexpr Duration kAfterScript = std::chrono::milliseconds{500};
+constexpr double kAfterBlackout = 2;  // [s], still judged with it
 constexpr std::size_t kInFlightMax = 4096;
 constexpr std::size_t kContactQueue = 4096;
 constexpr std::uint64_t kTissueStream = 0x7469737375650000;  ///< keeps the sensor's noise apart
@@ -76,9 +79,17 @@ class DirectRecorder final : public record::Recorder {
   std::vector<DepthEstimate> estimates_;
 };
 
+constexpr Duration kBlackout = std::chrono::seconds{2};
+
 std::unique_ptr<link::Codec> make_codec(bool bare) {
   if (bare) return std::make_unique<link::RawCodec>();
   return std::make_unique<link::ProtobufCodec>();
+}
+
+std::unique_ptr<link::Codec> patient_codec(const Scenario& scenario) {
+  auto codec = make_codec(scenario.bare);
+  if (!scenario.lying) return codec;
+  return std::make_unique<LyingCodec>(std::move(codec), scenario.seed, scenario.link.period);
 }
 
 /// A session as the handshake would have left it.
@@ -98,7 +109,8 @@ class Witness {
           const patient::SimulatedPhantom& tissue)
       : scenario_{scenario}, hand_{hand}, tissue_{tissue}, phases_{scenario.script} {}
 
-  void look(const surgeon::SurgeonStatus& status, Digest& digest) {
+  /// `at`: since the start of the run [s].
+  void look(const surgeon::SurgeonStatus& status, double at, Digest& digest) {
     const surgeon::HandTruth hand = hand_.truth();
     const patient::PhantomTruth tissue = tissue_.truth();
     for (const double state : {hand.position,
@@ -118,6 +130,7 @@ class Witness {
     if (!hand.performing) return;
 
     TrialTick tick;
+    tick.at = at;
     tick.phase = phases_.at(hand.script_time);
     tick.counted = status.state == SiteState::Engaged || status.state == SiteState::Hold;
     tick.hand = hand.position - status.offset - tissue.surface;
@@ -126,12 +139,14 @@ class Witness {
     tick.force_true = scenario_.phantom.at(status.lateral).force(tick.hand);
     tick.contact_force = tissue.contact_force;
     tick.tip = tissue.position - tissue.surface;
+    tick.tip_velocity = tissue.velocity;
     tick.energy_operator = hand.work;
     tick.energy_operator_min = work_min_;
     tick.energy_net_min = net_min_;
     ticks_.push_back(tick);
   }
   [[nodiscard]] const std::vector<TrialTick>& ticks() const { return ticks_; }
+  [[nodiscard]] std::vector<TrialTick> take_ticks() { return std::move(ticks_); }
 
  private:
   const Scenario& scenario_;
@@ -142,6 +157,11 @@ class Witness {
   double net_min_{};   ///< [J]
   std::vector<TrialTick> ticks_;
 };
+
+void drop_all(SpscQueue<ContactSample>& queue) {
+  ContactSample sample;
+  while (queue.try_dequeue(sample)) continue;
+}
 
 patient::SimulatedPhantomConfig seeded(patient::SimulatedPhantomConfig config, std::uint64_t seed) {
   config.seed = seed ^ kTissueStream;
@@ -160,9 +180,10 @@ TrialResult run_trial(const Scenario& scenario, const TrialFiles& files) {
   // The path.
   netem::Pipe pipe{scenario.up, scenario.down, scenario.seed, kInFlightMax, start};
   link::Link surgeon_link{scenario.link, make_codec(scenario.bare)};
-  link::Link patient_link{scenario.link, make_codec(scenario.bare)};
-  (void)surgeon_link.adopt(handover(pipe.surgeon_end()), start);
-  (void)patient_link.adopt(handover(pipe.patient_end()), start);
+  link::Link patient_link{scenario.link, patient_codec(scenario)};
+  bool shut = false;
+  (void)surgeon_link.adopt(handover(std::make_unique<Valve>(pipe.surgeon_end(), shut)), start);
+  (void)patient_link.adopt(handover(std::make_unique<Valve>(pipe.patient_end(), shut)), start);
 
   // The surgeon's site.
   surgeon::SimulatedHand hand{scenario.hand, scenario.script};
@@ -186,12 +207,23 @@ TrialResult run_trial(const Scenario& scenario, const TrialFiles& files) {
 
   Witness witness{scenario, hand, tissue};
   std::optional<TimePoint> finished_at;
+  std::optional<TimePoint> dark_from;
   const Duration period = scenario.link.period;
   world.every({.period = period}, [&](TimePoint now) { surgeon.tick(now); });
   world.every({.period = period}, [&](TimePoint now) { patient.tick(now); });
   world.every({.period = period}, [&](TimePoint now) {
-    estimator.drain();
-    witness.look(surgeon.status().get(), digest);
+    if (scenario.depths) {
+      estimator.drain();
+    } else {
+      drop_all(contact);
+    }
+    if (scenario.blackout_at_script_time > Duration{0}) {
+      if (!dark_from && hand.truth().script_time >= scenario.blackout_at_script_time) {
+        dark_from = now;
+      }
+      shut = dark_from && now - *dark_from < kBlackout;
+    }
+    witness.look(surgeon.status().get(), seconds(now - start), digest);
     if (hand.finished() && !finished_at) finished_at = now;
   });
 
@@ -206,8 +238,13 @@ TrialResult run_trial(const Scenario& scenario, const TrialFiles& files) {
   result.digest = digest.value();
   result.virtual_span = world.now() - start;
   result.outcome = hand.progress().outcome;
-  result.metrics =
-      judge(witness.ticks(), {.force_cap = scenario.hand.force_max, .period = seconds(period)});
+  MetricsConfig judging{.force_cap = scenario.hand.force_max, .period = seconds(period)};
+  if (dark_from) {
+    judging.blackout_from = seconds(*dark_from - start);
+    judging.blackout_to = judging.blackout_from + seconds(kBlackout) + kAfterBlackout;
+  }
+  result.metrics = judge(witness.ticks(), judging);
+  result.ticks = witness.take_ticks();
   result.depths = patient_file.estimates();
   result.surgeon_link = surgeon_link.health(world.now());
   result.patient_link = patient_link.health(world.now());

@@ -18,6 +18,7 @@ struct TrialResult {
   Duration virtual_span{};
   surgeon::ScriptOutcome outcome{};
   TrialMetrics metrics;
+  std::vector<TrialTick> ticks;       ///< while the script was performed
   std::vector<DepthEstimate> depths;  ///< one per stroke, in order
   link::LinkHealth surgeon_link;
   link::LinkHealth patient_link;

@@ -12,6 +12,8 @@ using record::NoteCode;
 
 constexpr double kSmoothing = 0.1;          // per tick: 10 ms
 constexpr double kFeltShare = 0.4;          // of contact_force, smoothed: noise alone is no contact
+constexpr double kNoiseShare = 1.4;         // six standard deviations of a mean over 10 ms
+constexpr double kNoiseSmoothing = 1e-3;    // per tick: 1 s
 constexpr double kOutside = 0.5e-3;         // [m], of the learned surface: more than its error
 constexpr double kRetractedWithin = 50e-6;  // [m]
 
@@ -25,9 +27,16 @@ void MotionGate::begin(double tip, double lateral) noexcept {
 
 void MotionGate::feel(double tip, double contact_force) noexcept {
   felt_ += kSmoothing * (contact_force - felt_);
-  const bool contact =
-      contact_force >= config_.contact_force && felt_ >= kFeltShare * config_.contact_force;
-  if (!contact || surface_of_this_place_) return;
+  if (surface_of_this_place_) return;
+  const double least =
+      std::max(kFeltShare * config_.contact_force, kNoiseShare * std::sqrt(noise_square_));
+  const bool contact = contact_force >= config_.contact_force && felt_ >= least;
+  if (!contact) {
+    if (felt_ < least) {
+      noise_square_ += kNoiseSmoothing * (contact_force * contact_force - noise_square_);
+    }
+    return;
+  }
   // Contact began where Hertz' law of the expected tissue gives no force.
   const double force = std::max(felt_, config_.contact_force / 2) / config_.contact_stiffness;
   surface_ = tip - std::cbrt(force * force);

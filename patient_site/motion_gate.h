@@ -56,7 +56,8 @@ struct MotionAnswer {
 /// surface from the first contact at a place. Thread: rt. A value.
 class MotionGate {
  public:
-  explicit MotionGate(const MotionGateConfig& config) noexcept : config_{config} {}
+  explicit MotionGate(const MotionGateConfig& config) noexcept
+      : config_{config}, noise_square_{config.contact_force * config.contact_force / 4} {}
 
   /// The tip stands here and nothing was commanded yet.
   void begin(double tip, double lateral) noexcept;
@@ -91,6 +92,7 @@ class MotionGate {
   double velocity_{};              ///< [m/s], of the command
   double lateral_{};               ///< [m]
   double felt_{};                  ///< [N]
+  double noise_square_;            ///< [N^2], of readings in the air; begins on the safe side
   std::optional<double> surface_;  ///< [m]
   bool surface_of_this_place_{};
   bool resynchronising_{};

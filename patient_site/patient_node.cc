@@ -108,7 +108,7 @@ coupling::PatientInput PatientNode::law_input(const link::Arrivals& arrived) con
   in.state = now_.state;
   in.position = now_.position;
   in.velocity = now_.velocity;
-  in.contact_force = std::max(0.0, now_.contact_force);
+  in.contact_force = now_.contact_force;
   in.lateral = now_.lateral;
   if (now_.state == SiteState::Engaged) in.arrived = arrived.samples;
   in.round_trip = now_.link.round_trip;

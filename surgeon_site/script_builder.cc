@@ -157,6 +157,28 @@ GestureScript standard_script(const ScriptSetting& setting) {
   return script.build();
 }
 
+GestureScript breath_script(const ScriptSetting& setting) {
+  // 40 % of 10 s is one breath at 0.25 Hz.
+  const Duration hold = std::chrono::seconds{10};
+  ScriptBuilder script{setting.hand_stiffness};
+  script.hold(milliseconds{1000}).air(5e-3, 1.0, milliseconds{4000}).hold(milliseconds{500});
+  palpate(script.site(kSiteA), hold);
+  palpate(script.site(kSiteB), hold);
+  return script.build();
+}
+
+GestureScript long_script(const ScriptSetting& setting) {
+  ScriptBuilder script{setting.hand_stiffness};
+  while (script.length() < std::chrono::minutes{10}) {
+    for (const double site : {kSiteA, kSiteB}) {
+      script.site(site).air(5e-3, 1.0, milliseconds{4000});
+      script.move(-3e-3, milliseconds{500}).taps(4, 4e-3, milliseconds{1000}, milliseconds{500});
+      script.lift(milliseconds{600}, milliseconds{2000});
+    }
+  }
+  return script.build();
+}
+
 GestureScript demo_script(const ScriptSetting& setting) {
   ScriptBuilder script{setting.hand_stiffness};
   script.hold(milliseconds{1000}).air(5e-3, 1.0, milliseconds{2000}).hold(milliseconds{500});

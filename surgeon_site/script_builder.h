@@ -72,4 +72,10 @@ struct ScriptSetting {
 /// The same taps on both sites and one held press to 4 mm each, in 25 s.
 [[nodiscard]] GestureScript demo_script(const ScriptSetting& setting);
 
+/// `standard` with holds of 10 s: the last 40 % of them are a whole breath at 0.25 Hz.
+[[nodiscard]] GestureScript breath_script(const ScriptSetting& setting);
+
+/// Ten minutes of free air and taps in turn on both sites, and a last lift.
+[[nodiscard]] GestureScript long_script(const ScriptSetting& setting);
+
 }  // namespace palp::surgeon

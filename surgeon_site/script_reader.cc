@@ -308,10 +308,13 @@ Result<GestureScript> load_script(const std::string& source, const ScriptSetting
   constexpr std::string_view kReplay = "replay:";
   if (source == "script:standard") return standard_script(setting);
   if (source == "script:demo") return demo_script(setting);
+  if (source == "script:breath") return breath_script(setting);
+  if (source == "script:long") return long_script(setting);
   const bool replay = source.rfind(kReplay, 0) == 0;
   if (!replay && source.rfind(kScript, 0) != 0) {
     return fail("unknown master " + quoted(source) +
-                ", expected script:standard, script:demo, script:FILE or replay:FILE");
+                ", expected script:standard, script:demo, script:breath, script:long, script:FILE "
+                "or replay:FILE");
   }
   const std::string path = source.substr(replay ? kReplay.size() : kScript.size());
   const Result<std::string> text = read_file(path);

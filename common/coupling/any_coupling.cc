@@ -13,11 +13,17 @@ tl::unexpected<Error> unknown_name(const std::string& name) {
 
 Result<SurgeonCoupling> make_surgeon_coupling(const CouplingConfig& config) {
   if (config.name == "direct") return SurgeonCoupling{DirectSurgeon{config.direct}};
+  if (config.name == "wave") return SurgeonCoupling{WaveSurgeon{config.wave}};
+  if (config.name == "tdpa") return SurgeonCoupling{TdpaSurgeon{config.tdpa}};
+  if (config.name == "mmt") return SurgeonCoupling{MmtSurgeon{config.mmt}};
   return unknown_name(config.name);
 }
 
 Result<PatientCoupling> make_patient_coupling(const CouplingConfig& config) {
   if (config.name == "direct") return PatientCoupling{DirectPatient{config.direct}};
+  if (config.name == "wave") return PatientCoupling{WavePatient{config.wave}};
+  if (config.name == "tdpa") return PatientCoupling{TdpaPatient{config.tdpa}};
+  if (config.name == "mmt") return PatientCoupling{MmtPatient{config.mmt}};
   return unknown_name(config.name);
 }
 

@@ -8,19 +8,25 @@
 #include "common/core/result.h"
 #include "common/coupling/coupling.h"
 #include "common/coupling/direct.h"
+#include "common/coupling/mmt.h"
+#include "common/coupling/tdpa.h"
+#include "common/coupling/wave.h"
 
 /// The closed set of laws. To add one: a payload in core/port_sample.h (and a `oneof` member in
 /// proto/link.proto), one file pair here, one line in each list below.
 namespace palp::coupling {
 
-using SurgeonCoupling = std::variant<DirectSurgeon>;
-using PatientCoupling = std::variant<DirectPatient>;
+using SurgeonCoupling = std::variant<DirectSurgeon, WaveSurgeon, TdpaSurgeon, MmtSurgeon>;
+using PatientCoupling = std::variant<DirectPatient, WavePatient, TdpaPatient, MmtPatient>;
 
-inline constexpr std::array<std::string_view, 1> kCouplingNames{"direct"};
+inline constexpr std::array<std::string_view, 4> kCouplingNames{"direct", "wave", "tdpa", "mmt"};
 
 struct CouplingConfig {
   std::string name{"direct"};
   DirectConfig direct;
+  WaveConfig wave;
+  TdpaConfig tdpa;
+  MmtConfig mmt;
 };
 
 /// The half named by `config.name`, or a sentence that lists the names there are.

@@ -31,7 +31,7 @@ struct PatientInput {
   SiteState state{};
   double position{};                  ///< [m], tip
   double velocity{};                  ///< [m/s]
-  double contact_force{};             ///< [N] >= 0, measured
+  double contact_force{};             ///< [N], measured; noise may make it negative
   double lateral{};                   ///< [m], along the surface; a new place is new tissue
   std::span<const Incoming> arrived;  ///< since the last tick, by number
   Duration round_trip{};

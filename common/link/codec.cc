@@ -27,7 +27,9 @@ bool well_formed(const ModelPayload& model) noexcept {
     if (!within(c, kForceMax)) return false;
   }
   return within(model.surface, kLengthMax) && within(model.depth_max, kLengthMax) &&
-         within(model.residual, kForceMax);
+         within(model.residual, kForceMax) && within(model.swing, kLengthMax) &&
+         within(model.swing_quadrature, kLengthMax) && within(model.swing_rate, kSpeedMax) &&
+         within(model.relaxing_share, kForceMax) && within(model.relaxing_time, kSpeedMax);
 }
 
 /// A raw copy may hold any index: then none of these, and not well formed.

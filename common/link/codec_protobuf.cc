@@ -38,6 +38,12 @@ void write(const CouplingPayload& payload, wire::Sample& out) {
     target.set_surface_m(static_cast<float>(model->surface));
     target.set_depth_max_m(static_cast<float>(model->depth_max));
     target.set_residual_n(static_cast<float>(model->residual));
+    target.set_c4_n(static_cast<float>(model->c[3]));
+    target.set_swing_m(static_cast<float>(model->swing));
+    target.set_swing_quadrature_m(static_cast<float>(model->swing_quadrature));
+    target.set_swing_rad_per_s(static_cast<float>(model->swing_rate));
+    target.set_relaxing_share(static_cast<float>(model->relaxing_share));
+    target.set_relaxing_s(static_cast<float>(model->relaxing_time));
   }
   static_assert(std::variant_size_v<CouplingPayload> == 4, "a new payload needs its line here");
 }
@@ -75,10 +81,18 @@ CouplingPayload read_payload(const wire::Sample& sample) {
     case wire::Sample::kModel: {
       const wire::Model& model = sample.model();
       return ModelPayload{.version = model.version(),
-                          .c = {double{model.c1_n()}, double{model.c2_n()}, double{model.c3_n()}},
+                          .c = {double{model.c1_n()},
+                                double{model.c2_n()},
+                                double{model.c3_n()},
+                                double{model.c4_n()}},
                           .surface = double{model.surface_m()},
                           .depth_max = double{model.depth_max_m()},
-                          .residual = double{model.residual_n()}};
+                          .residual = double{model.residual_n()},
+                          .swing = double{model.swing_m()},
+                          .swing_quadrature = double{model.swing_quadrature_m()},
+                          .swing_rate = double{model.swing_rad_per_s()},
+                          .relaxing_share = double{model.relaxing_share()},
+                          .relaxing_time = double{model.relaxing_s()}};
     }
     case wire::Sample::PAYLOAD_NOT_SET:
       break;

@@ -7,6 +7,41 @@
 
 namespace palp::settings {
 
+namespace {
+
+coupling::MmtConfig make_mmt(const proto::config::Mmt& message) {
+  coupling::MmtConfig config;
+  config.tank_start = message.tank_mj() * 1e-3;
+  config.tank_max = 3 * config.tank_start;
+  config.contact_damping = message.contact_damping_n_s_per_m();
+  config.air_damping = message.air_damping_n_s_per_m();
+  config.stage_lag = message.stage_lag_ms() * 1e-3;
+  config.estimator.sensor_cut_off = message.sensor_pole_hz();
+  config.estimator.sensor_quantum = message.sensor_quantum_mn() * 1e-3;
+  config.estimator.stiffness_expected = message.stiffness_expected_n_per_m15();
+  config.estimator.memory = message.memory_s();
+  return config;
+}
+
+coupling::WaveConfig make_wave(const proto::config::Wave& message) {
+  coupling::WaveConfig config;
+  config.impedance = message.impedance_n_s_per_m();
+  config.stiffness_expected = message.stiffness_expected_n_per_m();
+  config.stage_lag = message.stage_lag_ms() * 1e-3;
+  return config;
+}
+
+coupling::TdpaConfig make_tdpa(const proto::config::Tdpa& message) {
+  coupling::TdpaConfig config;
+  config.damping = message.damping_n_s_per_m();
+  config.slew = message.slew_n_per_s();
+  config.energy_soft = message.soft_mj() * 1e-3;
+  config.direction_speed = message.outward_m_per_s();
+  return config;
+}
+
+}  // namespace
+
 Result<coupling::CouplingConfig> make_coupling(const proto::config::Coupling& message) {
   const proto::config::Direct& direct = message.direct();
   coupling::CouplingConfig config{.name = message.name(),
@@ -14,7 +49,10 @@ Result<coupling::CouplingConfig> make_coupling(const proto::config::Coupling& me
                                              .position_scale = direct.position_scale(),
                                              .spring = direct.spring_n_per_m(),
                                              .fade_out = direct.fade_out_s(),
-                                             .fade_in = direct.fade_in_s()}};
+                                             .fade_in = direct.fade_in_s()},
+                                  .wave = make_wave(message.wave()),
+                                  .tdpa = make_tdpa(message.tdpa()),
+                                  .mmt = make_mmt(message.mmt())};
   if (const auto law = coupling::make_surgeon_coupling(config); !law) {
     return fail(law.error().text);
   }

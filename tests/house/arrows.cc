@@ -95,7 +95,7 @@ const std::vector<Arrow>& arrows() {
         "common/settings"}},
       {"patient_site/*",
        {"patient_site/estimator", "common/coupling", "common/link", "common/record"}},
-      {"lab/main.cc", {"common/config", "common/io/process_time.h"}},
+      {"lab/main.cc", {"common/config", "common/io/process_time.h", "common/io/parallel.h"}},
       {"lab/*",
        {"surgeon_site",
         "patient_site",

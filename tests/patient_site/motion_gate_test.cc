@@ -224,7 +224,8 @@ TEST(MotionGateTest, LearnsTheSurfaceAnewAtAnotherPlace) {
   (void)gate.pass({SiteState::Engaged, -5e-3, 10e-3, -5e-3, 0}, kTick);
   EXPECT_EQ(*gate.surface(), first) << "until something else is felt";
   touch(gate, 2e-3, 0.1);
-  EXPECT_NEAR(*gate.surface(), first + 2e-3, 1e-9);
+  // The threshold follows the noise of the sensor, and with it the depth of the first contact.
+  EXPECT_NEAR(*gate.surface(), first + 2e-3, 0.1e-3);
 }
 
 TEST(MotionGateTest, MayFollowWithoutContactOrWellOutside) {

@@ -83,6 +83,8 @@ const std::map<std::string, std::string>& suffixes() {
                                                         {"kg", "_kg"},
                                                         {"N/m", "_n_per_m"},
                                                         {"N/s", "_n_per_s"},
+                                                        {"mJ", "_mj"},
+                                                        {"N/m^1.5", "_n_per_m15"},
                                                         {"N s/m", "_n_s_per_m"},
                                                         {"m/s", "_m_per_s"},
                                                         {"m/s^2", "_m_per_s2"},

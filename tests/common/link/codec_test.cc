@@ -201,6 +201,12 @@ TEST(CodecTest, EveryNumberHasItsLimitAndMustBeFinite) {
       {"surface", [&](auto& w, double x) { model(w).surface = x; }, kLengthMax},
       {"depth_max", [&](auto& w, double x) { model(w).depth_max = x; }, kLengthMax},
       {"residual", [&](auto& w, double x) { model(w).residual = x; }, kForceMax},
+      {"c4", [&](auto& w, double x) { model(w).c[3] = x; }, kForceMax},
+      {"swing", [&](auto& w, double x) { model(w).swing = x; }, kLengthMax},
+      {"quadrature", [&](auto& w, double x) { model(w).swing_quadrature = x; }, kLengthMax},
+      {"swing rate", [&](auto& w, double x) { model(w).swing_rate = x; }, kSpeedMax},
+      {"relaxing share", [&](auto& w, double x) { model(w).relaxing_share = x; }, kForceMax},
+      {"relaxing time", [&](auto& w, double x) { model(w).relaxing_time = x; }, kSpeedMax},
       {"older", [](auto& w, double x) { w.older_count = 1, w.older[0].force = x; }, kForceMax},
   };
   ProtobufCodec protobuf;
@@ -292,8 +298,8 @@ TEST(ProtobufCodecTest, TelegramsHaveTheSizesOfTheWirePage) {
   wire.telegram.site.depth = {
       kMost, DepthVerdict::Found, DepthReason::HashOutOfRange, 1, 1, 1, 1, 1};
   EXPECT_EQ(encoded(codec, wire).size(), 37U + 52U + 3 * 17U);  // direct, patient to surgeon
-  wire.telegram.port.payload = ModelPayload{kMost, {1, 1, 1}, 1, 1, 1};
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 52U + 55U + 2 * 17U);
+  wire.telegram.port.payload = ModelPayload{kMost, {1, 1, 1, 1}, 1, 1, 1, 1, 1, 1, 1, 1};
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 52U + 85U + 2 * 17U);
   wire.telegram.port.payload = TdpaPayload{1};
   EXPECT_EQ(encoded(codec, wire).size(), 37U + 52U + 28U + 2 * 17U);
   wire.telegram.port.payload = WavePayload{1, 1};

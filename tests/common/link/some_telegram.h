@@ -39,12 +39,19 @@ inline CouplingPayload some_payload(Draw& draw, bool earlier) {
     case 2:
       return TdpaPayload{draw.within(kSumMax)};
     case 3:
-      return ModelPayload{
-          .version = static_cast<std::uint32_t>(draw.bits()),
-          .c = {draw.within(kForceMax), draw.within(kForceMax), draw.within(kForceMax)},
-          .surface = draw.within(kLengthMax),
-          .depth_max = draw.within(kLengthMax),
-          .residual = draw.within(kForceMax)};
+      return ModelPayload{.version = static_cast<std::uint32_t>(draw.bits()),
+                          .c = {draw.within(kForceMax),
+                                draw.within(kForceMax),
+                                draw.within(kForceMax),
+                                draw.within(kForceMax)},
+                          .surface = draw.within(kLengthMax),
+                          .depth_max = draw.within(kLengthMax),
+                          .residual = draw.within(kForceMax),
+                          .swing = draw.within(kLengthMax),
+                          .swing_quadrature = draw.within(kLengthMax),
+                          .swing_rate = draw.within(kSpeedMax),
+                          .relaxing_share = draw.within(kForceMax),
+                          .relaxing_time = draw.within(kSpeedMax)};
     default:
       return std::monostate{};
   }
@@ -102,6 +109,11 @@ inline void round_as_on_wire(PortSample& sample) {
     round_as_on_wire(model->surface);
     round_as_on_wire(model->depth_max);
     round_as_on_wire(model->residual);
+    round_as_on_wire(model->swing);
+    round_as_on_wire(model->swing_quadrature);
+    round_as_on_wire(model->swing_rate);
+    round_as_on_wire(model->relaxing_share);
+    round_as_on_wire(model->relaxing_time);
   }
 }
 

@@ -63,9 +63,15 @@ inline void add_fields(Fields& out, const ModelPayload& model) {
           model.c[0],
           model.c[1],
           model.c[2],
+          model.c[3],
           model.surface,
           model.depth_max,
-          model.residual);
+          model.residual,
+          model.swing,
+          model.swing_quadrature,
+          model.swing_rate,
+          model.relaxing_share,
+          model.relaxing_time);
 }
 inline void add_fields(Fields& out, const PortSample& sample) {
   add_all(out, sample.position, sample.velocity, sample.force, sample.payload.index());

@@ -1,0 +1,369 @@
+#include "common/coupling/contact_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/coupling/contact_model.h"
+
+namespace palp::coupling {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kGridStep = 0.05e-3;  // [m]
+constexpr std::size_t kMiddle = 32;
+constexpr double kMeanGain = 0.1;              // per tick: 10 ms
+constexpr std::uint32_t kBox = 5;              // ticks per equation: what the pole lets through
+constexpr std::uint32_t kNoiseTicks = 1000;    // 1 s in the air
+constexpr std::uint32_t kNoiseTicksMin = 200;  // before them nobody knows what noise is
+constexpr double kMisplaced = 2e-3;          // [m], below the surface as believed, and nothing felt
+constexpr std::uint32_t kForgetShapes = 60;  // ticks until the filtered shapes are zero again
+constexpr double kFullSpeed = 2e-3;          // [m/s], of the tip: below it data repeat themselves
+constexpr double kStillWeight = 0.2;         // [-], of an equation that repeats the last one
+constexpr std::size_t kNear = 4;             // candidates around the best that are always judged
+constexpr std::size_t kStride = 6;           // of the others, one in so many
+constexpr std::size_t kEdge = 3;             // so near the grid's end it is moved
+// Spread of the prior in [N]: in the order of the terms. The orders of a 5 mm ball on tissue of
+// tens of kPa, with an inclusion 5 mm deep; wide against what one tap tells.
+constexpr std::array<double, kModelTerms> kSpread{0.06, 0.02, 0.004, 0.06};
+
+/// Index of (row, column >= row) of a symmetric matrix kept by rows.
+constexpr std::size_t pair(std::size_t row, std::size_t column) noexcept {
+  if (row > column) std::swap(row, column);
+  return row * kModelTerms - row * (row + 1) / 2 + column;
+}
+
+/// Ratio of noise to quantum [-] of a rounding sensor, from the rms of its readings of no force:
+/// the mean square is 2 sum over j of (2j + 1) Q((j + 1/2)/s).
+double noise_over_quantum(double mean_square_over_quantum) noexcept {
+  double low = 0.01;
+  double high = 20;
+  for (int i = 0; i < 40; ++i) {
+    const double s = 0.5 * (low + high);
+    if (s > 1) {  // finer than the noise: rounding adds its twelfth
+      (s * s + 1.0 / 12 > mean_square_over_quantum ? high : low) = s;
+      continue;
+    }
+    double mean_square = 0;
+    for (int j = 0; j < 8; ++j) {
+      mean_square += (2 * j + 1) * std::erfc((j + 0.5) / s / std::numbers::sqrt2);
+    }
+    (mean_square > mean_square_over_quantum ? high : low) = s;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcept
+    : config_{config},
+      gain_{LowPass{config.sensor_cut_off, config.period}.gain()},
+      tip_{config.sensor_cut_off, config.period} {
+  // Between Hertz's law and the one for a tip that is not a parabola.
+  const double hertz = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
+  expected_[0] = 0.5 * hertz;
+  expected_[3] = 0.5 * hertz;
+}
+
+double ContactEstimator::surface_of(std::size_t candidate) const noexcept {
+  return centre_ + kGridStep * (static_cast<double>(candidate) - static_cast<double>(kMiddle));
+}
+
+/// Before the first contact every reading is noise.
+void ContactEstimator::sense_noise(double force) noexcept {
+  if (placed_ || noise_ticks_ >= 4 * kNoiseTicks) return;
+  ++noise_ticks_;
+  const double share = 1.0 / std::min(noise_ticks_, kNoiseTicks);
+  noise_square_ += share * (force * force - noise_square_);
+}
+
+void ContactEstimator::place_grid(double centre) noexcept {
+  centre_ = centre;
+  for (std::size_t term = 0; term < kModelTerms; ++term) {
+    right_[term].fill(0);
+    box_[term].fill(0);
+  }
+  for (Lane& lane : normal_) lane.fill(0);
+  square_ = 0;
+  box_force_ = 0;
+  box_count_ = 0;
+  box_tip_ = tip_.value();
+  for (std::size_t i = 0; i < kCandidates; ++i) {
+    const double xi = std::max(0.0, tip_.value() - surface_of(i)) / kModelDepthScale;
+    const ModelShapes shapes = model_shapes(xi);
+    for (std::size_t term = 0; term < kModelTerms; ++term) shapes_[term][i] = shapes.force[term];
+    found_[i] = expected_;
+  }
+  best_ = kMiddle;
+  surface_expected_ = centre;
+  placed_ = true;
+}
+
+void ContactEstimator::new_place() noexcept {
+  contact_here_ = false;
+  deepest_ = -1;
+  if (!placed_) return;
+  expected_ = model_.c;
+  place_grid(model_.surface);
+}
+
+void ContactEstimator::filter_shapes(double position) noexcept {
+  const double lowest = surface_of(0);
+  if (position <= lowest) {
+    if (ticks_outside_ >= kForgetShapes) return;
+    if (++ticks_outside_ == kForgetShapes) {
+      for (Lane& lane : shapes_) lane.fill(0);
+      return;
+    }
+  } else {
+    ticks_outside_ = 0;
+  }
+  const double scaled = (position - lowest) / kModelDepthScale;
+  constexpr double kStep = kGridStep / kModelDepthScale;
+  constexpr double kUnbend = 1 / kModelBend;
+  for (std::size_t i = 0; i < kCandidates; ++i) {
+    const double xi = std::max(0.0, scaled - kStep * static_cast<double>(static_cast<int>(i)));
+    const double square = xi * xi;
+    const double hertz = xi * std::sqrt(xi);
+    shapes_[0][i] += gain_ * (hertz - shapes_[0][i]);
+    shapes_[1][i] += gain_ * (square - shapes_[1][i]);
+    shapes_[2][i] += gain_ * (square * xi - shapes_[2][i]);
+    shapes_[3][i] += gain_ * (hertz / std::sqrt(1 + xi * kUnbend) - shapes_[3][i]);
+  }
+}
+
+double ContactEstimator::predicted() const noexcept {
+  double force = 0;
+  for (std::size_t term = 0; term < kModelTerms; ++term) {
+    force += found_[best_][term] * shapes_[term][best_];
+  }
+  return force;
+}
+
+/// Mean error of a rounding sensor at `force`, with noise as dither: first harmonic of the
+/// sawtooth, smoothed (Widrow and Kollar, Quantization Noise, ch. 4).
+double ContactEstimator::rounding_bias(double force) const noexcept {
+  if (dither_ <= 0) return 0;
+  return -dither_ * std::sin(2 * pi * force / config_.sensor_quantum);
+}
+
+void ContactEstimator::collect(double force) noexcept {
+  if (ticks_outside_ >= kForgetShapes) {
+    box_count_ = 0;
+    return;
+  }
+  if (box_count_ == 0) {
+    box_ = shapes_;
+    box_force_ = 0;
+  } else {
+    for (std::size_t term = 0; term < kModelTerms; ++term) {
+      for (std::size_t i = 0; i < kCandidates; ++i) box_[term][i] += shapes_[term][i];
+    }
+  }
+  box_force_ += force - (model_.version > 0 ? rounding_bias(predicted()) : 0);
+  if (++box_count_ < kBox) return;
+  box_count_ = 0;
+  absorb();
+  search();
+}
+
+void ContactEstimator::absorb() noexcept {
+  const double travelled = std::abs(tip_.value() - box_tip_);
+  box_tip_ = tip_.value();
+  const double share = travelled / (kFullSpeed * config_.period * kBox);
+  const double weight = std::clamp(share, kStillWeight, 1.0);
+  const double keep = 1 - weight * config_.period * kBox / config_.memory;
+  const double scale = 1.0 / kBox;
+  const double force = box_force_ * scale;
+  for (Lane& lane : box_) {
+    for (double& shape : lane) shape *= scale;
+  }
+  square_ = keep * square_ + weight * force * force;
+  std::size_t at = 0;
+  for (std::size_t row = 0; row < kModelTerms; ++row) {
+    for (std::size_t column = row; column < kModelTerms; ++column, ++at) {
+      for (std::size_t i = 0; i < kCandidates; ++i) {
+        normal_[at][i] = keep * normal_[at][i] + weight * box_[row][i] * box_[column][i];
+      }
+    }
+    for (std::size_t i = 0; i < kCandidates; ++i) {
+      right_[row][i] = keep * right_[row][i] + weight * force * box_[row][i];
+    }
+  }
+}
+
+/// Coefficients >= 0 of least cost: an active set that starts from the last solution and grows or
+/// shrinks by one term at a time (Lawson and Hanson, NNLS), at most 12 times.
+ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate) noexcept {
+  const double noise =
+      std::max(noise_square_, config_.sensor_quantum * config_.sensor_quantum / 12) / kBox;
+  std::array<std::array<double, kModelTerms>, kModelTerms> a{};
+  Terms b{};
+  for (std::size_t row = 0; row < kModelTerms; ++row) {
+    for (std::size_t column = 0; column < kModelTerms; ++column) {
+      a[row][column] = normal_[pair(row, column)][candidate];
+    }
+    const double prior = noise / (kSpread[row] * kSpread[row]);
+    a[row][row] += prior;
+    b[row] = right_[row][candidate] + prior * expected_[row];
+  }
+
+  Terms c = found_[candidate];
+  std::array<bool, kModelTerms> used{};
+  for (std::size_t row = 0; row < kModelTerms; ++row) used[row] = c[row] > 0;
+  for (int round = 0; round < 12; ++round) {
+    // Least squares over the terms in use: elimination in place.
+    std::array<std::size_t, kModelTerms> map{};
+    std::size_t count = 0;
+    for (std::size_t row = 0; row < kModelTerms; ++row) {
+      if (used[row]) map[count++] = row;
+    }
+    std::array<std::array<double, kModelTerms>, kModelTerms> m{};
+    Terms y{};
+    for (std::size_t r = 0; r < count; ++r) {
+      y[r] = b[map[r]];
+      for (std::size_t s = 0; s < count; ++s) m[r][s] = a[map[r]][map[s]];
+    }
+    for (std::size_t r = 0; r < count; ++r) {
+      const double inverse = 1 / m[r][r];
+      for (std::size_t below = r + 1; below < count; ++below) {
+        const double factor = m[below][r] * inverse;
+        for (std::size_t s = r; s < count; ++s) m[below][s] -= factor * m[r][s];
+        y[below] -= factor * y[r];
+      }
+    }
+    for (std::size_t r = count; r-- > 0;) {
+      for (std::size_t s = r + 1; s < count; ++s) y[r] -= m[r][s] * y[s];
+      y[r] /= m[r][r];
+    }
+    // A negative one leaves; as far as the way there allows.
+    double way = 1;
+    std::size_t leaves = kModelTerms;
+    for (std::size_t r = 0; r < count; ++r) {
+      if (y[r] > 0) continue;
+      const double from = c[map[r]];
+      const double share = from > 0 ? from / (from - y[r]) : 0;
+      if (share <= way) {
+        way = share;
+        leaves = map[r];
+      }
+    }
+    for (std::size_t r = 0; r < count; ++r) c[map[r]] += way * (y[r] - c[map[r]]);
+    if (leaves < kModelTerms) {
+      c[leaves] = 0;
+      used[leaves] = false;
+      continue;
+    }
+    // One that would help joins.
+    double steepest = 1e-12;
+    std::size_t joins = kModelTerms;
+    for (std::size_t row = 0; row < kModelTerms; ++row) {
+      if (used[row]) continue;
+      double gain = b[row];
+      for (std::size_t column = 0; column < kModelTerms; ++column)
+        gain -= a[row][column] * c[column];
+      const double relative = gain * kSpread[row];
+      if (relative > steepest) {
+        steepest = relative;
+        joins = row;
+      }
+    }
+    if (joins == kModelTerms) break;
+    used[joins] = true;
+  }
+
+  found_[candidate] = c;
+  double cost = square_;
+  for (std::size_t row = 0; row < kModelTerms; ++row) {
+    double product = 0;
+    for (std::size_t column = 0; column < kModelTerms; ++column)
+      product += a[row][column] * c[column];
+    cost += c[row] * (product - 2 * b[row]);
+    cost += noise * (expected_[row] / kSpread[row]) * (expected_[row] / kSpread[row]);
+  }
+  const double off = (surface_of(candidate) - surface_expected_) / config_.surface_spread;
+  return {c, cost + noise * off * off};
+}
+
+void ContactEstimator::search() noexcept {
+  const std::size_t from = best_ > kNear ? best_ - kNear : 0;
+  const std::size_t to = std::min(best_ + kNear, kCandidates - 1);
+  Solution winner = solve(best_);
+  std::size_t won = best_;
+  const auto judge = [&](std::size_t candidate) {
+    const Solution solution = solve(candidate);
+    if (solution.cost < winner.cost) {
+      winner = solution;
+      won = candidate;
+    }
+  };
+  for (std::size_t i = from; i <= to; ++i) {
+    if (i != best_) judge(i);
+  }
+  for (std::size_t i = turn_ % kStride; i < kCandidates; i += kStride) {
+    if (i < from || i > to) judge(i);
+  }
+  ++turn_;
+  best_ = won;
+  publish(winner);
+  if (best_ < kEdge || best_ + kEdge >= kCandidates) {
+    expected_ = winner.c;
+    place_grid(surface_of(best_));
+  }
+}
+
+void ContactEstimator::publish(const Solution& solution) noexcept {
+  ++model_.version;
+  model_.c = solution.c;
+  model_.surface = surface_of(best_);
+  model_.depth_max = std::max(0.0, deepest_ - model_.surface);
+}
+
+void ContactEstimator::step(double position, double force) noexcept {
+  if (!started_) {
+    started_ = true;
+    position_before_ = position;
+    tip_.reset(position);
+    tip_mean_ = position;
+  }
+  // The transducer's pole acted all through the period: the tip was half-way on average.
+  const double halfway = 0.5 * (position + position_before_);
+  position_before_ = position;
+  tip_.step(halfway);
+  force_mean_ += kMeanGain * (force - force_mean_);
+  tip_mean_ += kMeanGain * (tip_.value() - tip_mean_);
+
+  const double noise = std::sqrt(noise_square_);
+  // Six standard deviations of a mean over 10 ms.
+  const double threshold = std::max(config_.detection_force, 1.4 * noise);
+  const bool contact = force_mean_ >= threshold && noise_ticks_ >= kNoiseTicksMin;
+  if (placed_ && !contact && tip_.value() > centre_ + kMisplaced) placed_ = false;
+  if (!placed_) {
+    if (!contact) {
+      sense_noise(force);
+      return;
+    }
+    if (config_.sensor_quantum > 0 && noise_square_ > 0) {
+      const double quantum = config_.sensor_quantum;
+      const double ratio = noise_over_quantum(noise_square_ / (quantum * quantum));
+      // Above 0.4 the correction would run ahead of what it corrects.
+      dither_ = quantum / pi * std::min(0.4, std::exp(-2 * pi * pi * ratio * ratio));
+    }
+    const double depth = std::cbrt(std::pow(force_mean_ / config_.stiffness_expected, 2));
+    place_grid(tip_mean_ - depth);
+    Solution prior;
+    prior.c = expected_;
+    deepest_ = tip_mean_;
+    publish(prior);
+  }
+  if (contact) {
+    contact_here_ = true;
+    deepest_ = std::max(deepest_, tip_.value());
+  }
+  filter_shapes(halfway);
+  collect(force);
+  if (model_.version > 0) model_.residual = force - predicted();
+}
+
+}  // namespace palp::coupling

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/core/filters.h"
+#include "common/core/port_sample.h"
+#include "common/core/time.h"
+
+/// The patient's half of `mmt` at work: finds the contact model behind positions and forces.
+namespace palp::coupling {
+
+struct ContactEstimatorConfig {
+  double period{1e-3};              ///< [s], of the control loop
+  double sensor_cut_off{20};        ///< [Hz], the transducer's own pole
+  double sensor_quantum{0.05};      ///< [N], its step; 0: none
+  double stiffness_expected{1897};  ///< [N/m^1.5], of plain tissue: where learning begins
+  double memory{2};                 ///< [s] of motion in or near contact
+  double detection_force{0.022};    ///< [N], least mean force that counts as contact
+  double surface_spread{0.5e-3};    ///< [m], of the surface from place to place
+};
+
+/// Fits c and the surface of a ModelPayload: for each of 64 candidate surfaces the coefficients
+/// >= 0 of least squares with a broad prior, then the best surface. The shapes pass the
+/// transducer's pole before they meet the force, which has passed it too: a filter on one side
+/// only looks like hysteresis. What is known before the data is a prior, not a sample: it gives way
+/// to the first of them. Thread: rt; constant memory, bounded work. A value.
+class ContactEstimator {
+ public:
+  explicit ContactEstimator(const ContactEstimatorConfig& config) noexcept;
+
+  /// Once per control period. `force` [N] as measured, noise may make it negative.
+  void step(double position, double force) noexcept;
+  /// Another place along the surface: what was learned becomes what is expected.
+  void new_place() noexcept;
+
+  [[nodiscard]] const ModelPayload& model() const noexcept { return model_; }
+
+ private:
+  static constexpr std::size_t kCandidates = 64;
+  static constexpr std::size_t kPairs = kModelTerms * (kModelTerms + 1) / 2;
+  using Lane = std::array<double, kCandidates>;
+  using Terms = std::array<double, kModelTerms>;
+
+  struct Solution {
+    Terms c{};
+    double cost{};  ///< [N^2]
+  };
+
+  void sense_noise(double force) noexcept;
+  void place_grid(double centre) noexcept;
+  void filter_shapes(double position) noexcept;
+  void collect(double force) noexcept;
+  void absorb() noexcept;
+  void search() noexcept;
+  void publish(const Solution& solution) noexcept;
+  [[nodiscard]] Solution solve(std::size_t candidate) noexcept;
+  [[nodiscard]] double surface_of(std::size_t candidate) const noexcept;
+  [[nodiscard]] double rounding_bias(double force) const noexcept;
+  [[nodiscard]] double predicted() const noexcept;
+
+  ContactEstimatorConfig config_;
+  double gain_;  ///< [-], of the transducer's pole
+
+  // What is sensed.
+  bool started_{};
+  double position_before_{};  ///< [m]
+  LowPass tip_;               ///< [m], behind the transducer's pole
+  double force_mean_{};       ///< [N], over 10 ms
+  double tip_mean_{};         ///< [m], over 10 ms
+  double noise_square_{};     ///< [N^2], of a reading in the air
+  std::uint32_t noise_ticks_{};
+  double dither_{};  ///< [-], amplitude of the rounding bias over its largest
+
+  // The grid.
+  bool placed_{};
+  bool contact_here_{};
+  double centre_{};  ///< [m]
+  std::uint32_t ticks_outside_{};
+  alignas(64) std::array<Lane, kModelTerms> shapes_{};  ///< [-], filtered
+  alignas(64) std::array<Lane, kModelTerms> box_{};     ///< sum over the box
+  alignas(64) std::array<Lane, kPairs> normal_{};       ///< [-]
+  alignas(64) std::array<Lane, kModelTerms> right_{};   ///< [N]
+  double square_{};                                     ///< [N^2]
+  double box_force_{};                                  ///< [N]
+  std::uint32_t box_count_{};
+  double box_tip_{};  ///< [m], where the last box ended
+
+  // What is known.
+  std::array<Terms, kCandidates> found_{};  ///< the last solution of each
+  std::size_t best_{};
+  std::uint32_t turn_{};
+  Terms expected_{};           ///< [N]
+  double surface_expected_{};  ///< [m]
+  ModelPayload model_;
+  double deepest_{};  ///< [m], tip in contact at this place
+};
+
+}  // namespace palp::coupling

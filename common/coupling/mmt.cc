@@ -1,0 +1,179 @@
+#include "common/coupling/mmt.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palp::coupling {
+namespace {
+
+constexpr double kPlaceSize = 1e-3;         // [m], farther along the surface is another place
+constexpr double kEnergyTolerance = 1e-15;  // [J]
+constexpr double kForceTolerance = 1e-12;   // [N]
+constexpr int kHalvings = 30;
+constexpr Duration kStale = std::chrono::milliseconds{20};  // older speed is no speed
+
+constexpr bool may_render(SiteState state) noexcept {
+  return state == SiteState::Engaged || state == SiteState::Hold || state == SiteState::Retract;
+}
+
+}  // namespace
+
+MmtSurgeon::MmtSurgeon(const MmtConfig& config) noexcept
+    : config_{config},
+      velocity_{config.velocity_cut_off, config.period},
+      tank_{config.tank_start} {}
+
+/// The axis may have moved under the hand, so there is no work in this tick. The tank is kept.
+void MmtSurgeon::begin_epoch(double position) noexcept {
+  drop_model();
+  position_before_ = position;
+  velocity_.reset();
+  version_ = 0;
+  presence_.set(1);
+}
+
+/// What is not shown stores nothing; the tank gets nothing for it.
+void MmtSurgeon::drop_model() noexcept {
+  showing_ = false;
+  stored_ = 0;
+  elastic_ = 0;
+  offset_ = 0;
+  shown_.c = {};
+}
+
+void MmtSurgeon::hear(std::span<const Incoming> arrived) noexcept {
+  const Incoming* last = newest(arrived);
+  if (last == nullptr) return;
+  const auto* model = std::get_if<ModelPayload>(&last->sample.payload);
+  if (model == nullptr || model->version < version_) return;
+  if (!is_sound(*model, config_.travel, config_.slope_max)) {
+    ++refused_;
+    return;
+  }
+  version_ = model->version;
+  if (model->version > 0) candidate_ = contact_model(*model);
+}
+
+/// The shown model moves towards the newest one; in the air at once, for nothing is stored there.
+void MmtSurgeon::approach_candidate(double position, double depth, double dt) noexcept {
+  if (!candidate_) return;
+  ContactModel aim = *candidate_;
+  for (double& coefficient : aim.c) coefficient *= presence_.value();
+  if (!showing_ || (depth <= 0 && position <= aim.surface)) {
+    shown_ = aim;
+    showing_ = true;
+    return;
+  }
+  const double share = -std::expm1(-dt / config_.blend);
+  shown_.surface += share * (aim.surface - shown_.surface);
+  shown_.reach += share * (aim.reach - shown_.reach);
+  for (std::size_t term = 0; term < kModelTerms; ++term) {
+    shown_.c[term] += share * (aim.c[term] - shown_.c[term]);
+  }
+}
+
+/// The least offset with which energy and force stay below their limits.
+void MmtSurgeon::choose_offset(double position, double energy_max, double force_max) noexcept {
+  const double whole = position - shown_.surface;
+  const auto fits = [&](double offset) {
+    const double depth = whole - offset;
+    return shown_.energy(depth) <= energy_max + kEnergyTolerance &&
+           shown_.force(depth) <= force_max + kForceTolerance;
+  };
+  offset_ = 0;
+  if (whole <= 0 || fits(0)) return;
+  double low = 0;
+  double high = whole;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (fits(middle) ? high : low) = middle;
+  }
+  offset_ = high;
+}
+
+/// How fast a new model may come in. A large force that appears under a light hand throws it back.
+double MmtSurgeon::slew_for(double position, Duration round_trip) const noexcept {
+  const double missing = shown_.force(position - shown_.surface) - elastic_;
+  const double room = (config_.gap_large - missing) / (config_.gap_large - config_.gap_small);
+  const double small =
+      round_trip < config_.round_trip_short ? config_.slew_short : config_.slew_small;
+  return config_.slew + (small - config_.slew) * std::clamp(room, 0.0, 1.0);
+}
+
+SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
+  hear(in.arrived);
+  const double span = seconds(dt);
+  const double speed = velocity_.step(in.position);
+  const double work = in.force_applied * (in.position - position_before_);
+  position_before_ = in.position;
+
+  if (!may_render(in.state)) {
+    tank_ = std::min(config_.tank_max, tank_ + work);
+    drop_model();
+    return {0, {in.position, in.velocity, 0, std::monostate{}}};
+  }
+  if (in.state == SiteState::Retract) presence_.fall(span, config_.fade);
+
+  const double depth_before = in.position - shown_.surface - offset_;
+  const double moved = shown_.energy(depth_before);
+  const double force_before = shown_.force(depth_before);
+  tank_ = std::min(config_.tank_max, tank_ + work - (moved - stored_));
+
+  approach_candidate(in.position, depth_before, span);
+  const double slew = slew_for(in.position, in.round_trip);
+  const double force_max =
+      std::max(force_before + config_.slew_beside * span, elastic_ + slew * span);
+  choose_offset(in.position, std::max(0.0, moved + tank_), force_max);
+
+  const double depth = in.position - shown_.surface - offset_;
+  stored_ = shown_.energy(depth);
+  tank_ -= stored_ - moved;
+
+  elastic_ = shown_.force(depth);
+  double force = elastic_;
+  if (depth > 0) {
+    force = std::max(0.0, force + config_.contact_damping * std::min(0.0, speed));
+  } else {
+    force += config_.air_damping * speed;
+  }
+  if (tank_ < 0) force += config_.empty_damping * speed;
+  return {force, {in.position, in.velocity, force, std::monostate{}}};
+}
+
+MmtPatient::MmtPatient(const MmtConfig& config) noexcept
+    : config_{config},
+      estimator_{config.estimator},
+      lead_velocity_{config.lead_cut_off, config.period} {}
+
+void MmtPatient::begin_epoch(double position) noexcept {
+  hand_ = position;
+  hand_velocity_ = 0;
+  lead_velocity_.reset(0);
+}
+
+/// A hand that is not heard of is taken to stand still.
+double MmtPatient::target(const PatientInput& in) noexcept {
+  const Incoming* last = newest(in.arrived);
+  if (last != nullptr) {
+    hand_ = last->sample.position;
+    hand_velocity_ = last->sample.velocity;
+    heard_at_ = in.now;
+  }
+  if (in.now - heard_at_ > kStale) hand_velocity_ = 0;
+  const double lead = std::min(config_.lead_max, config_.stage_lag + 0.5 * seconds(in.round_trip));
+  return hand_ + lead * lead_velocity_.step(finite_or(hand_velocity_, 0));
+}
+
+PatientOutput MmtPatient::step(const PatientInput& in, Duration /*dt*/) noexcept {
+  const double aim = target(in);
+  if (!began_) lateral_ = in.lateral;
+  began_ = true;
+  if (std::abs(in.lateral - lateral_) > kPlaceSize) {
+    estimator_.new_place();
+    lateral_ = in.lateral;
+  }
+  estimator_.step(in.position, in.contact_force);
+  return {aim, {in.position, in.velocity, in.contact_force, estimator_.model()}};
+}
+
+}  // namespace palp::coupling

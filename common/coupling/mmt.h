@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/core/filters.h"
+#include "common/core/limits.h"
+#include "common/coupling/contact_estimator.h"
+#include "common/coupling/contact_model.h"
+#include "common/coupling/coupling.h"
+
+/// Coupling `mmt`: the patient site says what the tissue is like, not what it just did. The
+/// surgeon site renders that model at the device's rate, behind a tank that pays for every change
+/// of it: whatever arrives, and whenever, the hand gets no more energy than it gave plus one
+/// fixed amount.
+namespace palp::coupling {
+
+struct MmtConfig {
+  double tank_start{1e-3};  ///< [J], and the guarantee: the most the hand can ever gain
+  double tank_max{3e-3};    ///< [J]
+  double slew{4};           ///< [N/s], of the force while a new model comes in
+  double slew_short{12};    ///< [N/s], the same below `round_trip_short`
+  double slew_small{9};     ///< [N/s], the same where little force is missing
+  double gap_small{0.1};    ///< [N], of missing force: up to here it is little
+  double gap_large{0.3};    ///< [N], and from here on it is not
+  double slew_beside{1};    ///< [N/s], of a new model beside what motion alone does
+  Duration round_trip_short{std::chrono::milliseconds{15}};
+  double blend{0.05};           ///< [s], time constant of changes of the model
+  double contact_damping{0.2};  ///< [N s/m], on the way out: the way in is what a finger judges
+  double air_damping{0.3};      ///< [N s/m], fills the tank
+  double empty_damping{2};      ///< [N s/m], on top while the tank is overdrawn
+  double velocity_cut_off{60};  ///< [Hz]
+  double fade{1};               ///< [s], of the model in Retract
+  double period{1e-3};          ///< [s]
+  double stage_lag{14e-3};      ///< [s], of the position servo behind its target
+  double lead_max{25e-3};       ///< [s], most that the target runs ahead of the hand's position
+  double lead_cut_off{15};      ///< [Hz], of the velocity it runs ahead with
+  double travel{60e-3};         ///< [m], a surface farther from 0 is not believed
+  double slope_max{2000};       ///< [N/m], a stiffer tissue is not believed
+  ContactEstimatorConfig estimator;
+};
+
+/// Renders the newest believable model. Its books, at every tick: tank + stored energy <= tank at
+/// the start + work of the hand, with the force that was really applied; and the stored energy
+/// never exceeds what the tank can pay. Nothing in them depends on the network. Thread: rt.
+class MmtSurgeon {
+ public:
+  explicit MmtSurgeon(const MmtConfig& config) noexcept;
+  void begin_epoch(double position) noexcept;
+  SurgeonOutput step(const SurgeonInput& in, Duration dt) noexcept;
+
+  [[nodiscard]] double tank() const noexcept { return tank_; }      ///< [J]
+  [[nodiscard]] double stored() const noexcept { return stored_; }  ///< [J], in the shown model
+  [[nodiscard]] const ContactModel& shown() const noexcept { return shown_; }
+  [[nodiscard]] double offset() const noexcept {
+    return offset_;
+  }  ///< [m], shown surface above x_c
+  [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }  ///< models
+
+ private:
+  void hear(std::span<const Incoming> arrived) noexcept;
+  void drop_model() noexcept;
+  void approach_candidate(double position, double depth, double dt) noexcept;
+  [[nodiscard]] double slew_for(double position, Duration round_trip) const noexcept;
+  void choose_offset(double position, double energy_max, double force_max) noexcept;
+
+  MmtConfig config_;
+  VelocityEstimate velocity_;
+  double position_before_{};  ///< [m]
+  double tank_;               ///< [J]
+  double stored_{};           ///< [J]
+  double elastic_{};          ///< [N], of the shown model, last tick
+  double offset_{};           ///< [m]
+  ContactModel shown_;
+  bool showing_{};
+  std::optional<ContactModel> candidate_;  ///< none: nothing was learned yet
+  std::uint32_t version_{};
+  Ramp presence_{1};
+  std::uint64_t refused_{};
+};
+
+/// The stage follows the newest hand position, ahead of it by what servo and path take away, so
+/// that the tip is where the hand is; the estimator watches.
+class MmtPatient {
+ public:
+  explicit MmtPatient(const MmtConfig& config) noexcept;
+  void begin_epoch(double position) noexcept;
+  PatientOutput step(const PatientInput& in, Duration dt) noexcept;
+
+ private:
+  [[nodiscard]] double target(const PatientInput& in) noexcept;
+
+  MmtConfig config_;
+  ContactEstimator estimator_;
+  double hand_{};           ///< [m], newest
+  double hand_velocity_{};  ///< [m/s], newest
+  TimePoint heard_at_{};
+  LowPass lead_velocity_;  ///< [m/s]
+  double lateral_{};       ///< [m]
+  bool began_{};
+};
+
+static_assert(HalfOfLaw<MmtSurgeon, SurgeonInput, SurgeonOutput>);
+static_assert(HalfOfLaw<MmtPatient, PatientInput, PatientOutput>);
+
+}  // namespace palp::coupling

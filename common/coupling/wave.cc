@@ -1,0 +1,82 @@
+#include "common/coupling/wave.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palp::coupling {
+namespace {
+
+constexpr double kMeanGain = 0.1;  // per tick: 10 ms
+
+void send(WavePayload& sent, double wave, double period) noexcept {
+  sent.wave_integral += wave * period;
+  sent.wave_energy += 0.5 * wave * wave * period;
+}
+
+}  // namespace
+
+double wave_impedance(const WaveConfig& config) noexcept {
+  if (config.impedance > 0) return config.impedance;
+  return std::clamp(1.2 * config.stiffness_expected * config.stage_lag, 5.0, 15.0);
+}
+
+WaveSurgeon::WaveSurgeon(const WaveConfig& config) noexcept
+    : config_{config},
+      impedance_{wave_impedance(config)},
+      root_{std::sqrt(2 * impedance_)},
+      velocity_{config.velocity_cut_off, config.period},
+      play_out_{config.period} {}
+
+void WaveSurgeon::begin_epoch(double /*position*/) noexcept {
+  velocity_.reset();
+  play_out_.restart();
+  sent_ = {};
+  presence_.set(1);
+}
+
+SurgeonOutput WaveSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
+  const double speed = velocity_.step(in.position);
+  const double wave = play_out_.step(in.now, in.arrived);
+  if (in.state == SiteState::Retract) presence_.fall(seconds(dt), config_.fade);
+  const double force = (impedance_ * speed - root_ * wave) * presence_.value();
+  // Only in Engaged does the hand speak: a wave sent in Hold would be a step when it is over.
+  if (in.state == SiteState::Engaged) {
+    send(sent_, (impedance_ * speed + force) / root_, config_.period);
+  }
+  return {force, {in.position, in.velocity, force, sent_}};
+}
+
+WavePatient::WavePatient(const WaveConfig& config) noexcept
+    : config_{config},
+      impedance_{wave_impedance(config)},
+      root_{std::sqrt(2 * impedance_)},
+      play_out_{config.period} {}
+
+void WavePatient::begin_epoch(double position) noexcept {
+  play_out_.restart();
+  sent_ = {};
+  target_ = position;
+  hand_ = position;
+}
+
+PatientOutput WavePatient::step(const PatientInput& in, Duration /*dt*/) noexcept {
+  const double wave = play_out_.step(in.now, in.arrived);
+  if (const Incoming* last = newest(in.arrived)) hand_ = last->sample.position;
+  const double force = std::max(0.0, in.contact_force);
+  force_mean_ += kMeanGain * (in.contact_force - force_mean_);
+  if (in.state != SiteState::Engaged) {
+    target_ = in.position;
+    return {target_, {in.position, in.velocity, in.contact_force, sent_}};
+  }
+  const double speed = (root_ * wave - force) / (2 * impedance_);
+  const double port = force + impedance_ * speed;
+  send(sent_, (impedance_ * speed - port) / root_, config_.period);
+  target_ += speed * config_.period;
+  if (force_mean_ < config_.contact_zero && force == 0) {
+    const double drift = config_.drift_rate * (hand_ - target_);
+    target_ += std::clamp(drift, -config_.drift_speed, config_.drift_speed) * config_.period;
+  }
+  return {target_, {in.position, in.velocity, in.contact_force, sent_}};
+}
+
+}  // namespace palp::coupling

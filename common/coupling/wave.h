@@ -1,0 +1,67 @@
+#pragma once
+
+#include "common/core/filters.h"
+#include "common/core/limits.h"
+#include "common/coupling/coupling.h"
+#include "common/coupling/play_out.h"
+
+/// Coupling `wave`: wave variables. Passive over any path, and as soft as a spring of 2b/RTT in
+/// series with the tissue: a tool for short paths, and a baseline.
+namespace palp::coupling {
+
+struct WaveConfig {
+  double impedance{0};             ///< [N s/m], b; 0: from the next two
+  double stiffness_expected{370};  ///< [N/m], the stiffest tissue
+  double stage_lag{22.3e-3};       ///< [s], of servo and transducer together: 2 zeta/w + 1/(2 pi f)
+  double velocity_cut_off{60};     ///< [Hz]
+  double drift_rate{2};            ///< [1/s], drift is repaired at zero force, costing no energy
+  double drift_speed{0.02};        ///< [m/s], at most
+  double contact_zero{0.03};       ///< [N], a mean force below it is none
+  double fade{1};                  ///< [s], in Retract
+  double period{1e-3};             ///< [s]
+};
+
+/// The impedance asked for, or what keeps a stage with that lag passive on the stiffest tissue:
+/// b >= k tau, with a fifth more; 5 to 15 N s/m.
+[[nodiscard]] double wave_impedance(const WaveConfig& config) noexcept;
+
+/// F_h = b v - sqrt(2b) w; sends the integral and the energy of u = (b v + F_h)/sqrt(2b).
+class WaveSurgeon {
+ public:
+  explicit WaveSurgeon(const WaveConfig& config) noexcept;
+  void begin_epoch(double position) noexcept;
+  SurgeonOutput step(const SurgeonInput& in, Duration dt) noexcept;
+
+ private:
+  WaveConfig config_;
+  double impedance_;  ///< [N s/m]
+  double root_;       ///< [sqrt(N s/m)], sqrt(2b)
+  VelocityEstimate velocity_;
+  PlayOut play_out_;
+  WavePayload sent_;
+  Ramp presence_{1};
+};
+
+/// Moves the stage at v = (sqrt(2b) u - F)/(2b): terminated so that a stage which follows reflects
+/// nothing.
+class WavePatient {
+ public:
+  explicit WavePatient(const WaveConfig& config) noexcept;
+  void begin_epoch(double position) noexcept;
+  PatientOutput step(const PatientInput& in, Duration dt) noexcept;
+
+ private:
+  WaveConfig config_;
+  double impedance_;  ///< [N s/m]
+  double root_;       ///< [sqrt(N s/m)], sqrt(2b)
+  PlayOut play_out_;
+  WavePayload sent_;
+  double target_{};      ///< [m]
+  double hand_{};        ///< [m], newest
+  double force_mean_{};  ///< [N], over 10 ms
+};
+
+static_assert(HalfOfLaw<WaveSurgeon, SurgeonInput, SurgeonOutput>);
+static_assert(HalfOfLaw<WavePatient, PatientInput, PatientOutput>);
+
+}  // namespace palp::coupling

@@ -1,0 +1,82 @@
+#include "lab/batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <optional>
+
+#include "lab/digest.h"
+#include "lab/metric_table.h"
+#include "lab/trial.h"
+
+namespace palp::lab {
+namespace {
+
+CaseResult result_of(const Case& one, const TrialResult& trial) {
+  CaseResult result;
+  result.index = one.index;
+  result.seed = one.seed;
+  result.labels = one.labels;
+  result.digest = trial.digest;
+  result.virtual_span = seconds(trial.virtual_span);
+  result.outcome = surgeon::to_string(trial.outcome);
+  result.unstable = trial.metrics.unstable;
+  result.unstable_reason = trial.metrics.unstable_reason;
+  for (const Metric& metric : metric_table()) result.values.push_back(metric.value(trial.metrics));
+  return result;
+}
+
+}  // namespace
+
+Result<std::vector<CaseResult>> run_plan(const Plan& plan,
+                                         const ForEach& for_each,
+                                         const Progress& progress) {
+  std::vector<CaseResult> results(plan.cases.size());
+  std::mutex mutex;  // of the next two and of progress
+  std::size_t done = 0;
+  std::optional<Error> first_error;
+  for_each(plan.cases.size(), [&](std::size_t i) {
+    const auto scenario = make_case(plan, plan.cases[i]);
+    if (scenario) results[i] = result_of(plan.cases[i], run_trial(*scenario));
+    const std::lock_guard lock{mutex};
+    if (!scenario && !first_error) first_error = scenario.error();
+    if (progress) progress(++done, plan.cases.size());
+  });
+  if (first_error) return tl::unexpected(*first_error);
+  return results;
+}
+
+Spread spread_of(const std::vector<CaseResult>& results, std::size_t metric) {
+  Spread spread;
+  std::vector<double> values;
+  for (const CaseResult& result : results) {
+    const double value = result.values[metric];
+    if (std::isfinite(value)) {
+      values.push_back(std::abs(value));
+    } else {
+      ++spread.undefined;
+    }
+  }
+  if (results.empty()) return spread;
+  std::sort(values.begin(), values.end());
+  if (!values.empty()) spread.max = values.back();
+  const auto at = [&](double p) {
+    const auto n = static_cast<double>(results.size());
+    const auto rank = static_cast<std::size_t>(std::min(n - 1, std::floor(p * n)));
+    return rank < values.size() ? values[rank] : kUndefined;
+  };
+  spread.p50 = at(0.5);
+  spread.p95 = at(0.95);
+  return spread;
+}
+
+std::uint64_t digest_of(const std::vector<CaseResult>& results) {
+  Digest digest;
+  for (const CaseResult& result : results) {
+    digest.add(result.index);
+    digest.add(result.digest);
+  }
+  return digest.value();
+}
+
+}  // namespace palp::lab

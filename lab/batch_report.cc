@@ -1,0 +1,240 @@
+#include "lab/batch_report.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+#include "lab/metric_table.h"
+
+namespace palp::lab {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kWorstMax = 3;  ///< of each metric
+constexpr std::string_view kFixedFirst = "index,seed,digest,virtual_s,outcome,unstable,reason";
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+std::string hexadecimal(std::uint64_t value) {
+  std::array<char, 17> text{};
+  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
+  return text.data();
+}
+
+std::string decimal(double value) {
+  if (!std::isfinite(value)) return {};
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.9g", value);
+  return text.data();
+}
+
+Json worst_of(const std::vector<CaseResult>& results) {
+  Json worst = Json::array();
+  const auto table = metric_table();
+  for (std::size_t metric = 0; metric < table.size(); ++metric) {
+    std::vector<const CaseResult*> order;
+    for (const CaseResult& result : results) {
+      if (std::isfinite(result.values[metric])) order.push_back(&result);
+    }
+    const std::size_t count = std::min(kWorstMax, order.size());
+    const auto larger = [metric](const CaseResult* a, const CaseResult* b) {
+      const double x = std::abs(a->values[metric]);
+      const double y = std::abs(b->values[metric]);
+      return x != y ? x > y : a->index < b->index;
+    };
+    std::partial_sort(
+        order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(), larger);
+    for (std::size_t i = 0; i < count; ++i) {
+      worst.push_back({{"case", order[i]->index},
+                       {"seed", order[i]->seed},
+                       {"metric", table[metric].name},
+                       {"value", order[i]->values[metric]}});
+    }
+  }
+  return worst;
+}
+
+std::uint64_t unstable_count(const std::vector<CaseResult>& results) {
+  return static_cast<std::uint64_t>(
+      std::count_if(results.begin(), results.end(), [](const auto& r) { return r.unstable; }));
+}
+
+}  // namespace
+
+std::string batch_report(const Plan& plan,
+                         const std::vector<CaseResult>& results,
+                         const BatchAccount& account) {
+  Json json;
+  json["schema"] = account.schema;
+  json["set"] = plan.name;
+  json["count"] = results.size();
+  json["seed"] = plan.seed;
+  json["shard"] = account.shard.empty() ? Json(nullptr) : Json(account.shard);
+  json["coupling"] = account.coupling;
+  json["tissue"] = plan.tissue;
+  json["digest"] = hexadecimal(digest_of(results));
+  json["unstable"] = unstable_count(results);
+  Json outcomes = Json::object();
+  std::map<std::string, std::uint64_t> ends;
+  for (const CaseResult& result : results) ++ends[result.outcome];
+  for (const auto& [outcome, count] : ends) outcomes[outcome.empty() ? "cut" : outcome] = count;
+  json["outcomes"] = outcomes;
+  Json undefined = Json::object();
+  Json metrics = Json::object();
+  const auto table = metric_table();
+  for (std::size_t metric = 0; metric < table.size(); ++metric) {
+    const Spread spread = spread_of(results, metric);
+    if (spread.undefined == results.size()) continue;
+    const std::string name{table[metric].name};
+    metrics[name] = {
+        {"p50", number(spread.p50)}, {"p95", number(spread.p95)}, {"max", number(spread.max)}};
+    if (spread.undefined > 0) undefined[name] = spread.undefined;
+  }
+  json["undefined"] = undefined;
+  json["metrics"] = metrics;
+  json["worst"] = worst_of(results);
+  json["cores"] = account.cores;
+  json["cpu_s"] = account.cpu;
+  json["wall_s"] = account.wall;
+  json["cases_csv"] = account.cases_csv.empty() ? Json(nullptr) : Json(account.cases_csv);
+  return json.dump(2) + "\n";
+}
+
+std::string batch_summary(const Plan& plan,
+                          const std::vector<CaseResult>& results,
+                          const BatchAccount& account) {
+  std::array<char, 240> line{};
+  std::string text;
+  std::snprintf(line.data(),
+                line.size(),
+                "set %s, %zu cases, seed %llu, coupling %s, tissue %s: %llu unstable\n"
+                "%-26s %10s %10s %10s %9s\n",
+                plan.name.c_str(),
+                results.size(),
+                static_cast<unsigned long long>(plan.seed),
+                account.coupling.c_str(),
+                plan.tissue.c_str(),
+                static_cast<unsigned long long>(unstable_count(results)),
+                "absolute value",
+                "median",
+                "p95",
+                "max",
+                "undefined");
+  text += line.data();
+  const auto table = metric_table();
+  double virtual_span = 0;
+  for (const CaseResult& result : results) virtual_span += result.virtual_span;
+  for (std::size_t metric = 0; metric < table.size(); ++metric) {
+    const Spread spread = spread_of(results, metric);
+    if (spread.undefined == results.size()) continue;
+    std::snprintf(line.data(),
+                  line.size(),
+                  "%-26s %10.4f %10.4f %10.4f %9llu\n",
+                  std::string{table[metric].name}.c_str(),
+                  spread.p50,
+                  spread.p95,
+                  spread.max,
+                  static_cast<unsigned long long>(spread.undefined));
+    text += line.data();
+  }
+  std::snprintf(line.data(),
+                line.size(),
+                "digest %s; %.0f s of virtual time in %.1f s on %llu cores: %.0f times per core\n",
+                hexadecimal(digest_of(results)).c_str(),
+                virtual_span,
+                account.wall,
+                static_cast<unsigned long long>(account.cores),
+                virtual_span / account.cpu);
+  text += line.data();
+  return text;
+}
+
+std::string cases_csv(const Plan& plan, const std::vector<CaseResult>& results) {
+  std::string text{kFixedFirst};
+  for (const Metric& metric : metric_table()) text.append(",").append(metric.name);
+  for (const std::string& name : plan.label_names) text.append(",").append(name);
+  text += '\n';
+  for (const CaseResult& result : results) {
+    text += std::to_string(result.index) + ',' + std::to_string(result.seed) + ',' +
+            hexadecimal(result.digest) + ',' + decimal(result.virtual_span) + ',' + result.outcome +
+            ',' + (result.unstable ? "1" : "0") + ',' + result.unstable_reason;
+    for (const double value : result.values) text.append(",").append(decimal(value));
+    for (const std::string& label : result.labels) text.append(",").append(label);
+    text += '\n';
+  }
+  return text;
+}
+
+namespace {
+
+std::vector<std::string> split(const std::string& line, char at) {
+  std::vector<std::string> parts(1);
+  for (const char c : line) {
+    if (c == at) {
+      parts.emplace_back();
+    } else if (c != '\r') {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+template <class Number>
+bool parse(const std::string& text, Number& value, int base = 0) {
+  const char* end = text.data() + text.size();
+  std::from_chars_result got{};
+  if constexpr (std::is_floating_point_v<Number>) {
+    if (text.empty()) {
+      value = kUndefined;
+      return true;
+    }
+    got = std::from_chars(text.data(), end, value);
+  } else {
+    got = std::from_chars(text.data(), end, value, base == 0 ? 10 : base);
+  }
+  return got.ec == std::errc{} && got.ptr == end;
+}
+
+}  // namespace
+
+Result<std::vector<CaseResult>> read_cases_csv(const std::string& text,
+                                               const std::string& name,
+                                               Plan& plan) {
+  const std::vector<std::string> lines = split(text, '\n');
+  const auto table = metric_table();
+  std::string expected{kFixedFirst};
+  for (const Metric& metric : table) expected.append(",").append(metric.name);
+  if (lines.front().rfind(expected, 0) != 0) {
+    return fail(name + ": the first line is not that of a cases file of this version");
+  }
+  const std::size_t fixed = split(expected, ',').size();
+  const std::vector<std::string> header = split(lines.front(), ',');
+  plan.label_names.assign(header.begin() + static_cast<std::ptrdiff_t>(fixed), header.end());
+  std::vector<CaseResult> results;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    if (lines[i].empty()) continue;
+    const std::vector<std::string> fields = split(lines[i], ',');
+    CaseResult result;
+    bool sound = fields.size() == header.size() && parse(fields[0], result.index) &&
+                 parse(fields[1], result.seed) && parse(fields[2], result.digest, 16) &&
+                 parse(fields[3], result.virtual_span);
+    for (std::size_t m = 0; sound && m < table.size(); ++m) {
+      sound = parse(fields[7 + m], result.values.emplace_back());
+    }
+    if (!sound) return fail(name + ": line " + std::to_string(i + 1) + " is not a row of a case");
+    result.outcome = fields[4];
+    result.unstable = fields[5] == "1";
+    result.unstable_reason = fields[6];
+    result.labels.assign(fields.begin() + static_cast<std::ptrdiff_t>(fixed), fields.end());
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+}  // namespace palp::lab

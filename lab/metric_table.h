@@ -1,0 +1,19 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "lab/metrics.h"
+
+namespace palp::lab {
+
+/// One number of a trial as reports name it, in the unit at the end of the name.
+struct Metric {
+  std::string_view name;
+  double (*value)(const TrialMetrics&);
+};
+
+/// All of them, in the order of reports.
+[[nodiscard]] std::span<const Metric> metric_table() noexcept;
+
+}  // namespace palp::lab

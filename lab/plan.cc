@@ -1,0 +1,126 @@
+#include "lab/plan.h"
+
+#include <algorithm>
+#include <charconv>
+#include <functional>
+
+#include "common/core/random.h"
+#include "lab/scenario_file.h"
+#include "surgeon_site/script_builder.h"
+
+namespace palp::lab {
+namespace {
+
+/// The middle of the hold of A's deep press in script time, and the operator's way there: the
+/// blackout is placed in the channel's time, which starts with the run.
+void place_blackout(Scenario& scenario) {
+  Duration before{};
+  for (const surgeon::Stretch& stretch : scenario.script.stretches()) {
+    if (stretch.kind == surgeon::StretchKind::LiftMove) {
+      before = stretch.began_at;
+      break;
+    }
+  }
+  scenario.blackout_at_script_time = before - std::chrono::seconds{1};
+}
+
+Result<void> apply(config::Document& document, const Setting& setting) {
+  constexpr std::string_view kBoth = "coupling.";
+  if (setting.path.rfind(kBoth, 0) == 0) {
+    auto surgeon = document.set("surgeon." + setting.path, setting.value, setting.path);
+    if (!surgeon) return surgeon;
+    return document.set("patient." + setting.path, setting.value, setting.path);
+  }
+  return document.set(setting.path, setting.value, setting.path);
+}
+
+void combine(const std::vector<std::vector<Setting>>& axes,
+             std::size_t axis,
+             std::vector<Setting>& chosen,
+             const std::function<void(const std::vector<Setting>&)>& take) {
+  if (axis == axes.size()) return take(chosen);
+  for (const Setting& setting : axes[axis]) {
+    chosen.push_back(setting);
+    combine(axes, axis + 1, chosen, take);
+    chosen.pop_back();
+  }
+}
+
+}  // namespace
+
+Result<Plan> make_sweep(const std::string& scenario,
+                        const std::vector<std::string>& axes,
+                        std::uint64_t repeats,
+                        const PlanAsk& ask) {
+  Plan plan;
+  plan.name = "sweep";
+  plan.scenario = scenario;
+  plan.seed = ask.seed;
+  std::vector<std::vector<Setting>> values;
+  for (const std::string& axis : axes) {
+    const std::size_t equals = axis.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == axis.size()) {
+      return fail("sweep axis '" + axis + "' must read PATH=VALUE,VALUE,...");
+    }
+    const std::string path = axis.substr(0, equals);
+    plan.label_names.push_back(path);
+    auto& list = values.emplace_back();
+    std::size_t from = equals + 1;
+    while (from <= axis.size()) {
+      const std::size_t comma = std::min(axis.find(',', from), axis.size());
+      if (comma == from) return fail("sweep axis '" + axis + "' has an empty value");
+      list.push_back({path, axis.substr(from, comma - from)});
+      from = comma + 1;
+    }
+  }
+  std::vector<Setting> chosen;
+  combine(values, 0, chosen, [&](const std::vector<Setting>& settings) {
+    for (std::uint64_t repeat = 0; repeat < repeats; ++repeat) {
+      Case one{plan.cases.size(), ask.seed + repeat, settings, {}};
+      if (!ask.coupling.empty())
+        one.settings.insert(one.settings.begin(), {"coupling.name", ask.coupling});
+      for (const Setting& setting : settings) one.labels.push_back(setting.value);
+      plan.cases.push_back(std::move(one));
+    }
+  });
+  return plan;
+}
+
+Result<Shard> parse_shard(const std::string& text) {
+  Shard shard;
+  const char* end = text.data() + text.size();
+  const auto [slash, first] = std::from_chars(text.data(), end, shard.part);
+  const bool begun = first == std::errc{} && slash != end && *slash == '/';
+  const auto [stop, second] =
+      begun ? std::from_chars(slash + 1, end, shard.count) : std::from_chars_result{end, first};
+  if (!begun || second != std::errc{} || stop != end || shard.count == 0 ||
+      shard.part >= shard.count) {
+    return fail("shard '" + text + "' must read i/n with 0 <= i < n");
+  }
+  return shard;
+}
+
+void keep_shard(Plan& plan, const Shard& shard) {
+  std::erase_if(plan.cases, [&](const Case& one) { return one.index % shard.count != shard.part; });
+}
+
+Result<Scenario> make_case(const Plan& plan, const Case& one) {
+  auto document = load_scenario(plan.scenario);
+  if (!document) return tl::unexpected(document.error());
+  for (const Setting& setting : one.settings) {
+    if (auto done = apply(*document, setting); !done) return tl::unexpected(done.error());
+  }
+  if (auto done = document->set("seed", std::to_string(one.seed), "seed"); !done) {
+    return tl::unexpected(done.error());
+  }
+  if (auto checked = document->check(); !checked) return tl::unexpected(checked.error());
+  auto scenario = make_scenario(plan.scenario, *document);
+  if (!scenario) return scenario;
+  scenario->bare = true;
+  scenario->depths = false;
+  scenario->lying = plan.lying;
+  if (plan.blackout) place_blackout(*scenario);
+  return scenario;
+}
+
+}  // namespace palp::lab

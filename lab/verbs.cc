@@ -1,0 +1,337 @@
+#include "lab/verbs.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+#include "common/config/report.h"
+#include "common/config/settings_text.h"
+#include "common/coupling/any_coupling.h"
+#include "lab/batch_report.h"
+#include "lab/metric_table.h"
+#include "lab/svg_plot.h"
+
+namespace palp::lab {
+namespace {
+
+using config::Ending;
+using config::ExitCode;
+
+constexpr std::uint64_t kSeedMax = 9007199254740991;  // what a JSON number holds exactly
+
+Ending bad_input(const Error& error) { return {ExitCode::BadInput, "palp-lab: " + error.text}; }
+
+/// One line that grows, for a person.
+void show_progress(std::size_t done, std::size_t count) {
+  static_cast<void>(std::fprintf(stderr, "\r%zu of %zu", done, count));
+  if (done == count) static_cast<void>(std::fprintf(stderr, "\r                    \r"));
+}
+
+/// Writes what was asked for; the error, if any.
+std::optional<Ending> write_files(const std::vector<std::pair<std::string, std::string>>& files) {
+  for (const auto& [path, text] : files) {
+    if (path.empty()) continue;
+    if (const auto written = config::write_whole_file(path, text); !written) {
+      return Ending{ExitCode::CannotOpen, "palp-lab: " + written.error().text};
+    }
+  }
+  return std::nullopt;
+}
+
+PlanAsk ask_of(const BatchArguments& arguments) {
+  PlanAsk ask;
+  ask.count = arguments.count;
+  ask.seed = arguments.seed.value_or(1);
+  if (!arguments.coupling.empty()) ask.coupling = arguments.coupling;
+  ask.tissue = arguments.tissue;
+  return ask;
+}
+
+struct Run {
+  Plan plan;
+  std::vector<CaseResult> results;
+  BatchAccount account;
+};
+
+Result<Run> run(Plan plan, const BatchArguments& arguments, const Machine& machine) {
+  if (!arguments.shard.empty()) {
+    const auto shard = parse_shard(arguments.shard);
+    if (!shard) return tl::unexpected(shard.error());
+    keep_shard(plan, *shard);
+  }
+  const std::size_t cores = arguments.cores > 0 ? arguments.cores : machine.processors;
+  const auto begin = machine.used();
+  auto results = run_plan(
+      plan,
+      [&](std::size_t count, const std::function<void(std::size_t)>& work) {
+        machine.for_each_index(count, cores, work);
+      },
+      show_progress);
+  if (!results) return tl::unexpected(results.error());
+  const auto end = machine.used();
+  BatchAccount account;
+  account.coupling = ask_of(arguments).coupling;
+  account.shard = arguments.shard;
+  account.cores = cores;
+  account.cpu = end.first - begin.first;
+  account.wall = end.second - begin.second;
+  account.cases_csv = arguments.cases;
+  return Run{std::move(plan), std::move(*results), account};
+}
+
+/// The metric over the first label that is a number, one curve per value of all other labels.
+std::string plot(const Run& done, const std::string& metric, const std::string& title) {
+  const auto table = metric_table();
+  const auto found = std::find_if(
+      table.begin(), table.end(), [&](const Metric& one) { return one.name == metric; });
+  if (found == table.end() || done.plan.label_names.empty()) return {};
+  const auto at = static_cast<std::size_t>(found - table.begin());
+  std::map<std::string, Curve> curves;
+  for (const CaseResult& result : done.results) {
+    std::string name;
+    for (std::size_t i = 1; i < result.labels.size(); ++i) {
+      if (std::any_of(done.results.begin(), done.results.end(), [&](const CaseResult& other) {
+            return other.labels[i] != result.labels[i];
+          })) {
+        name += (name.empty() ? "" : " ") + result.labels[i];
+      }
+    }
+    Curve& curve = curves[name];
+    curve.name = name;
+    double x = 0;
+    const std::string& label = result.labels.front();
+    std::from_chars(label.data(), label.data() + label.size(), x);
+    curve.x.push_back(x);
+    curve.y.push_back(result.values[at]);
+  }
+  std::vector<Curve> list;
+  for (auto& [name, curve] : curves) list.push_back(std::move(curve));
+  Axes axes;
+  axes.title = title;
+  axes.x_name = done.plan.label_names.front();
+  axes.y_name = metric;
+  axes.x_logarithmic = axes.x_name == "rtt_ms";
+  return curves_svg(axes, list);
+}
+
+Ending finish(const Run& done, const BatchArguments& arguments, const std::string& svg) {
+  if (auto failed =
+          write_files({{arguments.cases, cases_csv(done.plan, done.results)},
+                       {arguments.report, batch_report(done.plan, done.results, done.account)},
+                       {arguments.svg, svg}})) {
+    return *failed;
+  }
+  return {ExitCode::Done, batch_summary(done.plan, done.results, done.account)};
+}
+
+Ending montecarlo(const BatchArguments& arguments, const Machine& machine, bool lying) {
+  auto plan = make_set(lying ? "mc-adv" : arguments.set, ask_of(arguments));
+  if (!plan) return bad_input(plan.error());
+  auto done = run(std::move(*plan), arguments, machine);
+  if (!done) return bad_input(done.error());
+  if (lying) done->account.schema = "palp.adversary/1";
+  return finish(*done, arguments, plot(*done, arguments.metric, "set " + done->plan.name));
+}
+
+Ending sweep(const BatchArguments& arguments, const Machine& machine) {
+  PlanAsk ask = ask_of(arguments);
+  ask.coupling = arguments.coupling;
+  auto plan = make_sweep(arguments.scenario, arguments.list, arguments.repeats, ask);
+  if (!plan) return bad_input(plan.error());
+  auto done = run(std::move(*plan), arguments, machine);
+  if (!done) return bad_input(done.error());
+  done->account.schema = "palp.sweep/1";
+  return finish(*done, arguments, plot(*done, arguments.metric, "sweep of " + arguments.scenario));
+}
+
+std::string map_report(const Run& done) {
+  using Json = nlohmann::ordered_json;
+  Json json;
+  json["schema"] = "palp.map/1";
+  json["seed"] = done.plan.seed;
+  json["tissue"] = done.plan.tissue;
+  json["shard"] = done.account.shard.empty() ? Json(nullptr) : Json(done.account.shard);
+  Json grips = Json::array();
+  Json springs = Json::array();
+  Json trips = Json::array();
+  Json stable = Json::array();
+  const auto index_in = [](Json& list, const Json& value) {
+    auto found = std::find(list.begin(), list.end(), value);
+    if (found == list.end()) {
+      list.push_back(value);
+      found = list.end() - 1;
+    }
+    return static_cast<std::size_t>(found - list.begin());
+  };
+  const auto number = [](const std::string& text) {
+    double value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+  };
+  for (const CaseResult& result : done.results) {
+    const std::size_t grip = index_in(grips, result.labels[6]);
+    const std::size_t spring = index_in(springs, number(result.labels[0]));
+    const std::size_t trip = index_in(trips, number(result.labels[1]));
+    stable[grip][spring][trip] = !result.unstable;
+  }
+  json["grips"] = grips;
+  json["k_p_n_per_m"] = springs;
+  json["rtt_ms"] = trips;
+  json["stable"] = stable;
+  json["cores"] = done.account.cores;
+  json["cpu_s"] = done.account.cpu;
+  json["wall_s"] = done.account.wall;
+  return json.dump(2) + "\n";
+}
+
+Ending map(const BatchArguments& arguments, const Machine& machine) {
+  if (!arguments.coupling.empty() && arguments.coupling != "direct") {
+    return bad_input({"the map is that of eq. (1): coupling direct"});
+  }
+  auto done = run(make_map(ask_of(arguments)), arguments, machine);
+  if (!done) return bad_input(done.error());
+  if (auto failed = write_files({{arguments.cases, cases_csv(done->plan, done->results)},
+                                 {arguments.report, map_report(*done)},
+                                 {arguments.svg, map_svg(done->plan, done->results)}})) {
+    return *failed;
+  }
+  std::string text;
+  std::string row;
+  for (const CaseResult& result : done->results) {
+    const std::string name = result.labels[6] + " k_p " + result.labels[0];
+    if (name != row) text += (row.empty() ? "" : "\n") + name + std::string(20 - name.size(), ' ');
+    row = name;
+    text += result.unstable ? " ." : " S";
+  }
+  return {ExitCode::Done, text + "\n"};
+}
+
+Ending compare(const BatchArguments& arguments, const Machine& machine) {
+  std::string text;
+  nlohmann::ordered_json json;
+  json["schema"] = "palp.compare/1";
+  Run all;
+  for (const std::string_view name : coupling::kCouplingNames) {
+    BatchArguments one = arguments;
+    one.coupling = name;
+    auto plan = make_set(one.set, ask_of(one));
+    if (!plan) return bad_input(plan.error());
+    auto done = run(std::move(*plan), one, machine);
+    if (!done) return bad_input(done.error());
+    text += batch_summary(done->plan, done->results, done->account) + "\n";
+    json["couplings"][one.coupling] =
+        nlohmann::ordered_json::parse(batch_report(done->plan, done->results, done->account));
+    all.plan.label_names = done->plan.label_names;
+    all.plan.label_names.emplace_back("coupling");
+    for (CaseResult& result : done->results) {
+      result.labels.push_back(one.coupling);
+      result.index += all.results.size() - result.index;
+      all.results.push_back(std::move(result));
+    }
+  }
+  if (auto failed =
+          write_files({{arguments.report, json.dump(2) + "\n"},
+                       {arguments.cases, cases_csv(all.plan, all.results)},
+                       {arguments.svg, plot(all, arguments.metric, "set " + arguments.set)}})) {
+    return *failed;
+  }
+  return {ExitCode::Done, text};
+}
+
+Ending merge(const BatchArguments& arguments) {
+  Run all;
+  for (const std::string& path : arguments.list) {
+    const auto text = config::read_whole_file(path);
+    if (!text) return {ExitCode::CannotOpen, "palp-lab: " + text.error().text};
+    auto rows = read_cases_csv(*text, path, all.plan);
+    if (!rows) return bad_input(rows.error());
+    all.results.insert(all.results.end(), rows->begin(), rows->end());
+  }
+  std::sort(all.results.begin(), all.results.end(), [](const auto& a, const auto& b) {
+    return a.index < b.index;
+  });
+  for (std::size_t i = 0; i < all.results.size(); ++i) {
+    if (all.results[i].index == i) continue;
+    return bad_input({"case " + std::to_string(i) + " is missing or given twice: merge the cases " +
+                      "of all shards of one plan"});
+  }
+  all.plan.name = arguments.set;
+  all.plan.seed = arguments.seed.value_or(1);
+  all.plan.tissue = arguments.tissue;
+  all.account.coupling = ask_of(arguments).coupling;
+  return finish(all, arguments, plot(all, arguments.metric, "set " + all.plan.name));
+}
+
+void declare_common(config::CommandLine& verb, BatchArguments& arguments) {
+  verb.whole("--seed", arguments.seed, {.min = 0, .max = kSeedMax}, "of everything random; 1");
+  verb.text("--tissue", arguments.tissue, "NAME", "closed-form, fe, or a phantom");
+  verb.text("--report", arguments.report, "FILE", "report as JSON");
+  verb.text("--cases", arguments.cases, "FILE", "one row per case as CSV");
+  verb.text("--svg", arguments.svg, "FILE", "plot");
+}
+
+void declare_running(config::CommandLine& verb, BatchArguments& arguments) {
+  declare_common(verb, arguments);
+  verb.text("--shard", arguments.shard, "I/N", "only every Nth case, from the Ith on");
+  verb.whole("--cores", arguments.cores, {.min = 1, .max = 1024}, "threads; as many as there are");
+}
+
+}  // namespace
+
+void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
+  const auto set_flags = [&](config::CommandLine& verb, bool with_set) {
+    if (with_set) {
+      verb.text("--set", arguments.set, "NAME", "which (palp-lab scenarios lists them)");
+    }
+    verb.whole("--count", arguments.count, {.min = 1, .max = 1000000}, "cases of a random set");
+    verb.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
+  };
+  auto& monte = line.verb("montecarlo", "a set of scenarios: errors, energies, stability");
+  set_flags(monte, true);
+  monte.text("--coupling", arguments.coupling, "NAME", "the law; mmt");
+  declare_running(monte, arguments);
+  auto& liar = line.verb("adversary", "random cases with a patient site that lies");
+  set_flags(liar, false);
+  liar.text("--coupling", arguments.coupling, "NAME", "the law; mmt");
+  declare_running(liar, arguments);
+  auto& side_by_side = line.verb("compare", "a set with every coupling");
+  set_flags(side_by_side, true);
+  declare_running(side_by_side, arguments);
+  auto& stability = line.verb("map", "stability of eq. (1): spring, round trip, grip");
+  stability.text("--coupling", arguments.coupling, "NAME", "direct");
+  declare_running(stability, arguments);
+  auto& axes = line.verb("sweep", "all combinations of settings: PATH=VALUE,VALUE,...");
+  axes.text("--scenario", arguments.scenario, "NAME", "what they change; standard");
+  axes.text("--coupling", arguments.coupling, "NAME", "instead of the scenario's");
+  axes.whole("--repeats", arguments.repeats, {.min = 1, .max = 100000}, "seeds of each; 1");
+  axes.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
+  axes.arguments("AXIS", arguments.list, "PATH=VALUE,VALUE,...; coupling.* means both sites");
+  axes.required();
+  declare_running(axes, arguments);
+  auto& joined = line.verb("merge", "cases files of all shards become one report");
+  joined.text("--set", arguments.set, "NAME", "how to call it");
+  joined.text("--coupling", arguments.coupling, "NAME", "the law they were run with");
+  joined.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
+  joined.arguments("FILE", arguments.list, "as --cases wrote them");
+  joined.required();
+  declare_common(joined, arguments);
+}
+
+std::optional<Ending> run_batch_verb(const std::string& verb,
+                                     const BatchArguments& arguments,
+                                     const Machine& machine) {
+  if (verb == "montecarlo") return montecarlo(arguments, machine, false);
+  if (verb == "adversary") return montecarlo(arguments, machine, true);
+  if (verb == "compare") return compare(arguments, machine);
+  if (verb == "map") return map(arguments, machine);
+  if (verb == "sweep") return sweep(arguments, machine);
+  if (verb == "merge") return merge(arguments);
+  return std::nullopt;
+}
+
+}  // namespace palp::lab

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/config/command_line.h"
+
+/// The verbs of palp-lab that run many cases.
+namespace palp::lab {
+
+/// What the process has to offer: main() knows processors and clocks, the lab does not.
+struct Machine {
+  std::size_t processors{1};
+  std::function<void(
+      std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work)>
+      for_each_index;
+  std::function<std::pair<double, double>()> used;  ///< [s] of processor time, [s] of wall time
+};
+
+struct BatchArguments {
+  std::string set{"mc"};
+  std::string scenario{"standard"};
+  std::string coupling;
+  std::string tissue{"closed-form"};
+  std::string shard;
+  std::string report;
+  std::string cases;
+  std::string svg;
+  std::string metric{"tap_a_error"};
+  std::vector<std::string> list;  ///< axes of a sweep, files of a merge
+  std::optional<std::uint64_t> seed;
+  std::uint64_t count{1000};
+  std::uint64_t repeats{1};
+  std::uint64_t cores{};
+};
+
+/// Declares the verbs; `arguments` outlives the command line.
+void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments);
+/// Runs the one chosen; nullopt: it is none of them.
+[[nodiscard]] std::optional<config::Ending> run_batch_verb(const std::string& verb,
+                                                           const BatchArguments& arguments,
+                                                           const Machine& machine);
+
+}  // namespace palp::lab
