@@ -7,7 +7,7 @@ namespace palp::netem {
 namespace {
 
 /// Datagrams that may wait where the words give no number. Beyond it they are dropped.
-constexpr std::size_t kWaitingMax = 65'536;
+constexpr std::size_t kWaitingMax = 65'536;  // a power of two
 constexpr std::uint64_t kNanoseconds = 1'000'000'000;
 /// CoDel leaves a queue alone that holds no more than one full frame (RFC 8289, section 4.4).
 constexpr std::uint64_t kCodelBytes = 1514;
@@ -33,32 +33,35 @@ Duration line_time(const RateLaw& law, std::uint64_t frame) noexcept {
 }
 
 Bottleneck::Bottleneck(const Impairment& impairment)
-    : rate_{impairment.rate}, queue_{impairment.queue} {
-  if (!off()) waiting_.resize(kWaitingMax);
+    : rate_{impairment.rate},
+      queue_{impairment.queue},
+      queued_{!off() && impairment.queue != QueueLaw{}} {
+  if (queued_) waiting_.resize(kWaitingMax);
 }
 
 void Bottleneck::change(const Impairment& impairment) noexcept {
   rate_ = impairment.rate;
   queue_ = impairment.queue;
-  if (!off() && waiting_.empty()) waiting_.resize(kWaitingMax);
+  timed_length_ = 0;
+  queued_ = !off() && queue_ != QueueLaw{};
+  if (queued_ && waiting_.empty()) waiting_.resize(kWaitingMax);
 }
 
-std::optional<TimePoint> Bottleneck::pass(TimePoint at, std::uint64_t length) noexcept {
+std::optional<TimePoint> Bottleneck::pass_queue(TimePoint at, std::uint64_t length) noexcept {
   forget(at);
   if (full(at, length)) return std::nullopt;
   const TimePoint head = std::max(at, free_at_);
   if (queue_.codel && codel_drops(at, head)) return std::nullopt;
   if (head > at) {
-    waiting_[(first_ + count_++) % waiting_.size()] = {head, length};
+    waiting_[(first_ + count_++) % kWaitingMax] = {head, length};
     bytes_ += length;
   }
-  free_at_ = head + line_time(rate_, length);
-  return free_at_;
+  return serve(head, length);
 }
 
 bool Bottleneck::full(TimePoint at, std::uint64_t length) const noexcept {
   if (free_at_ <= at) return false;  // nobody in front: it does not wait
-  return count_ == waiting_.size() || (queue_.packets > 0 && count_ >= queue_.packets) ||
+  return count_ == kWaitingMax || (queue_.packets > 0 && count_ >= queue_.packets) ||
          (queue_.bytes > 0 && bytes_ + length > queue_.bytes) ||
          (queue_.wait > Duration{} && free_at_ - at > queue_.wait);
 }
@@ -100,7 +103,7 @@ bool Bottleneck::codel_drops(TimePoint at, TimePoint head) noexcept {
 void Bottleneck::forget(TimePoint at) noexcept {
   while (count_ > 0 && waiting_[first_].begins <= at) {
     bytes_ -= waiting_[first_].length;
-    first_ = (first_ + 1) % waiting_.size();
+    first_ = (first_ + 1) % kWaitingMax;
     --count_;
   }
 }

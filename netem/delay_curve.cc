@@ -138,10 +138,8 @@ double DelayCurve::at_share(double p) const noexcept {
   }
 }
 
-double DelayCurve::at_normal(double z) const noexcept {
+double DelayCurve::bent(double z) const noexcept {
   switch (shape_) {
-    case DelayShape::Normal:
-      return z;
     case DelayShape::Gamma:
       if (values_.empty()) return z;
       return lerp_at(values_, (z + kZMax) * (kGammaCells / (2 * kZMax)));
@@ -217,8 +215,10 @@ void DelayCurve::make_gamma() {
 double DelayCurve::normal_correlation(double asked) const {
   if (asked <= 0) return 0;
   if (asked >= 1) return 1;
+  // No draw of a normal is so low that it would be lifted: its correlation is the delay's.
+  if (shape_ == DelayShape::Normal && mean_ - kZMax * jitter_ > floor_) return asked;
   constexpr std::size_t kOrder = 60;
-  constexpr int kCells = 6000;
+  constexpr int kCells = 3000;
   constexpr double kWidth = 2 * kZMax / kCells;
   std::vector<double> coefficients(kOrder + 1);
   double squares = 0;

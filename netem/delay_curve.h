@@ -17,7 +17,15 @@ class DelayCurve {
   /// In units of the jitter around the mean, of the share `p` (0 < p < 1) of all that are shorter.
   [[nodiscard]] double at_share(double p) const noexcept;
   /// The same where the standard normal is `z`.
-  [[nodiscard]] double at_normal(double z) const noexcept;
+  [[nodiscard]] double at_normal(double z) const noexcept {
+    return shape_ == DelayShape::Normal ? z : bent(z);
+  }
+
+  /// Its argument should be a standard normal rather than a share.
+  [[nodiscard]] bool by_normal() const noexcept {
+    return shape_ == DelayShape::Normal || shape_ == DelayShape::Gamma ||
+           shape_ == DelayShape::LogNormal;
+  }
 
   /// The law's own mean and spread; of a histogram those of its counts [ns].
   [[nodiscard]] double mean() const noexcept { return mean_; }
@@ -28,6 +36,7 @@ class DelayCurve {
   [[nodiscard]] double normal_correlation(double asked) const;
 
  private:
+  [[nodiscard]] double bent(double z) const noexcept;
   void make_table(std::vector<double> sorted);
   void make_histogram(const DelayHistogram& histogram);
   void make_gamma();

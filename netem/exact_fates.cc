@@ -55,6 +55,11 @@ void ExactFates::change(const PreparedLaw& law) noexcept {
   swap_.change(impairment.swap);
   bottleneck_.change(impairment);
   trace_at_ = 0;
+  shared_ = !impairment.blackouts.empty() || impairment.burst.length > Duration{} ||
+            impairment.state || impairment.gemodel || !impairment.bitmap.lost.empty() ||
+            impairment.gilbert.bad > Duration{} || impairment.stall.median > Duration{} ||
+            impairment.reorder.gap > 0 || impairment.order == Order::Swap;
+  damages_ = impairment.truncate.share > 0 || impairment.corrupt.share > 0;
   mean_ = law.curve.mean();
   jitter_ = law.curve.jitter();
   least_ = impairment.delay.floor * mean_;
@@ -80,6 +85,7 @@ void ExactFates::lean(const Impairment& towards, double share) noexcept {
   loss_.change(mix(from.loss, towards.loss));
   duplicate_.change(mix(from.duplicate, towards.duplicate));
   corrupt_.change(mix(from.corrupt, towards.corrupt));
+  damages_ = true;
 }
 
 std::span<const CopyFate> ExactFates::next(const Arrival& arrival) noexcept {
@@ -89,7 +95,9 @@ std::span<const CopyFate> ExactFates::next(const Arrival& arrival) noexcept {
   last_at_ = at;
 
   const std::size_t count = 1 + (duplicate_.next(index_) ? 1U : 0U) + flood_;
-  Common common = common_fate(at);
+  Common common;
+  common.onward = at;
+  if (shared_) common = common_fate(at);
   common.onward = std::max(common.onward, arrival.held_until);
   std::size_t room = arrival.room;
   for (std::size_t copy = 0; copy < count; ++copy) {
@@ -101,7 +109,7 @@ std::span<const CopyFate> ExactFates::next(const Arrival& arrival) noexcept {
       if (markable) fate.tos |= kEcnMask;
       if (!markable) fate.verdict = Verdict::Lost;
     }
-    damage(fate, copy);
+    if (damages_) damage(fate, copy);
     if (common.dark) {
       fate.verdict = Verdict::Blackout;
     } else if (fate.verdict != Verdict::Lost &&
@@ -121,7 +129,7 @@ std::span<const CopyFate> ExactFates::next(const Arrival& arrival) noexcept {
   return std::span{copies_}.first(count);
 }
 
-ExactFates::Common ExactFates::common_fate(TimePoint at) noexcept {
+inline ExactFates::Common ExactFates::common_fate(TimePoint at) noexcept {
   Common common;
   common.onward = at;
   common.dark = !law_->impairment.blackouts.empty() && in_blackout(at);
@@ -147,7 +155,7 @@ ExactFates::Common ExactFates::common_fate(TimePoint at) noexcept {
 }
 
 /// Of every datagram, lost or not, so that losses move no other draw.
-bool ExactFates::jumps() noexcept {
+inline bool ExactFates::jumps() noexcept {
   if (++since_reorder_ < law_->impairment.reorder.gap || !reorder_.next(index_)) return false;
   since_reorder_ = 0;
   return true;
@@ -163,7 +171,7 @@ bool ExactFates::in_blackout(TimePoint at) const noexcept {
 }
 
 /// Every process is asked, whatever the others said: their states do not depend on each other.
-bool ExactFates::lost(const Common& common, std::size_t copy) noexcept {
+inline bool ExactFates::lost(const Common& common, std::size_t copy) noexcept {
   bool lost = common.lost;
   const bool random =
       copy == 0 ? loss_.next(index_) : loss_.aside(streams_.of(Stage::Loss, copy), index_);
@@ -179,7 +187,7 @@ bool ExactFates::lost(const Common& common, std::size_t copy) noexcept {
   return lost;
 }
 
-void ExactFates::damage(CopyFate& fate, std::size_t copy) noexcept {
+inline void ExactFates::damage(CopyFate& fate, std::size_t copy) noexcept {
   if (!truncate_.off()) {
     const bool cut = copy == 0 ? truncate_.next(index_)
                                : truncate_.aside(streams_.of(Stage::Truncate, copy), index_);
@@ -203,7 +211,7 @@ void ExactFates::damage(CopyFate& fate, std::size_t copy) noexcept {
 }
 
 /// Prepares the step of the correlated process over `gap`.
-void ExactFates::correlate(Duration gap) noexcept {
+inline void ExactFates::correlate(Duration gap) noexcept {
   const Duration memory = law_->impairment.delay.correlation_time;
   if (memory == Duration{} || gap == carry_gap_) return;
   const double span = seconds(gap) / seconds(memory);
@@ -213,7 +221,9 @@ void ExactFates::correlate(Duration gap) noexcept {
 }
 
 /// A draw for each original, got through or not: correlated delays and the rest stay apart.
-void ExactFates::draw_delay(CopyFate& fate, std::size_t copy, const Common& common) noexcept {
+inline void ExactFates::draw_delay(CopyFate& fate,
+                                   std::size_t copy,
+                                   const Common& common) noexcept {
   const bool delivered = fate.verdict == Verdict::Delivered || fate.verdict == Verdict::HeaderHit;
   if (!delivered && (copy > 0 || !correlated_)) return;
   if (!law_->impairment.trace.points.empty()) {
@@ -227,7 +237,8 @@ void ExactFates::draw_delay(CopyFate& fate, std::size_t copy, const Common& comm
     } else {
       const RandomStream stream = stream_of(delay_stream_, Stage::Delay, copy);
       // The middle of each of 2^53 cells: never 0 or 1.
-      around = law_->curve.at_share(stream.uniform(index_) + 0x1.0p-54);
+      around = law_->curve.by_normal() ? law_->curve.at_normal(law_->normal.at(stream.bits(index_)))
+                                       : law_->curve.at_share(stream.uniform(index_) + 0x1.0p-54);
     }
     const double drawn = mean_ + jitter_ * around;
     fate.floored = drawn < least_;
@@ -249,9 +260,9 @@ void ExactFates::draw_delay(CopyFate& fate, std::size_t copy, const Common& comm
 
 /// A standard normal. A duplicate is a sibling of its original in the correlated process and leaves
 /// no trace in it.
-double ExactFates::draw_normal(std::size_t copy) noexcept {
+inline double ExactFates::draw_normal(std::size_t copy) noexcept {
   const RandomStream stream = stream_of(delay_stream_, Stage::Delay, copy);
-  double z = stream.normal(index_);
+  double z = law_->normal.at(stream.bits(index_));
   if (!first_) z = carry_ * z_before_ + fresh_ * z;
   if (copy == 0) z_ = z;
   return z;
@@ -292,7 +303,7 @@ Duration ExactFates::traced_delay(TimePoint onward, std::size_t copy) noexcept {
   return std::max(delay, Duration{});
 }
 
-void ExactFates::put_in_order(CopyFate& fate, bool swaps) noexcept {
+inline void ExactFates::put_in_order(CopyFate& fate, bool swaps) noexcept {
   const TimePoint earliest = last_at_;
   if (law_->impairment.order != Order::Netem && !fate.immediate) {
     fate.release = std::max(fate.release, last_release_);

@@ -93,7 +93,9 @@ class ExactFates {
   RandomStream stay_loss_stream_;
   RandomStream gemodel_loss_stream_;
   RandomStream slot_stream_;
-  bool drawn_{};  ///< the delay is random
+  bool shared_{};   ///< common_fate() has something to say
+  bool damages_{};  ///< damage() has something to do
+  bool drawn_{};    ///< the delay is random
   bool correlated_{};
   double carry_{};          ///< [1], a of z_n = a z_(n-1) + sqrt(1 - a^2) e_n
   double fresh_{1};         ///< [1], sqrt(1 - a^2)

@@ -37,13 +37,6 @@ bool FourStateProcess::next(const FourStateLaw& law, std::uint64_t index) noexce
   return state_ >= 3;
 }
 
-double GemodelProcess::next(const GemodelLaw& law, std::uint64_t index) noexcept {
-  const bool was_bad = bad_;
-  const double draw = steps_.uniform(index);
-  if (draw < (bad_ ? law.to_good : law.to_bad)) bad_ = !bad_;
-  return was_bad ? law.loss_bad : law.loss_good;
-}
-
 bool BurstProcess::next(const BurstLaw& law, TimePoint at, std::uint64_t index) noexcept {
   const bool was_first = first_;
   const TimePoint last_at = last_at_;

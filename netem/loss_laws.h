@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "common/core/random.h"
 #include "common/core/time.h"
@@ -18,33 +19,48 @@ class ChanceProcess {
   ChanceProcess(const Chance& law, RandomStream stream) noexcept : stream_{stream} { change(law); }
 
   void change(const Chance& law) noexcept {
-    share_ = law.share;
-    after_hit_ = law.share + law.correlation * (1 - law.share);
-    after_miss_ = law.share * (1 - law.correlation);
+    off_ = law.share <= 0;
+    share_ = most_bits(law.share);
+    after_hit_ = most_bits(law.share + law.correlation * (1 - law.share));
+    after_miss_ = most_bits(law.share * (1 - law.correlation));
+    never_after_miss_ = law.share * (1 - law.correlation) <= 0;
+    now_ = share_;
+    begun_ = false;
     correlated_ = law.correlation > 0;
   }
-  [[nodiscard]] bool off() const noexcept { return share_ <= 0; }
+  [[nodiscard]] bool off() const noexcept { return off_; }
 
   /// Of datagram `index`; to be asked once for each.
   [[nodiscard]] bool next(std::uint64_t index) noexcept {
-    if (off()) return false;
-    double share = share_;
-    if (correlated_ && begun_) share = hit_ ? after_hit_ : after_miss_;
-    begun_ = true;
-    hit_ = stream_.uniform(index) < share;
-    return hit_;
+    if (off_) return false;
+    const bool hit = stream_.bits(index) <= now_ && !(begun_ && never_after_miss_ && !hit_);
+    if (correlated_) {
+      now_ = hit ? after_hit_ : after_miss_;
+      begun_ = true;
+      hit_ = hit;
+    }
+    return hit;
   }
   /// Of a copy: a sibling of its original that leaves no trace.
   [[nodiscard]] bool aside(RandomStream stream, std::uint64_t index) const noexcept {
-    return !off() && stream.uniform(index) < share_;
+    return !off_ && stream.bits(index) <= share_;
   }
 
  private:
+  /// The most that 64 random bits may be to hit with that probability, which is above 0.
+  [[nodiscard]] static std::uint64_t most_bits(double share) noexcept {
+    if (share >= 1) return std::numeric_limits<std::uint64_t>::max();
+    return static_cast<std::uint64_t>(share * 0x1.0p64);
+  }
+
   RandomStream stream_;
-  double share_{};       ///< [1]
-  double after_hit_{};   ///< [1]
-  double after_miss_{};  ///< [1]
+  std::uint64_t share_{};
+  std::uint64_t after_hit_{};
+  std::uint64_t after_miss_{};
+  std::uint64_t now_{};  ///< what holds for the next one
+  bool off_{};
   bool correlated_{};
+  bool never_after_miss_{};  ///< a correlation of 1
   bool begun_{};
   bool hit_{};
 };
@@ -65,7 +81,11 @@ class GemodelProcess {
  public:
   explicit GemodelProcess(RandomStream steps) noexcept : steps_{steps} {}
   /// The probability of loss of datagram `index`.
-  [[nodiscard]] double next(const GemodelLaw& law, std::uint64_t index) noexcept;
+  [[nodiscard]] double next(const GemodelLaw& law, std::uint64_t index) noexcept {
+    const bool was_bad = bad_;
+    if (steps_.uniform(index) < (bad_ ? law.to_good : law.to_bad)) bad_ = !bad_;
+    return was_bad ? law.loss_bad : law.loss_good;
+  }
 
  private:
   RandomStream steps_;

@@ -11,13 +11,13 @@ namespace {
 
 constexpr std::size_t kKernelLimit = 1000;  ///< tc's default
 
-std::size_t limit_of(const Impairment& impairment) {
+}  // namespace
+
+std::size_t limit_of(const Impairment& impairment) noexcept {
   if (impairment.limit > 0) return impairment.limit;
   if (impairment.mode == Mode::Netem61) return kKernelLimit;
   return std::numeric_limits<std::size_t>::max();
 }
-
-}  // namespace
 
 PreparedChange prepare(const Change& change) {
   PreparedChange prepared{.at = change.at,

@@ -5,6 +5,7 @@
 
 #include "netem/delay_curve.h"
 #include "netem/impairment.h"
+#include "netem/normal_draw.h"
 
 namespace palp::netem {
 
@@ -17,6 +18,7 @@ struct PreparedLaw {
   DelayCurve curve;
   double carry;  ///< [1], of successive normals for the correlation asked for; 0: none
   DelayCurve slot_curve;
+  NormalDraw normal;
   std::vector<std::int16_t> table;       ///< mode netem-6.1: of the delay
   std::vector<std::int16_t> slot_table;  ///< mode netem-6.1: of the slots
 };

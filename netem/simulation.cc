@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <vector>
+
+#include "netem/occupancy.h"
 
 namespace palp::netem {
 namespace {
@@ -10,35 +13,101 @@ namespace {
 /// As many as tc's limit can say where people ask for many; the memory is used as it is needed.
 constexpr std::size_t kInFlightMax = 1'000'000;
 
+/// With so many, the quantiles of every eighth delay are as good.
+constexpr std::uint64_t kManyPackets = 100'000;
+constexpr std::uint64_t kSampling = 8;
+
 /// Counts as the decisions come, without keeping any.
 class Account {
  public:
-  void add(std::span<const Decision> decisions) noexcept {
-    const Decision& original = decisions.front();
-    ++result.verdicts[static_cast<std::size_t>(original.verdict)];
-    result.copies += decisions.size() - 1;
-    if (original.verdict != Verdict::Delivered) {
+  /// Every `sampling`-th delay goes into the histograms.
+  explicit Account(std::uint64_t sampling) : sampling_{sampling} {}
+
+  /// The original of the next datagram, and how many copies came with it.
+  void add(Verdict verdict, bool corrupted, bool floored, Duration intended, std::size_t copies) {
+    ++result.verdicts[static_cast<std::size_t>(verdict)];
+    result.copies += copies;
+    if (verdict != Verdict::Delivered) {
       result.loss_runs += lost_before_ ? 0 : 1;
       lost_before_ = true;
       return;
     }
     lost_before_ = false;
-    result.corrupted += original.flipped_bit >= 0 ? 1 : 0;
-    result.floored += original.floored ? 1 : 0;
-    result.intended.record(original.intended);
+    result.corrupted += corrupted ? 1 : 0;
+    result.floored += floored ? 1 : 0;
+    if (++counted_ % sampling_ == 0) result.intended.record(intended);
   }
-  void leaves(const Decision& decision) noexcept {
-    if (decision.copy > 0) return;
-    result.delay.record(decision.released_at - decision.arrived_at);
-    if (decision.index < next_) ++result.reordered;
-    next_ = std::max(next_, decision.index + 1);
+  /// An original that came at `at` leaves at `release`; in the order they came.
+  void leaves(TimePoint at, TimePoint release) {
+    if (++left_ % sampling_ == 0) result.delay.record(release - at);
+    // Those ahead that leave later are overtaken, once each (RFC 4737); who has left cannot be.
+    while (pending_.size() > first_ && pending_.back() > release) {
+      pending_.pop_back();
+      ++result.reordered;
+    }
+    while (first_ < pending_.size() && pending_[first_] <= at) ++first_;
+    if (first_ > 1024 && 2 * first_ > pending_.size()) {
+      pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(first_));
+      first_ = 0;
+    }
+    pending_.push_back(release);
   }
   SimulationResult result;
 
  private:
+  std::uint64_t sampling_;
+  std::uint64_t counted_{};
+  std::uint64_t left_{};
   bool lost_before_{};
-  std::uint64_t next_{};
+  std::vector<TimePoint> pending_;  ///< rising releases of those not overtaken, from first_ on
+  std::size_t first_{};
 };
+
+/// Calls `judge` with the time of each datagram and `pause` between the bunches.
+template <class Judge, class Pause>
+void send_all(const SimulationConfig& config, Judge&& judge, Pause&& pause) {
+  const std::uint64_t burst = std::max<std::uint64_t>(config.burst, 1);
+  const Duration step = config.interval * static_cast<std::int64_t>(burst);
+  TimePoint at{};
+  for (std::uint64_t k = 0; k < config.packets; at += step) {
+    for (const std::uint64_t end = std::min(k + burst, config.packets); k < end; ++k) judge(at);
+    pause(at);
+  }
+}
+
+std::size_t payload_of(const SimulationConfig& config) {
+  return config.frame_length > kFrameHeaders ? config.frame_length - kFrameHeaders : 0;
+}
+
+/// Where only sums are wanted and nothing changes on the way, nobody need be held in order: how
+/// many are on their way is enough. The fates are the same.
+SimulationResult sums(const SimulationConfig& config) {
+  const Impairment& law = config.plan.impairment;
+  FateSequence fates{law, config.seed, config.direction, TimePoint{}};
+  Occupancy occupancy{std::min(limit_of(law), kInFlightMax)};
+  Account account{config.packets >= kManyPackets ? kSampling : 1};
+  Arrival arrival{.length = payload_of(config)};
+  const Duration tie{law.mode == Mode::Netem61 ? 1 : 0};
+  send_all(
+      config,
+      [&](TimePoint at) {
+        arrival.at = at;
+        arrival.room = occupancy.room(at - tie, kCopiesMax);
+        const auto copies = fates.next(arrival);
+        const CopyFate& original = copies.front();
+        account.add(original.verdict,
+                    original.flipped_bit >= 0,
+                    original.floored,
+                    original.delay,
+                    copies.size() - 1);
+        for (const CopyFate& copy : copies) {
+          if (copy.verdict == Verdict::Delivered) occupancy.enter(copy.release);
+        }
+        if (original.verdict == Verdict::Delivered) account.leaves(at, original.release);
+      },
+      [](TimePoint) {});
+  return account.result;
+}
 
 double milliseconds(Duration span) { return static_cast<double>(span.count()) * 1e-6; }
 
@@ -93,29 +162,36 @@ void DecisionOrder::flush() {
 }
 
 SimulationResult simulate(const SimulationConfig& config, const DecisionOrder::Sink& each) {
+  const Impairment& law = config.plan.impairment;
+  const bool kernel_slots = law.mode == Mode::Netem61 && law.slot.max > Duration{};
+  if (!each && config.plan.changes.empty() && !kernel_slots) return sums(config);
   Passage passage{config.plan, config.seed, config.direction, kInFlightMax, kInFlightMax, {}};
-  Account account;
-  DecisionOrder order{each};
-  const std::size_t payload =
-      config.frame_length > kFrameHeaders ? config.frame_length - kFrameHeaders : 0;
+  Account account{1};
+  DecisionOrder order{[&](const Decision& decision) {
+    if (decision.copy == 0 && decision.verdict == Verdict::Delivered) {
+      account.leaves(decision.arrived_at, decision.released_at);
+    }
+    if (each) each(decision);
+  }};
+  const std::size_t payload = payload_of(config);
   const auto collect = [&](TimePoint now) {
     while (const auto left = passage.pop(now)) {
-      account.leaves(*left);
-      if (each && !passage.decides_at_once()) order.left(*left);
+      if (!passage.decides_at_once()) order.left(*left);
     }
   };
-  const std::uint64_t burst = std::max<std::uint64_t>(config.burst, 1);
-  const Duration step = config.interval * static_cast<std::int64_t>(burst);
-  TimePoint at{};
-  for (std::uint64_t k = 0; k < config.packets;) {
-    for (const std::uint64_t end = std::min(k + burst, config.packets); k < end; ++k) {
-      const auto decisions = passage.push({.at = at, .length = payload, .room = kInFlightMax});
-      account.add(decisions);
-      if (each) order.decided(decisions, passage.decides_at_once());
-    }
-    collect(at);
-    at += step;
-  }
+  send_all(
+      config,
+      [&](TimePoint at) {
+        const auto decisions = passage.push({.at = at, .length = payload, .room = kInFlightMax});
+        const Decision& original = decisions.front();
+        account.add(original.verdict,
+                    original.flipped_bit >= 0,
+                    original.floored,
+                    original.intended,
+                    decisions.size() - 1);
+        order.decided(decisions, passage.decides_at_once());
+      },
+      collect);
   collect(TimePoint::max());
   return account.result;
 }

@@ -59,7 +59,7 @@ struct SimulationResult {
   std::uint64_t reordered{};  ///< originals that arrive after one sent later (RFC 4737)
   std::uint64_t loss_runs{};  ///< of originals that did not arrive
   Histogram delay;            ///< of originals, release - arrival
-  Histogram intended;
+  Histogram intended;         ///< as the law drew it
 };
 
 /// Runs it in no time at all. `each` is given every decision, by index and copy; empty: none is

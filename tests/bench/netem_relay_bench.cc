@@ -1,5 +1,6 @@
 // What the relay costs beside the plainest relays, alternating in one run:
 //   netem_relay_bench latency|rate|hold [ROUNDS [SECONDS]]
+//   netem_relay_bench trace NAME...       replays traces at their own send times
 // Times are the kernel's receive stamps against the sender's clock before its send call, less the
 // median of the direct way. A round in which other guests took more than 0.5 % of the machine is
 // discarded.
@@ -21,6 +22,7 @@
 #include <unistd.h>
 
 #include "common/io/realtime.h"
+#include "netem/data_files.h"
 #include "netem/relay.h"
 #include "tests/bench/raw_relays.h"
 
@@ -109,6 +111,20 @@ void receive(const Socket& socket, const std::atomic<bool>& stop, Arrivals& into
       into.taken_us.push_back(static_cast<double>(at - message.sent_ns) * 1e-3);
     }
   }
+}
+
+/// One at each of these times after the start of `zero`.
+std::size_t send_at(const Socket& socket, const netem::DelayTrace& trace, Duration zero) {
+  (void)io::request_realtime(kSender, false, io::read_realtime_limits()).priority;
+  std::array<char, kPayload> bytes{};
+  std::size_t sent = 0;
+  for (const auto& point : trace.points) {
+    sleep_until(zero + point.sent);
+    const Message message{sent++, now_on(CLOCK_REALTIME).count()};
+    std::memcpy(bytes.data(), &message, sizeof message);
+    (void)!::send(socket.number(), bytes.data(), bytes.size(), 0);
+  }
+  return sent;
 }
 
 /// `rate` datagrams a second, in bunches where single ones cannot be slept for.
@@ -342,6 +358,58 @@ void hold(int rounds, Duration span) {
   }
 }
 
+/// Whether each message of a trace comes when the trace says: the relay interpolates the arrival
+/// time, so the instant of the kernel's stamp counts, not the millisecond that was meant.
+void replay(const std::string& name) {
+  const auto text = netem::read_data_file(name);
+  if (!text) {
+    std::printf("%s\n", text.error().text.c_str());
+    return;
+  }
+  const netem::DelayTrace trace = *netem::parse_delay_trace(name, *text);
+  const netem::PathPlan plan{.impairment = *netem::parse_impairment("trace " + name)};
+  const double direct = median(round({}, nullptr, 100, std::chrono::seconds{1}, kTail).taken_us);
+  Socket sender;
+  Socket sink;
+  std::atomic<bool> stop{false};
+  Arrivals arrivals;
+  netem::Relay relay{{.listen = *io::resolve_endpoint("127.0.0.1:0"),
+                      .forward = sink.local(),
+                      .up = plan,
+                      .priority = kRelay}};
+  sender.connect(relay.listening_on());
+  std::thread relaying{[&] {
+    while (!stop) relay.serve(std::chrono::milliseconds{50});
+  }};
+  std::thread receiver{[&] { receive(sink, stop, arrivals); }};
+  std::vector<double> off;
+  std::thread sending{
+      [&] { arrivals.sent = send_at(sender, trace, relay.start().time_since_epoch()); }};
+  sending.join();
+  std::this_thread::sleep_for(std::chrono::seconds{3});
+  stop = true;
+  receiver.join();
+  relaying.join();
+  Duration longest{};
+  for (std::size_t i = 0; i < std::min(arrivals.taken_us.size(), trace.points.size()); ++i) {
+    const auto asked = static_cast<double>(trace.points[i].delay.count()) * 1e-3;
+    off.push_back(std::abs(arrivals.taken_us[i] - direct - asked));
+    longest = std::max(longest, trace.points[i].delay);
+  }
+  std::printf(
+      "%s: sent %zu, arrived %zu, longest %.0f ms; error p50 %.1f, p99 %.1f us against the "
+      "trace's milliseconds, p99 %.1f us against what was decided\n",
+      name.c_str(),
+      arrivals.sent,
+      arrivals.taken_us.size(),
+      seconds(longest) * 1e3,
+      quantile(off, 0.5),
+      quantile(off, 0.99),
+      static_cast<double>(
+          relay.traffic(netem::Direction::Up).release_error.quantile(0.99).count()) *
+          1e-3);
+}
+
 }  // namespace
 }  // namespace palp::bench
 
@@ -355,7 +423,9 @@ int main(int argc, char** argv) {
     palp::bench::rate(rounds, span);
   else if (what == "hold")
     palp::bench::hold(rounds, span);
-  else {
+  else if (what == "trace") {
+    for (int i = 2; i < argc; ++i) palp::bench::replay(argv[i]);
+  } else {
     std::fputs("netem_relay_bench latency|rate|hold [ROUNDS [SECONDS]]\n", stderr);
     return 2;
   }

@@ -50,7 +50,8 @@ TEST_P(DelayTraceTest, KeepsOrderAndTheShapeOfItsStallsAtAnotherRate) {
   const auto result = simulate({.plan = {.impairment = impaired("trace " + name)},
                                 .packets = static_cast<std::uint64_t>(trace.points.back().sent /
                                                                       std::chrono::milliseconds{1}),
-                                .interval = std::chrono::milliseconds{1}});
+                                .interval = std::chrono::milliseconds{1}},
+                               [](const Decision&) {});
   EXPECT_EQ(result.reordered, 0U);
   // A message held by a stall is met on its millisecond.
   EXPECT_EQ(result.delay.max(), longest);
