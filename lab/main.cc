@@ -11,6 +11,7 @@
 #include "common/config/report.h"
 #include "common/io/parallel.h"
 #include "common/io/process_time.h"
+#include "lab/depth_command.h"
 #include "lab/plan.h"
 #include "lab/run_report.h"
 #include "lab/scenario_file.h"
@@ -131,6 +132,8 @@ int main(int argc, char** argv) {
   palp::lab::BatchArguments batch;
   palp::lab::declare_batch_verbs(line, batch);
   line.verb("scenarios", "lists the scenarios that come with the lab");
+  palp::lab::DepthFlags depth;
+  declare_depth(line.verb("depth", "how well a depth is estimated, over many phantoms"), depth);
   if (const auto ending = line.parse(argc, argv)) return leave(*ending);
   try {
     if (const auto ending =
@@ -141,6 +144,7 @@ int main(int argc, char** argv) {
       return leave({palp::config::ExitCode::Done,
                     palp::lab::describe_scenarios() + palp::lab::describe_sets()});
     }
+    if (line.chosen_verb() == "depth") return leave(palp::lab::run_depth(depth));
     return leave(palp::lab::run(arguments));
   } catch (const std::exception& failure) {
     return leave({palp::config::ExitCode::CannotOpen, std::string{"palp-lab: "} + failure.what()});

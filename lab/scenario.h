@@ -7,7 +7,7 @@
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
 #include "netem/impairment.h"
-#include "patient_site/estimator/paper_estimator.h"
+#include "patient_site/estimator/depth_estimator.h"
 #include "patient_site/patient_node.h"
 #include "patient_site/phantom.h"
 #include "patient_site/simulated_phantom.h"
@@ -29,7 +29,7 @@ struct Scenario {
   patient::PatientConfig patient;
   patient::SimulatedPhantomConfig tissue;
   patient::Phantom phantom;
-  estimator::PaperEstimatorConfig estimator;
+  estimator::DepthEstimatorConfig estimator;
   netem::Impairment up;    ///< surgeon to patient
   netem::Impairment down;  ///< patient to surgeon
   Duration duration{};     ///< virtual; 0: until the script is done

@@ -29,13 +29,22 @@ std::string link_text(const link::LinkHealth& link) {
   return text;
 }
 
+std::string interval_text(const DepthEstimate& depth) {
+  if (!(depth.depth_high > depth.depth_low)) return {};
+  return number(" (", depth.depth_low / kMillimetre, 1, " to ") +
+         number("", depth.depth_high / kMillimetre, 1, ")");
+}
+
 std::string depth_text(const DepthEstimate& depth) {
   if (depth.number == 0) return "depth -";
   const std::string hash = number(" (h ", depth.hash, 4, " N)");
   switch (depth.verdict) {
     case DepthVerdict::Found:
-      return number("depth ", depth.depth / kMillimetre, 1, " mm") + hash;
+      return number("depth ", depth.depth / kMillimetre, 1, " mm") + interval_text(depth) + hash;
     case DepthVerdict::None:
+      if (depth.depth_low > 0) {
+        return number("no inclusion above ", depth.depth_low / kMillimetre, 0, " mm") + hash;
+      }
       return "no inclusion" + hash;
     case DepthVerdict::Invalid:
       break;

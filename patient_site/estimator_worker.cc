@@ -8,7 +8,7 @@ constexpr double kAirRecorded = 1e-3;  // [m]
 
 }  // namespace
 
-EstimatorWorker::EstimatorWorker(const estimator::PaperEstimatorConfig& config, Parts parts)
+EstimatorWorker::EstimatorWorker(const estimator::DepthEstimatorConfig& config, Parts parts)
     : estimator_{config}, parts_{parts} {}
 
 std::size_t EstimatorWorker::drain() {

@@ -5,11 +5,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 #include <utility>
 #include <vector>
 
 #include "common/core/check.h"
 #include "common/core/conventions.h"
+#include "fem/depth_database.h"
 #include "patient_site/phantom_tables.h"
 
 namespace palp::patient {
@@ -81,6 +83,67 @@ Result<Phantom> closed_form_phantom(std::string_view spec, std::string_view dept
                  .shape = "unknown"};
 }
 
+/// "ball depth=12 radius=8 ratio=200": words of a phantom from the depth database; lengths in mm.
+Result<fem::DepthDatabase::Query> database_query(std::string_view spec) {
+  const auto wrong = [&](const std::string& sentence) {
+    return fail("phantom '" + std::string{spec} + "': " + sentence);
+  };
+  fem::DepthDatabase::Query query{
+      .shape = fem::InclusionShape::Ball, .depth = 0, .radius = kPaperRadius, .ratio = kPaperRatio};
+  std::istringstream words{std::string{spec}};
+  std::string word;
+  words >> word;
+  if (word == "cylinder") query.shape = fem::InclusionShape::Cylinder;
+  while (words >> word) {
+    const auto mark = word.find('=');
+    const std::string name = word.substr(0, mark);
+    const std::string text = mark == std::string::npos ? "" : word.substr(mark + 1);
+    double value = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || stop != text.data() + text.size() || !std::isfinite(value)) {
+      return wrong("'" + word + "' is not NAME=NUMBER");
+    }
+    if (name == "depth") {
+      query.depth = value * kMillimetre;
+    } else if (name == "radius") {
+      query.radius = value * kMillimetre;
+    } else if (name == "ratio") {
+      query.ratio = value;
+    } else {
+      return wrong("'" + name + "' is unknown; there are depth, radius (mm) and ratio");
+    }
+  }
+  return query;
+}
+
+ForceTable database_table(const fem::DepthDatabase& database,
+                          const fem::DepthDatabase::Curve& curve) {
+  constexpr double kStep = 20e-6;  // [m]; the table's own interpolation is exact to 1e-5 then
+  std::vector<ForceRow> rows;
+  const int count = static_cast<int>(curve.indentation_max / kStep + 1e-6);
+  for (int i = 0; i <= count; ++i) rows.push_back({i * kStep, database.force(curve, i * kStep)});
+  Result<ForceTable> table = ForceTable::make(std::move(rows));
+  PALP_CHECK(table.has_value(), "the database makes a sound table");
+  return std::move(*table);
+}
+
+Result<Phantom> database_phantom(std::string_view spec) {
+  const auto query = database_query(spec);
+  if (!query) return tl::unexpected(query.error());
+  const auto database = fem::default_database();
+  if (!database) return fail("phantom '" + std::string{spec} + "': " + database.error().text);
+  if (const auto ok = database->contains(*query); !ok) {
+    return fail("phantom '" + std::string{spec} + "': " + ok.error().text);
+  }
+  return Phantom{.name = std::string{spec},
+                 .plain = database_table(*database, database->plain()),
+                 .over = database_table(*database, database->curve(*query)),
+                 .depth = query->depth,
+                 .radius = query->radius,
+                 .ratio = query->ratio,
+                 .shape = std::string{to_string(query->shape)}};
+}
+
 Result<Phantom> file_phantom(std::string_view spec, std::string_view path) {
   if (path.empty()) return fail("phantom 'file:' names no file; write file:PATH.csv");
   Result<ForceTable> table = load_force_table(std::string{path});
@@ -134,11 +197,13 @@ Result<Phantom> make_phantom(std::string_view spec) {
   constexpr std::string_view kClosedForm = "closed-form:";
   if (spec.starts_with(kClosedForm))
     return closed_form_phantom(spec, spec.substr(kClosedForm.size()));
+  if (spec.starts_with("ball ") || spec.starts_with("cylinder ")) return database_phantom(spec);
   constexpr std::string_view kFile = "file:";
   if (spec.starts_with(kFile)) return file_phantom(spec, spec.substr(kFile.size()));
   return fail("unknown phantom '" + std::string{spec} +
               "'; there are paper-5mm, paper-10mm, paper-15mm, paper-20mm, paper-25mm, none, "
-              "closed-form[:DEPTH_MM] and file:PATH.csv");
+              "closed-form[:DEPTH_MM], file:PATH.csv and \"ball depth=12 radius=8 ratio=200\" (or "
+              "cylinder)");
 }
 
 std::string tissue_csv(const Phantom& phantom) {

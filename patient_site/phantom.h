@@ -17,7 +17,7 @@ struct Phantom {
   std::optional<double> depth;   ///< [m], top of the inclusion below the undeformed surface
   std::optional<double> radius;  ///< [m]
   std::optional<double> ratio;   ///< [-], stiffness of the inclusion over that of the block
-  std::string shape;             ///< "ball", "none" or "unknown"
+  std::string shape;             ///< "ball", "cylinder", "none" or "unknown"
 
   /// The tissue at a place: the sites are `kSiteBoundary` apart.
   [[nodiscard]] const ForceTable& at(double lateral) const noexcept {
@@ -29,7 +29,8 @@ struct Phantom {
 };
 
 /// `paper-5mm|paper-10mm|paper-15mm|paper-20mm|paper-25mm|none`, `closed-form[:DEPTH_MM]` (a smooth
-/// analytic law for checks, not a tissue) or `file:PATH.csv`. Everything else gives a sentence.
+/// analytic law for checks, not a tissue), `file:PATH.csv`, or from the depth database
+/// `ball depth=12 radius=8 ratio=200` (also `cylinder`). Everything else gives a sentence.
 [[nodiscard]] Result<Phantom> make_phantom(std::string_view spec);
 
 /// Both tables as CSV text, columns `site,d_mm,F_N`: what a session file keeps of its tissue.

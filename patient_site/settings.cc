@@ -59,16 +59,38 @@ SimulatedPhantomConfig make_simulation(const proto::config::SimulatedPhantom& me
   return simulation;
 }
 
-Result<estimator::PaperEstimatorConfig> make_estimator(const proto::config::Estimator& message,
+Result<estimator::DepthEstimatorConfig> make_estimator(const proto::config::Estimator& message,
                                                        Duration period) {
-  if (message.kind() != "paper") {
-    return fail("unknown estimator '" + message.kind() + "'; there are: paper");
+  estimator::DepthEstimatorConfig config;
+  if (message.kind() != "bayes" && message.kind() != "paper") {
+    return fail("unknown estimator '" + message.kind() + "'; there are: bayes, paper");
   }
-  estimator::PaperEstimatorConfig config;
-  config.sensor_cut_off = message.sensor_pole_hz();
-  config.filter_cut_off = message.filter_hz();
-  config.period = seconds(period);
-  config.fit_range = from_milli(message.indentation_max_mm());
+  config.kind =
+      message.kind() == "paper" ? estimator::EstimatorKind::Paper : estimator::EstimatorKind::Bayes;
+  estimator::PaperEstimatorConfig& strokes = config.bayes.strokes;
+  strokes.sensor_cut_off = message.sensor_pole_hz();
+  strokes.filter_cut_off = message.filter_hz();
+  strokes.period = seconds(period);
+  strokes.fit_range = from_milli(message.indentation_max_mm());
+  estimator::DepthPrior& prior = config.bayes.prior;
+  prior.radius_min = from_milli(message.radius_min_mm());
+  prior.radius_max = from_milli(message.radius_max_mm());
+  prior.ratio_min = message.ratio_min();
+  prior.ratio_max = message.ratio_max();
+  prior.shape =
+      message.shape() == "cylinder" ? fem::InclusionShape::Cylinder : fem::InclusionShape::Ball;
+  if (!message.database().empty()) {
+    auto database = fem::load_database(message.database());
+    if (!database) return fail(database.error().text);
+    config.database = std::move(*database);
+  }
+  // The database's own block has this Young's modulus; every force is proportional to it.
+  constexpr double kDatabaseKpa = 15.3;
+  const double block =
+      config.database ? config.database->grid().block.youngs_modulus / 1e3 : kDatabaseKpa;
+  config.bayes.stiffness.scale = message.youngs_modulus_kpa() / block;
+  config.bayes.stiffness.scale_stddev =
+      config.bayes.stiffness.scale * message.youngs_modulus_spread();
   return config;
 }
 

@@ -79,9 +79,11 @@ struct DepthEstimate {
   double hash{};          ///< [N], the paper's h: the cubic (2) at 1 mm
   double depth{};         ///< [m], top of the inclusion below the undeformed surface
   double depth_stddev{};  ///< [m]; 0: this estimator gives none
-  double depth_low{};     ///< [m], 95 % interval; equal to depth: this estimator gives none
-  double depth_high{};    ///< [m]
-  double fit_rms{};       ///< [N]
+  /// [m], 95 % interval; equal to depth: this estimator gives none. Verdict None: an inclusion of
+  /// 5 mm radius or more whose top lies above this would have shown; 0: nothing is excluded.
+  double depth_low{};
+  double depth_high{};  ///< [m]
+  double fit_rms{};     ///< [N]
 };
 
 }  // namespace palp

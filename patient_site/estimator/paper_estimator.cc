@@ -121,6 +121,17 @@ std::optional<DepthEstimate> PaperEstimator::add(const ContactSample& sample) {
   return estimate_stroke();
 }
 
+std::optional<PaperEstimator::PlaceData> PaperEstimator::place() const {
+  if (!learning_ || !places_[*learning_].law) return std::nullopt;
+  const Place& place = places_[*learning_];
+  return PlaceData{.lateral = place.lateral,
+                   .surface = place.law->surface,
+                   .rate_factor = place.law->rate_factor,
+                   .noise = noise_,
+                   .points = place.curve.points(),
+                   .strokes = place.strokes};
+}
+
 StrokeSample PaperEstimator::filter(const ContactSample& sample) noexcept {
   StrokeSample out{.measured = sample, .tip = sample.position};
   if (previous_) {

@@ -49,6 +49,19 @@ class PaperEstimator {
   /// @returns the estimate when a stroke's reversal was seen.
   [[nodiscard]] std::optional<DepthEstimate> add(const ContactSample& sample);
 
+  /// What is known of the place of the last estimate: its strokes, binned, with what the filters
+  /// did to them taken back. Static force; the rate's share is still in it.
+  struct PlaceData {
+    double lateral{};                  ///< [m]
+    double surface{};                  ///< [m], as found
+    double rate_factor{};              ///< [s/m], as found
+    double noise{};                    ///< [N], of one sample
+    std::vector<ContactPoint> points;  ///< all strokes of this place
+    int strokes{};
+  };
+  /// nullopt: the last estimate found no contact.
+  [[nodiscard]] std::optional<PlaceData> place() const;
+
   /// The loading branch that gave an estimate, from the air on. Valid until the next add().
   [[nodiscard]] std::span<const StrokeSample> stroke() const noexcept { return cutter_.loading(); }
 

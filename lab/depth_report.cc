@@ -1,0 +1,269 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "common/core/conventions.h"
+#include "common/core/median.h"
+#include "lab/depth_study.h"
+
+namespace palp::lab {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kStrong = 5;  // standard deviations: such a signal must be found
+
+/// Cases of one depth, or of one third of the range.
+struct Row {
+  double depth{};  ///< [m], mean of the truth
+  std::vector<const DepthCase*> cases;
+};
+
+struct RowFigures {
+  std::size_t found{};
+  std::size_t inside{};
+  double rmse{};         ///< [m]
+  double bias{};         ///< [m]
+  double median{};       ///< [m], of the absolute error
+  double bound{};        ///< [m], root mean square
+  double width{};        ///< [m], mean of the intervals
+  double bound_width{};  ///< [m], of the bound's
+};
+
+std::vector<Row> rows_of(const DepthStudy& study, const std::vector<DepthCase>& cases) {
+  std::vector<Row> rows(study.depths.empty() ? 3 : study.depths.size());
+  for (const DepthCase& one : cases) {
+    if (!one.inclusion) continue;
+    std::size_t row = one.index / study.repeats;
+    if (study.depths.empty()) {
+      row = static_cast<std::size_t>(std::clamp((one.depth - 4e-3) / 7e-3, 0.0, 2.0));
+    }
+    rows[row].cases.push_back(&one);
+    rows[row].depth += one.depth;
+  }
+  for (Row& row : rows) {
+    if (!row.cases.empty()) row.depth /= static_cast<double>(row.cases.size());
+  }
+  return rows;
+}
+
+RowFigures figures(const std::vector<const DepthCase*>& cases) {
+  RowFigures out;
+  std::vector<double> errors;
+  for (const DepthCase* one : cases) {
+    if (one->verdict != DepthVerdict::Found) continue;
+    ++out.found;
+    const double error = one->estimate - one->depth;
+    errors.push_back(std::abs(error));
+    out.bias += error;
+    out.rmse += error * error;
+    out.bound += one->bound * one->bound;
+    out.width += one->high - one->low;
+    out.bound_width += 2 * 1.96 * one->bound;
+    out.inside += one->low <= one->depth && one->depth <= one->high ? 1 : 0;
+  }
+  if (out.found == 0) return out;
+  const auto n = static_cast<double>(out.found);
+  out.bias /= n;
+  out.rmse = std::sqrt(out.rmse / n);
+  out.bound = std::sqrt(out.bound / n);
+  out.width /= n;
+  out.bound_width /= n;
+  out.median = median(errors).value_or(0);
+  return out;
+}
+
+std::optional<double> share(std::size_t part, std::size_t whole) {
+  if (whole == 0) return std::nullopt;
+  return static_cast<double>(part) / static_cast<double>(whole);
+}
+
+Json number(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }
+
+struct Totals {
+  std::size_t plain{};
+  std::size_t false_alarms{};
+  std::size_t strong{};
+  std::size_t strong_found{};
+  RowFigures all;
+};
+
+Totals totals(const std::vector<DepthCase>& cases) {
+  Totals out;
+  std::vector<const DepthCase*> with;
+  for (const DepthCase& one : cases) {
+    const bool found = one.verdict == DepthVerdict::Found;
+    if (!one.inclusion) {
+      ++out.plain;
+      out.false_alarms += found ? 1 : 0;
+      continue;
+    }
+    with.push_back(&one);
+    if (one.signal < kStrong) continue;
+    ++out.strong;
+    out.strong_found += found ? 1 : 0;
+  }
+  out.all = figures(with);
+  return out;
+}
+
+std::string text(const char* name, std::optional<double> value, double scale, const char* unit) {
+  if (!value) return std::string{name} + " -\n";
+  char line[96];
+  std::snprintf(line, sizeof line, "%s %.4g%s\n", name, *value * scale, unit);
+  return line;
+}
+
+}  // namespace
+
+std::string depth_report(const DepthStudy& study, const std::vector<DepthCase>& cases) {
+  Json json;
+  json["schema"] = "palp.depth/1";
+  json["estimator"] = std::string{to_string(study.estimator)};
+  json["count"] = case_count(study);
+  json["seed"] = study.seed;
+  json["taps_per_phantom"] = study.taps;
+  json["reference_taps"] = study.reference_taps;
+  json["rtt_ms"] = study.round_trip * 1e3;
+  json["loss"] = study.loss;
+  json["rows"] = Json::array();
+  for (const Row& row : rows_of(study, cases)) {
+    const RowFigures f = figures(row.cases);
+    Json one;
+    one["depth_mm"] = row.depth / kMillimetre;
+    one["n"] = row.cases.size();
+    one["rmse_mm"] = f.rmse / kMillimetre;
+    one["bias_mm"] = f.bias / kMillimetre;
+    one["median_abs_mm"] = f.median / kMillimetre;
+    one["crb_mm"] = f.bound / kMillimetre;
+    one["coverage95"] = number(share(f.inside, f.found));
+    one["width_mean_mm"] = f.width / kMillimetre;
+    one["width_bound_mm"] = f.bound_width / kMillimetre;
+    one["found"] = number(share(f.found, row.cases.size()));
+    json["rows"].push_back(one);
+  }
+  const Totals all = totals(cases);
+  json["coverage95"] = number(share(all.all.inside, all.all.found));
+  json["plain_count"] = all.plain;
+  json["false_alarm_rate"] = number(share(all.false_alarms, all.plain));
+  json["power"] = number(share(all.strong_found, all.strong));
+  json["power_count"] = all.strong;
+  return json.dump(2) + "\n";
+}
+
+std::string depth_table(const DepthStudy& study, const std::vector<DepthCase>& cases) {
+  std::string out =
+      "depth mm     n  found    rmse mm   rmse %  bias mm   crb mm  coverage  width mm  "
+      "(bound's)\n";
+  for (const Row& row : rows_of(study, cases)) {
+    const RowFigures f = figures(row.cases);
+    char line[160];
+    std::snprintf(line,
+                  sizeof line,
+                  "%8.2f %5zu %5.1f %% %9.3f %7.2f %8.3f %8.3f %7.1f %% %9.3f %10.3f\n",
+                  row.depth / kMillimetre,
+                  row.cases.size(),
+                  100 * share(f.found, row.cases.size()).value_or(0),
+                  f.rmse / kMillimetre,
+                  row.depth > 0 ? 100 * f.rmse / row.depth : 0,
+                  f.bias / kMillimetre,
+                  f.bound / kMillimetre,
+                  100 * share(f.inside, f.found).value_or(0),
+                  f.width / kMillimetre,
+                  f.bound_width / kMillimetre);
+    out += line;
+  }
+  const Totals all = totals(cases);
+  out += text("coverage of the 95 % intervals", share(all.all.inside, all.all.found), 100, " %");
+  out += text("false alarms", share(all.false_alarms, all.plain), 100, " % of plain phantoms");
+  out += text("found above 5 sigma", share(all.strong_found, all.strong), 100, " %");
+  return out;
+}
+
+std::string depth_csv(const std::vector<DepthCase>& cases) {
+  std::string out =
+      "index,inclusion,depth_mm,radius_mm,ratio,scale,verdict,estimate_mm,low_mm,high_mm,h_n,"
+      "crb_mm,signal_sigma,indentation_max_mm,strokes\n";
+  for (const DepthCase& one : cases) {
+    char line[320];
+    std::snprintf(line,
+                  sizeof line,
+                  "%u,%d,%.9g,%.9g,%.9g,%.9g,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%u\n",
+                  one.index,
+                  one.inclusion ? 1 : 0,
+                  one.depth / kMillimetre,
+                  one.radius / kMillimetre,
+                  one.ratio,
+                  one.scale,
+                  std::string{to_string(one.verdict)}.c_str(),
+                  one.estimate / kMillimetre,
+                  one.low / kMillimetre,
+                  one.high / kMillimetre,
+                  one.hash,
+                  one.bound / kMillimetre,
+                  one.signal,
+                  one.indentation / kMillimetre,
+                  one.strokes);
+    out += line;
+  }
+  return out;
+}
+
+std::string depth_svg(const std::vector<DepthCase>& cases) {
+  constexpr double kScale = 18;  // pixels a millimetre
+  constexpr double kMargin = 50;
+  constexpr double kRange = 30;  // [mm]
+  const auto x = [&](double metres) { return kMargin + kScale * metres / kMillimetre; };
+  const auto y = [&](double metres) { return kMargin + kScale * (kRange - metres / kMillimetre); };
+  std::string out =
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"640\" height=\"640\" "
+      "font-family=\"sans-serif\" font-size=\"12\">\n"
+      "<rect width=\"640\" height=\"640\" fill=\"white\"/>\n";
+  const auto line = [&](double x1, double y1, double x2, double y2, const char* colour) {
+    char item[160];
+    std::snprintf(item,
+                  sizeof item,
+                  "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\"/>\n",
+                  x1,
+                  y1,
+                  x2,
+                  y2,
+                  colour);
+    out += item;
+  };
+  const auto label = [&](double at_x, double at_y, const std::string& words) {
+    char item[200];
+    std::snprintf(
+        item, sizeof item, "<text x=\"%.1f\" y=\"%.1f\">%s</text>\n", at_x, at_y, words.c_str());
+    out += item;
+  };
+  for (int mm = 0; mm <= 30; mm += 5) {
+    line(x(mm * 1e-3), y(0), x(mm * 1e-3), y(0.03), "#ddd");
+    line(x(0), y(mm * 1e-3), x(0.03), y(mm * 1e-3), "#ddd");
+    label(x(mm * 1e-3) - 6, y(0) + 18, std::to_string(mm));
+    label(x(0) - 24, y(mm * 1e-3) + 4, std::to_string(mm));
+  }
+  line(x(0), y(0), x(0.03), y(0.03), "black");
+  label(240, 634, "true depth mm");
+  label(8, 30, "estimate mm and 95 % interval; red: the truth is outside");
+  for (const DepthCase& one : cases) {
+    if (!one.inclusion || one.verdict != DepthVerdict::Found) continue;
+    const bool inside = one.low <= one.depth && one.depth <= one.high;
+    const char* colour = inside ? "steelblue" : "crimson";
+    line(x(one.depth), y(one.low), x(one.depth), y(one.high), colour);
+    char item[120];
+    std::snprintf(item,
+                  sizeof item,
+                  "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"2\" fill=\"%s\"/>\n",
+                  x(one.depth),
+                  y(one.estimate),
+                  colour);
+    out += item;
+  }
+  return out + "</svg>\n";
+}
+
+}  // namespace palp::lab

@@ -1,0 +1,186 @@
+#include "lab/depth_study.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/conventions.h"
+#include "common/core/random.h"
+#include "fem/depth_database.h"
+#include "lab/scenario_file.h"
+#include "lab/trial.h"
+#include "surgeon_site/script_builder.h"
+
+namespace palp::lab {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double kPaperRadius = 15e-3;           // [m]
+constexpr double kPaperRatio = 13.1e6 / 15.3e3;  // paper II.B
+constexpr double kStage = 5e-3;                  // [m], of lateral: from here site B
+
+/// Draws of one case, each on a stream of its own.
+enum class Draw : std::uint64_t { Depth = 9100, Radius, Ratio, Scale, Time, Reach, Grip };
+
+double uniform(const DepthStudy& study, Draw what, std::uint32_t index, double low, double high) {
+  return low + (high - low) * random_uniform(study.seed, static_cast<std::uint64_t>(what), index);
+}
+
+struct Truth {
+  fem::DepthDatabase::Query query;
+  bool inclusion{};
+  double scale{1};     ///< [-]
+  double tap_time{1};  ///< [s]
+  double reach{4e-3};  ///< [m], aimed at
+};
+
+/// Depth 4 to 25 mm, radius 3 to 15 mm, ratio 3 to 900, stiffness +-10 %, hands of all speeds.
+Truth draw(const DepthStudy& study, std::uint32_t index, const fem::DepthDatabase& database) {
+  Truth truth;
+  truth.tap_time = uniform(study, Draw::Time, index, 0.7, 1.4);
+  truth.reach = uniform(study, Draw::Reach, index, 3.6e-3, 4.2e-3);
+  if (!study.depths.empty()) {
+    truth.inclusion = true;
+    truth.query = {.shape = fem::InclusionShape::Ball,
+                   .depth = study.depths[index / study.repeats],
+                   .radius = kPaperRadius,
+                   .ratio = kPaperRatio};
+    return truth;
+  }
+  truth.inclusion = index < study.count;
+  truth.scale = uniform(study, Draw::Scale, index, 0.9, 1.1);
+  const double thin = study.wide ? 3e-3 : 4e-3;
+  const double deep = study.wide ? 27e-3 : 25e-3;
+  // What does not fit into the block is drawn again, on the next index of the same stream.
+  for (std::uint32_t attempt = 0; attempt < 50; ++attempt) {
+    const std::uint32_t at = index + 1'000'003U * attempt;
+    truth.query = {.shape = fem::InclusionShape::Ball,
+                   .depth = uniform(study, Draw::Depth, at, thin, deep),
+                   .radius = uniform(study, Draw::Radius, at, 3e-3, study.wide ? 16e-3 : 15e-3),
+                   .ratio = 3 * std::pow(300, uniform(study, Draw::Ratio, at, 0, 1))};
+    if (database.contains(truth.query)) break;
+  }
+  return truth;
+}
+
+patient::ForceTable table_of(const fem::DepthDatabase& database,
+                             const fem::DepthDatabase::Curve& curve,
+                             double scale) {
+  constexpr double kStep = 20e-6;  // [m]
+  std::vector<patient::ForceRow> rows;
+  const int count = static_cast<int>(curve.indentation_max / kStep + 1e-6);
+  for (int i = 0; i <= count; ++i) {
+    rows.push_back({i * kStep, scale * database.force(curve, i * kStep)});
+  }
+  return *patient::ForceTable::make(std::move(rows));
+}
+
+estimator::DepthPrior prior_of(const DepthStudy& study) {
+  estimator::DepthPrior prior;
+  if (!study.depths.empty()) {
+    prior.radius_min = prior.radius_max = kPaperRadius;
+    prior.ratio_min = prior.ratio_max = kPaperRatio;
+  } else {
+    prior.depth_min = 4e-3;
+    prior.depth_max = 25e-3;
+    prior.radius_max = 15e-3;
+  }
+  return prior;
+}
+
+Result<Scenario> scenario_of(const DepthStudy& study,
+                             std::uint32_t index,
+                             const Truth& truth,
+                             const fem::DepthDatabase& database) {
+  auto document = load_scenario("standard");
+  if (!document) return tl::unexpected(document.error());
+  const double grips = uniform(study, Draw::Grip, index, 0, 3);
+  const char* grip = grips < 1 ? "light" : grips < 2 ? "mid" : "firm";
+  const std::string delay = std::to_string(500 * study.round_trip);
+  for (const auto& [path, value] : std::vector<std::pair<std::string, std::string>>{
+           {"surgeon.hand.grip", grip},
+           {"up.delay_ms", delay},
+           {"down.delay_ms", delay},
+           {"up.loss", std::to_string(study.loss)},
+           {"down.loss", std::to_string(study.loss)},
+           {"surgeon.coupling.name", study.coupling},
+           {"patient.coupling.name", study.coupling}}) {
+    if (value.empty()) continue;
+    if (auto done = document->set(path + "=" + value); !done) return tl::unexpected(done.error());
+  }
+  auto scenario = make_scenario("standard", *document);
+  if (!scenario) return scenario;
+  scenario->bare = true;
+  scenario->seed = random_bits(study.seed, 9000, index) >> 16;
+  scenario->phantom.name = "database";
+  scenario->phantom.plain = table_of(database, database.plain(), truth.scale);
+  scenario->phantom.over = truth.inclusion
+                               ? table_of(database, database.curve(truth.query), truth.scale)
+                               : scenario->phantom.plain;
+  surgeon::ScriptBuilder script{300};
+  const auto span = from_seconds(truth.tap_time);
+  script.hold(milliseconds{500}).move(-3e-3, milliseconds{700});
+  if (study.reference_taps > 0) {
+    script.taps(
+        static_cast<std::uint32_t>(study.reference_taps), truth.reach, span, milliseconds{300});
+  }
+  script.site(surgeon::kSiteB)
+      .taps(static_cast<std::uint32_t>(study.taps), truth.reach, span, milliseconds{300})
+      .hold(milliseconds{300});
+  scenario->script = script.build();
+  scenario->duration = {};
+  scenario->estimator.kind = study.estimator;
+  scenario->estimator.bayes.prior = prior_of(study);
+  return scenario;
+}
+
+}  // namespace
+
+std::uint32_t case_count(const DepthStudy& study) {
+  if (study.depths.empty()) return 2 * study.count;
+  return static_cast<std::uint32_t>(study.depths.size()) * study.repeats;
+}
+
+Result<DepthCase> run_case(const DepthStudy& study, std::uint32_t index) {
+  const auto database = fem::default_database();
+  if (!database) return tl::unexpected(database.error());
+  const Truth truth = draw(study, index, *database);
+  const auto scenario = scenario_of(study, index, truth, *database);
+  if (!scenario) return tl::unexpected(scenario.error());
+  const TrialResult result = run_trial(*scenario);
+  DepthCase out;
+  out.index = index;
+  out.inclusion = truth.inclusion;
+  out.scale = truth.scale;
+  for (const DepthEstimate& estimate : result.depths) {
+    if (estimate.lateral < kStage) continue;
+    ++out.strokes;
+    if (estimate.verdict == DepthVerdict::Invalid) continue;
+    out.verdict = estimate.verdict;  // the last one has heard all taps
+    out.estimate = estimate.depth;
+    out.low = estimate.depth_low;
+    out.high = estimate.depth_high;
+    out.hash = estimate.hash;
+    out.indentation = std::max(out.indentation, estimate.indentation_max);
+  }
+  if (!truth.inclusion) return out;
+  out.depth = truth.query.depth;
+  out.radius = truth.query.radius;
+  out.ratio = truth.query.ratio;
+  estimator::StiffnessPrior stiffness;
+  const DepthBound bound =
+      depth_bound(*database,
+                  truth.query,
+                  prior_of(study),
+                  stiffness,
+                  {.taps = study.taps,
+                   .reference_taps = study.reference_taps,
+                   .indentation = out.indentation > 0 ? out.indentation : truth.reach,
+                   .clearance = 3e-3,
+                   .tap_time = truth.tap_time});
+  out.bound = bound.depth_stddev;
+  out.signal = bound.signal;
+  return out;
+}
+
+}  // namespace palp::lab

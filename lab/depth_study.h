@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/core/result.h"
+#include "lab/depth_bound.h"
+#include "lab/scenario.h"
+
+namespace palp::lab {
+
+/// Monte Carlo of whole palpations: reference taps beside, then taps over an inclusion, through
+/// hand, coupling, network, servo and sensor, in virtual time.
+struct DepthStudy {
+  std::vector<double> depths;  ///< [m], the paper's phantom at these; empty: random phantoms
+  std::uint32_t count{100};    ///< random phantoms with, and as many without an inclusion
+  std::uint32_t repeats{1};    ///< of each depth
+  std::uint64_t seed{1};
+  estimator::EstimatorKind estimator{estimator::EstimatorKind::Bayes};
+  int taps{4};
+  int reference_taps{4};
+  double round_trip{};     ///< [s]
+  double loss{};           ///< [-], each way
+  std::string coupling{};  ///< empty: the scenario's
+  bool wide{};             ///< phantoms from a range wider than the prior's
+};
+
+/// One palpation and what was said of it. Plain memory: it crosses a pipe between processes.
+struct DepthCase {
+  std::uint32_t index{};
+  bool inclusion{};
+  DepthVerdict verdict{DepthVerdict::Invalid};
+  double depth{};        ///< [m], true
+  double radius{};       ///< [m]
+  double ratio{};        ///< [-]
+  double scale{1};       ///< [-], of Young's modulus
+  double estimate{};     ///< [m]
+  double low{};          ///< [m]
+  double high{};         ///< [m]
+  double hash{};         ///< [N]
+  double bound{};        ///< [m], Cramer-Rao
+  double signal{};       ///< [-], standard deviations
+  double indentation{};  ///< [m], deepest
+  std::uint32_t strokes{};
+};
+
+/// All cases of the study: how many, and one of them.
+[[nodiscard]] std::uint32_t case_count(const DepthStudy& study);
+[[nodiscard]] Result<DepthCase> run_case(const DepthStudy& study, std::uint32_t index);
+
+/// Reports of the cases, sorted by index.
+[[nodiscard]] std::string depth_report(const DepthStudy& study,
+                                       const std::vector<DepthCase>& cases);
+[[nodiscard]] std::string depth_table(const DepthStudy& study, const std::vector<DepthCase>& cases);
+[[nodiscard]] std::string depth_csv(const std::vector<DepthCase>& cases);
+/// Estimate over truth with intervals.
+[[nodiscard]] std::string depth_svg(const std::vector<DepthCase>& cases);
+
+}  // namespace palp::lab

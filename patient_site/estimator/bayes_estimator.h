@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "patient_site/estimator/depth_posterior.h"
+#include "patient_site/estimator/paper_estimator.h"
+
+namespace palp::estimator {
+
+struct BayesEstimatorConfig {
+  PaperEstimatorConfig strokes;
+  DepthPrior prior;
+  StiffnessPrior stiffness;  ///< before anything was touched
+  double evidence_min{3};    ///< [-], log of the odds from which an inclusion is found
+  double gain_min{12};       ///< [-], and what the best one must gain: 3.5 sigma
+  double reference_spread{
+      1e-3};  ///< [-], how much the block's stiffness differs from place to place
+};
+
+/// The estimator that knows how sure it is. Strokes are cut and cleaned as the paper's estimator
+/// does, strokes at one place add up, and each new one updates the posterior over depth, radius and
+/// stiffness ratio of a depth database. The first place that was touched is the reference: what it
+/// says of the block's stiffness is the prior everywhere else, unless a softer place turns up.
+/// Thread: estimator; allocates.
+class BayesEstimator {
+ public:
+  BayesEstimator(const fem::DepthDatabase& database, const BayesEstimatorConfig& config);
+
+  /// @returns the estimate when a stroke's reversal was seen.
+  [[nodiscard]] std::optional<DepthEstimate> add(const ContactSample& sample);
+
+  [[nodiscard]] std::span<const StrokeSample> stroke() const noexcept { return strokes_.stroke(); }
+  /// Of the last estimate that was not invalid.
+  [[nodiscard]] const DepthPosterior& posterior() const noexcept { return posterior_; }
+
+ private:
+  void judge(DepthEstimate& estimate, const PaperEstimator::PlaceData& place);
+
+  struct Reference {
+    double lateral{};  ///< [m]
+    StiffnessPrior stiffness;
+  };
+
+  BayesEstimatorConfig config_;
+  PaperEstimator strokes_;
+  DepthModel model_;
+  std::optional<Reference> reference_;
+  DepthPosterior posterior_;
+};
+
+}  // namespace palp::estimator
