@@ -12,6 +12,7 @@
 #include "common/config/number.h"
 #include "common/config/report.h"
 #include "common/core/conventions.h"
+#include "common/core/printable.h"
 
 namespace palp::lab {
 namespace {
@@ -33,7 +34,7 @@ Result<std::vector<double>> parse_depths(const std::string& text) {
     }
     const auto value = config::parse_number(part);
     if (!value || !(*value >= 3 && *value <= 27)) {
-      return fail("--depths-mm is \"" + config::printable(text) +
+      return fail("--depths-mm is \"" + printable(text) +
                   "\", expected numbers from 3 to 27 with commas between");
     }
     out.push_back(*value * kMillimetre);
