@@ -4,7 +4,7 @@
 #include <charconv>
 #include <functional>
 
-#include "common/core/random.h"
+#include "common/config/report.h"
 #include "lab/scenario_file.h"
 #include "surgeon_site/script_builder.h"
 
@@ -25,6 +25,16 @@ void place_blackout(Scenario& scenario) {
 }
 
 Result<void> apply(config::Document& document, const Setting& setting) {
+  if (setting.path == "rtt_ms") {
+    double trip = 0;
+    const char* end = setting.value.data() + setting.value.size();
+    if (std::from_chars(setting.value.data(), end, trip).ptr != end) {
+      return fail("rtt_ms is '" + setting.value + "', expected a number");
+    }
+    const std::string half = config::json_number(trip / 2);
+    auto up = document.set("up.delay_ms", half, setting.path);
+    return up ? document.set("down.delay_ms", half, setting.path) : up;
+  }
   constexpr std::string_view kBoth = "coupling.";
   if (setting.path.rfind(kBoth, 0) == 0) {
     auto surgeon = document.set("surgeon." + setting.path, setting.value, setting.path);

@@ -11,7 +11,8 @@
 /// becomes a Scenario when it is its turn, so that a thousand of them cost nothing until then.
 namespace palp::lab {
 
-/// A field of LabScenario and its value. "coupling.*" is set at both sites.
+/// A field of LabScenario and its value. "coupling.*" is set at both sites; "rtt_ms" is half of it
+/// as delay each way.
 struct Setting {
   std::string path;
   std::string value;

@@ -1,0 +1,110 @@
+#include "common/coupling/contact_estimator.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "common/core/filters.h"
+#include "common/coupling/contact_model.h"
+
+namespace palp::coupling {
+namespace {
+
+/// A tip that taps four times, 4 mm deep, on tissue without noise, seen through the transducer's
+/// pole. @returns what was learned.
+template <class Tissue>
+ModelPayload learn(const Tissue& tissue, double surface = 0) {
+  ContactEstimatorConfig config;
+  config.sensor_quantum = 0;
+  ContactEstimator estimator{config};
+  LowPass pole{config.sensor_cut_off, config.period / 10};
+  double before = -3e-3;
+  for (int tick = 0; tick < 7000; ++tick) {
+    const double t = 1e-3 * tick;
+    const double phase = std::fmod(t, 1.5);
+    const double raised = phase < 1 ? 0.5 * (1 - std::cos(2 * std::numbers::pi * phase)) : 0;
+    const double position = t < 1 ? -3e-3 : -3e-3 + 7e-3 * raised;
+    for (int part = 1; part <= 10; ++part) {
+      const double x = before + 0.1 * part * (position - before);
+      pole.step(tissue(x - surface));
+    }
+    before = position;
+    estimator.step(position, pole.value());
+  }
+  return estimator.model();
+}
+
+double hertz(double depth) { return depth > 0 ? 1897 * depth * std::sqrt(depth) : 0; }
+
+/// Over a hard inclusion 5 mm deep, in a law that is not one of the estimator's.
+double over_inclusion(double depth) {
+  if (depth <= 0) return 0;
+  const double chi = std::sqrt(5e-3 * depth) / 5e-3;
+  return hertz(depth) * (1 + 0.5 * chi * (1.133 + chi * (1.283 + chi * (0.769 + chi * 0.0975))));
+}
+
+/// Mean slope over what a tap is judged by.
+template <class Force>
+double secant(const Force& force) {
+  return (force(3.6e-3) - force(1.2e-3)) / 2.4e-3;
+}
+
+TEST(ContactEstimatorTest, FindsHertzWithinAGridStepAndTwoThousandths) {
+  const ModelPayload model = learn(hertz);
+  EXPECT_NEAR(model.surface, 0, 0.051e-3);
+  const ContactModel found = contact_model(model);
+  const auto felt = [&](double x) { return found.force(x - found.surface); };
+  EXPECT_NEAR(secant(felt) / secant(hertz), 1, 2e-3);
+}
+
+TEST(ContactEstimatorTest, FindsALawThatIsNotOneOfItsOwn) {
+  const ContactModel found = contact_model(learn(over_inclusion));
+  const auto felt = [&](double x) { return found.force(x - found.surface); };
+  EXPECT_NEAR(secant(felt) / secant(over_inclusion), 1, 2e-3);
+}
+
+TEST(ContactEstimatorTest, FindsASurfaceThatIsNotWhereTheAxisBegins) {
+  for (const double surface : {-2e-3, 0.7e-3}) {
+    EXPECT_NEAR(learn(hertz, surface).surface, surface, 0.051e-3);
+  }
+}
+
+TEST(ContactEstimatorTest, FindsTissueThreeTimesStifferOrSofterThanExpected) {
+  for (const double factor : {1.0 / 3, 3.0}) {
+    const auto tissue = [factor](double depth) { return factor * hertz(depth); };
+    const ContactModel found = contact_model(learn(tissue));
+    const auto felt = [&](double x) { return found.force(x - found.surface); };
+    EXPECT_NEAR(secant(felt) / secant(tissue), 1, 5e-3) << factor;
+  }
+}
+
+TEST(ContactEstimatorTest, OnlySaysWhatIsPassive) {
+  const ModelPayload model = learn([](double d) { return d > 0 ? 0.3 : 0.0; });  // no spring at all
+  EXPECT_TRUE(is_sound(model, 60e-3, 1e9));
+}
+
+TEST(ContactEstimatorTest, SaysNothingWithoutAContact) {
+  ContactEstimator estimator{ContactEstimatorConfig{}};
+  for (int tick = 0; tick < 2000; ++tick) estimator.step(-5e-3, 0.05 * ((tick % 20) == 0));
+  EXPECT_EQ(estimator.model().version, 0U);
+}
+
+TEST(ContactEstimatorTest, KeepsShowingTheOldPlaceUntilTheNewOneIsTouched) {
+  ContactEstimatorConfig config;
+  config.sensor_quantum = 0;
+  ContactEstimator estimator{config};
+  for (int tick = 0; tick < 3000; ++tick) {
+    const double position = tick < 500 ? -1e-3 : 2e-3 - 2e-3 * std::cos(0.01 * tick);
+    estimator.step(position, hertz(position));
+  }
+  for (int tick = 0; tick < 300; ++tick) estimator.step(-5e-3, 0);
+  const ModelPayload before = estimator.model();
+  estimator.new_place();
+  for (int tick = 0; tick < 100; ++tick) estimator.step(-5e-3, 0);
+  EXPECT_EQ(estimator.model().c, before.c);
+  EXPECT_EQ(estimator.model().surface, before.surface);
+}
+
+}  // namespace
+}  // namespace palp::coupling

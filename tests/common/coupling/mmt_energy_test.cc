@@ -1,0 +1,195 @@
+// Goal: whatever a patient site says, the hand gets no more energy than the tank held at first.
+// Method: a simulated hand presses against random models; its work is booked from its own states
+// every 0.1 ms. The same hand with a law that has no guard must break the bound, or the test would
+// prove nothing.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "common/coupling/mmt.h"
+#include "tests/common/coupling/hand_loop.h"
+
+namespace palp::coupling {
+namespace {
+
+/// One tick of force held while the hand moves on, and half an encoder count at 1 N.
+constexpr double kSlack = 0.05e-3;  // [J]
+
+/// Renders the newest model as it is: what the guard is there to prevent.
+class UnguardedSurgeon {
+ public:
+  void begin_epoch(double /*position*/) noexcept {}
+  SurgeonOutput step(const SurgeonInput& in, Duration /*dt*/) noexcept {
+    if (const Incoming* last = newest(in.arrived)) {
+      const auto& model = std::get<ModelPayload>(last->sample.payload);
+      if (is_sound(model, 60e-3, 2000)) shown_ = contact_model(model);
+    }
+    SurgeonOutput out;
+    out.force = shown_.force(in.position - shown_.surface);
+    return out;
+  }
+
+ private:
+  ContactModel shown_;
+};
+
+TEST(MmtEnergyTest, AHandNeverGetsMoreThanTheTankHeldWhateverItIsTold) {
+  const MmtConfig config;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const auto outcome = hand_loop::press_against_lies(MmtSurgeon{config}, seed);
+    EXPECT_LE(outcome.taken, config.tank_start + kSlack) << "seed " << seed;
+  }
+}
+
+TEST(MmtEnergyTest, WithoutTheGuardTheSameHandGetsManyTimesThat) {
+  const MmtConfig config;
+  int broken = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const auto outcome = hand_loop::press_against_lies(UnguardedSurgeon{}, seed);
+    if (outcome.taken > 5 * config.tank_start) ++broken;
+  }
+  EXPECT_EQ(broken, 10);
+}
+
+TEST(MmtEnergyTest, ItsBooksNeverHoldMoreThanTheTankAtFirstAndTheWorkDone) {
+  const MmtConfig config;
+  MmtSurgeon law{config};
+  law.begin_epoch(0);
+  hand_loop::Liar liar{7};
+  double position = 0;
+  double force = 0;
+  double work = 0;
+  for (std::uint64_t tick = 0; tick < 20'000; ++tick) {
+    const double t = 1e-3 * static_cast<double>(tick);
+    const double next = 3e-3 * std::sin(5 * t) + 1e-3 * std::sin(33 * t);
+    work += force * (next - position);
+    position = next;
+    const std::array arrived{liar.tell(tick)};
+    SurgeonInput in;
+    in.state = SiteState::Engaged;
+    in.position = position;
+    in.force_applied = force;
+    in.arrived = arrived;
+    force = law.step(in, std::chrono::milliseconds{1}).force;
+    ASSERT_LE(law.tank() + law.stored(), config.tank_start + work + 1e-12) << "tick " << tick;
+    ASSERT_GE(work, -config.tank_start - kSlack) << "tick " << tick;
+  }
+}
+
+/// A still hand 4 mm deep in a place where nothing was known; then a model arrives.
+struct Discovery {
+  double stored{};    ///< [J]
+  double rate_max{};  ///< [N/s]
+  double force{};     ///< [N]
+};
+Discovery discover(const ModelPayload& model) {
+  MmtConfig config;
+  MmtSurgeon law{config};
+  law.begin_epoch(4e-3);
+  Incoming incoming;
+  incoming.sample.payload = model;
+  incoming.fresh = true;
+  const std::array arrived{incoming};
+  Discovery found;
+  for (int tick = 0; tick < 3000; ++tick) {
+    SurgeonInput in;
+    in.state = SiteState::Engaged;
+    in.position = 4e-3;
+    in.force_applied = found.force;
+    in.round_trip = std::chrono::milliseconds{100};
+    in.arrived = arrived;
+    const double force = law.step(in, std::chrono::milliseconds{1}).force;
+    found.rate_max = std::max(found.rate_max, (force - found.force) / 1e-3);
+    found.force = force;
+  }
+  found.stored = law.stored();
+  return found;
+}
+
+TEST(MmtSurgeonTest, ASurfaceFoundWhilePressingIsLetInAsFarAsTheTankPays) {
+  const ModelPayload soft{.version = 1, .c = {0.03, 0, 0, 0}, .depth_max = 4e-3};
+  const ModelPayload hard{.version = 1, .c = {0.3, 0, 0, 0}, .depth_max = 4e-3};
+  const ContactModel whole = contact_model(soft);
+  const MmtConfig config;
+  ASSERT_LT(whole.energy(4e-3), config.tank_start);
+  EXPECT_NEAR(discover(soft).force, whole.force(4e-3), 1e-6) << "all of it";
+  EXPECT_NEAR(discover(hard).stored, config.tank_start, 1e-9) << "as much as was there";
+  EXPECT_LE(discover(soft).rate_max, config.slew_small + 1e-6);
+  EXPECT_LE(discover(hard).rate_max, config.slew_small + 1e-6);
+}
+
+TEST(MmtSurgeonTest, PressingFurtherIntoAKnownTissueIsNotSlewed) {
+  MmtSurgeon law{MmtConfig{}};
+  law.begin_epoch(-1e-3);
+  Incoming incoming;
+  incoming.sample.payload = ModelPayload{.version = 1, .c = {0.06, 0, 0, 0}, .depth_max = 5e-3};
+  incoming.fresh = true;
+  const std::array arrived{incoming};
+  double force = 0;
+  for (int tick = 0; tick <= 50; ++tick) {
+    SurgeonInput in;
+    in.state = SiteState::Engaged;
+    in.position = -1e-3 + 0.1e-3 * tick;  // 0.1 m/s, four times a tap
+    in.force_applied = force;
+    in.arrived = arrived;
+    force = law.step(in, std::chrono::milliseconds{1}).force;
+  }
+  EXPECT_NEAR(force, 0.06 * 8, 1e-9);
+}
+
+TEST(MmtSurgeonTest, ABeginningEpochDoesNotRefillTheTank) {
+  MmtConfig config;
+  MmtSurgeon law{config};
+  law.begin_epoch(4e-3);
+  Incoming incoming;
+  incoming.sample.payload = ModelPayload{.version = 1, .c = {0.3, 0, 0, 0}, .depth_max = 4e-3};
+  incoming.fresh = true;
+  const std::array arrived{incoming};
+  for (int tick = 0; tick < 1000; ++tick) {
+    SurgeonInput in;
+    in.state = SiteState::Engaged;
+    in.position = 4e-3;
+    in.arrived = arrived;
+    (void)law.step(in, std::chrono::milliseconds{1});
+  }
+  const double left = law.tank();
+  ASSERT_LT(left, 1e-9);
+  law.begin_epoch(0);
+  EXPECT_LE(law.tank(), left);
+}
+
+TEST(MmtSurgeonTest, ShowsNothingWhereTheGateLetsNothingThrough) {
+  for (const SiteState state : {SiteState::Parked, SiteState::Clutched, SiteState::Stopped}) {
+    MmtSurgeon law{MmtConfig{}};
+    law.begin_epoch(0);
+    Incoming incoming;
+    incoming.sample.payload = ModelPayload{.version = 1, .c = {0.06, 0, 0, 0}};
+    incoming.fresh = true;
+    const std::array arrived{incoming};
+    SurgeonInput in;
+    in.state = state;
+    in.position = 4e-3;
+    in.arrived = arrived;
+    EXPECT_EQ(law.step(in, std::chrono::milliseconds{1}).force, 0);
+    EXPECT_EQ(law.stored(), 0);
+  }
+}
+
+TEST(MmtSurgeonTest, RefusesAndCountsModelsThatNoTissueHas) {
+  MmtSurgeon law{MmtConfig{}};
+  law.begin_epoch(0);
+  Incoming incoming;
+  incoming.sample.payload = ModelPayload{.version = 1, .c = {-1, 0, 0, 0}};
+  incoming.fresh = true;
+  const std::array arrived{incoming};
+  SurgeonInput in;
+  in.state = SiteState::Engaged;
+  in.position = 4e-3;
+  in.arrived = arrived;
+  EXPECT_EQ(law.step(in, std::chrono::milliseconds{1}).force, 0);
+  EXPECT_EQ(law.refused(), 1U);
+}
+
+}  // namespace
+}  // namespace palp::coupling
