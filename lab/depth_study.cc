@@ -8,6 +8,7 @@
 #include "fem/depth_database.h"
 #include "lab/scenario_file.h"
 #include "lab/trial.h"
+#include "patient_site/settings.h"
 #include "surgeon_site/script_builder.h"
 
 namespace palp::lab {
@@ -117,7 +118,9 @@ Result<Scenario> scenario_of(const DepthStudy& study,
   scenario->phantom.over = truth.inclusion
                                ? table_of(database, database.curve(truth.query), truth.scale)
                                : scenario->phantom.plain;
-  surgeon::ScriptBuilder script{300};
+  scenario->patient.gate =
+      patient::within_tables(scenario->patient.gate, 0, scenario->phantom.depth_max());
+  surgeon::ScriptBuilder script{scenario->hand.plant.grip.stiffness};
   const auto span = from_seconds(truth.tap_time);
   script.hold(milliseconds{500}).move(-3e-3, milliseconds{700});
   if (study.reference_taps > 0) {

@@ -18,8 +18,10 @@ std::optional<DepthEstimate> BayesEstimator::add(const ContactSample& sample) {
   if (!estimate) return estimate;
   const auto place = strokes_.place();
   // What the paper's formula (3) cannot tell, this one may; what is no stroke stays none.
-  const bool usable =
-      estimate->reason == DepthReason::Ok || estimate->reason == DepthReason::HashOutOfRange;
+  const bool long_enough = estimate->reason == DepthReason::StrokeTooShort &&
+                           estimate->indentation_max >= config_.indentation_min;
+  const bool usable = estimate->reason == DepthReason::Ok ||
+                      estimate->reason == DepthReason::HashOutOfRange || long_enough;
   if (usable && place) judge(*estimate, *place);
   return estimate;
 }

@@ -10,6 +10,8 @@ namespace palp::estimator {
 
 struct BayesEstimatorConfig {
   PaperEstimatorConfig strokes;
+  /// [m]; shallower says too little. Less than eq. (2) needs: no cubic is fitted.
+  double indentation_min{1.5e-3};
   DepthPrior prior;
   StiffnessPrior stiffness;  ///< before anything was touched
   double evidence_min{3};    ///< [-], log of the odds from which an inclusion is found

@@ -13,15 +13,17 @@ namespace {
 constexpr double kStep = 25e-6;   // [m], of the tables
 constexpr double kBin = 0.1e-3;   // [m], points closer than this are one
 constexpr double kNear = 0.3e-3;  // [m], how far off the surface may be
-constexpr std::size_t kDepthNodes = 36;
+constexpr std::size_t kDepthNodes = 40;
 constexpr std::size_t kRadiusNodes = 9;
-constexpr std::size_t kRatioNodes = 4;
+constexpr std::size_t kRatioNodes = 5;
 constexpr std::size_t kFine = 8;  // depths between two nodes, when summing
-constexpr std::size_t kFineRadius = 4;
-constexpr std::size_t kFineRatio = 2;
+constexpr std::size_t kFineRadius = 8;
+constexpr std::size_t kFineRatio = 3;
 constexpr double kDeepest = 4.05e-3;  // [m], of the points: the filters' share is known to there
 constexpr std::size_t kManyTables = 500;  // from here the surface is sought with
 constexpr std::size_t kStride = 7;        // one in so many
+constexpr double kNegligible = 40;        // [-], below the best log-likelihood
+constexpr double kForgotten = 2000;       // [-], the same between coarse nodes
 constexpr double kShowing = 5e-3;         // [m], radius of which "excluded" speaks
 constexpr double kExcluded = 3;           // [-], log of 20
 
@@ -62,6 +64,45 @@ std::vector<double> denser(const std::vector<double>& values, std::size_t fine) 
   return out;
 }
 
+/// n even nodes of [low, high]; one if the ends are equal.
+std::vector<double> even_nodes(double low, double high, std::size_t count) {
+  if (!(high > low * (1 + 1e-9))) return {low};
+  std::vector<double> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    out.push_back(low + (high - low) * static_cast<double>(i) / static_cast<double>(count - 1));
+  }
+  return out;
+}
+
+/// What a ball of ratio k does to the field far from it: the excess force is nearly proportional to
+/// this, so a log-likelihood is nearly a parabola in it.
+double effect_of(double ratio) { return (ratio - 1) / (ratio + 1.5); }
+double ratio_of(double effect) { return (1 + 1.5 * effect) / (1 - effect); }
+
+std::vector<double> ratio_nodes(double low, double high, std::size_t count) {
+  std::vector<double> out;
+  for (const double effect : even_nodes(effect_of(low), effect_of(high), count)) {
+    out.push_back(ratio_of(effect));
+  }
+  return out;
+}
+
+/// Shares of a prior even in the logarithm of the ratio, on nodes even in the effect.
+std::vector<double> ratio_shares(double low, double high, std::size_t count) {
+  std::vector<double> out;
+  const double begin = effect_of(low);
+  const double step =
+      (effect_of(high) - begin) / static_cast<double>(std::max<std::size_t>(count, 2) - 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double at = begin + step * static_cast<double>(i);
+    const double from = ratio_of(std::max(begin, at - 0.5 * step));
+    const double to =
+        ratio_of(std::min(begin + step * static_cast<double>(count - 1), at + 0.5 * step));
+    out.push_back(count > 1 ? std::log(to / from) : 1);
+  }
+  return out;
+}
+
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
 /// Inverse of a symmetric positive matrix, and its determinant.
@@ -87,8 +128,8 @@ double invert(const Matrix3& m, Matrix3& out) {
 DepthModel::DepthModel(const fem::DepthDatabase& database, const DepthPrior& prior)
     : prior_{prior},
       depths_{log_nodes(prior.depth_min, prior.depth_max, kDepthNodes)},
-      radii_{log_nodes(prior.radius_min, prior.radius_max, kRadiusNodes)},
-      ratios_{log_nodes(prior.ratio_min, prior.ratio_max, kRatioNodes)},
+      radii_{even_nodes(prior.radius_min, prior.radius_max, kRadiusNodes)},
+      ratios_{ratio_nodes(prior.ratio_min, prior.ratio_max, kRatioNodes)},
       plain_{tabulate(database, database.plain())} {
   for (const double depth : depths_) {
     for (const double radius : radii_) {
@@ -104,7 +145,8 @@ DepthModel::DepthModel(const fem::DepthDatabase& database, const DepthPrior& pri
 
 DepthModel::Table DepthModel::tabulate(const fem::DepthDatabase& database,
                                        const fem::DepthDatabase::Curve& curve) const {
-  Table table{.force = {}, .indentation_max = std::min(curve.indentation_max, kDeepest)};
+  // Also beyond what was solved: every curve must answer for the same points.
+  Table table;
   const auto count = static_cast<std::size_t>((kDeepest + kNear) / kStep) + 3;
   for (std::size_t i = 0; i < count; ++i) {
     table.force.push_back(database.force(curve, static_cast<double>(i) * kStep));
@@ -163,8 +205,6 @@ DepthModel::Match DepthModel::match(const Table& table,
   right[2] = rate_weight * rate_mean;
   squares = scale_weight * stiffness.scale * stiffness.scale + rate_weight * rate_mean * rate_mean;
   for (const Place& place : places) {
-    // Beyond what was solved the curve says nothing.
-    if (place.indentation > table.indentation_max) continue;
     const double low = table.force[place.entry];
     const double high = table.force[place.entry + 1];
     const bool air = place.indentation <= 0;
@@ -268,30 +308,37 @@ void DepthModel::summarise(const std::vector<double>& log_likelihood,
   const std::size_t fine_radii = lines[0][0].size();
   const std::size_t fine_depths = (depths_.size() - 1) * kFine + 1;
   std::vector<double> mass(fine_depths);
+  std::vector<double> prior_of(fine_depths);  // uniform in depth, on nodes even in its logarithm
+  double prior_depth = 0;
+  for (std::size_t i = 0; i < fine_depths; ++i) {
+    prior_of[i] =
+        depths_[0] * std::pow(depths_.back() / depths_[0],
+                              static_cast<double>(i) / static_cast<double>(fine_depths - 1));
+    if (i == 0 || i + 1 == fine_depths) prior_of[i] *= 0.5;
+    prior_depth += prior_of[i];
+  }
   double most = plain;
   for (const double value : log_likelihood) most = std::max(most, value);
   double total = 0;
   double prior_total = 0;
+  const std::vector<double> shares = ratio_shares(ratios_.front(), ratios_.back(), fine_ratios);
+  std::vector<double> values(depths_.size());
   for (std::size_t k = 0; k < fine_ratios; ++k) {
-    const bool ratio_end = fine_ratios > 1 && (k == 0 || k + 1 == fine_ratios);
     for (std::size_t j = 0; j < fine_radii; ++j) {
-      std::vector<double> values;
-      for (std::size_t i = 0; i < depths_.size(); ++i) values.push_back(lines[i][k][j]);
-      const std::vector<double> fine = denser(values, kFine);
-      // Uniform in radius and depth on nodes that are even in their logarithms.
-      const double share =
-          fine_radii > 1 ? static_cast<double>(j) / static_cast<double>(fine_radii - 1) : 0;
-      const double radius = radii_[0] * std::pow(radii_.back() / radii_[0], share);
       const bool radius_end = fine_radii > 1 && (j == 0 || j + 1 == fine_radii);
-      const double here = radius * (radius_end ? 0.5 : 1) * (ratio_end ? 0.5 : 1);
+      const double here = shares[k] * (radius_end ? 0.5 : 1);
+      double line_most = -std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < depths_.size(); ++i) {
+        values[i] = lines[i][k][j];
+        line_most = std::max(line_most, values[i]);
+      }
+      prior_total += here * prior_depth;
+      // Between nodes a line may rise above them, but not by this much.
+      if (line_most < most - kForgotten) continue;
+      const std::vector<double> fine = denser(values, kFine);
       for (std::size_t i = 0; i < fine.size(); ++i) {
-        const double depth =
-            depths_[0] * std::pow(depths_.back() / depths_[0],
-                                  static_cast<double>(i) / static_cast<double>(fine.size() - 1));
-        const double prior = here * depth * (i == 0 || i + 1 == fine.size() ? 0.5 : 1);
-        prior_total += prior;
-        if (fine[i] < most - 40) continue;
-        mass[i] += prior * std::exp(fine[i] - most);
+        if (fine[i] < most - kNegligible) continue;
+        mass[i] += here * prior_of[i] * std::exp(fine[i] - most);
       }
     }
   }

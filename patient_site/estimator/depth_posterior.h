@@ -61,7 +61,6 @@ class DepthModel {
  private:
   struct Table {
     std::vector<double> force;  ///< [N], every kStep
-    double indentation_max{};   ///< [m]
   };
   /// A point against the tables: where between two entries it lies.
   struct Place {

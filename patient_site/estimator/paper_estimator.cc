@@ -124,12 +124,15 @@ std::optional<DepthEstimate> PaperEstimator::add(const ContactSample& sample) {
 std::optional<PaperEstimator::PlaceData> PaperEstimator::place() const {
   if (!learning_ || !places_[*learning_].law) return std::nullopt;
   const Place& place = places_[*learning_];
-  return PlaceData{.lateral = place.lateral,
-                   .surface = place.law->surface,
-                   .rate_factor = place.law->rate_factor,
-                   .noise = noise_,
-                   .points = place.curve.points(),
-                   .strokes = place.strokes};
+  return PlaceData{
+      .lateral = place.lateral,
+      .surface = place.law->surface,
+      .rate_factor = place.law->rate_factor,
+      .noise = place.contact_count > 0
+                   ? std::max(kNoiseFloor, std::sqrt(place.contact_squares / place.contact_count))
+                   : noise_,
+      .points = place.curve.points(),
+      .strokes = place.strokes};
 }
 
 StrokeSample PaperEstimator::filter(const ContactSample& sample) noexcept {
@@ -175,6 +178,8 @@ std::size_t PaperEstimator::find_place(double lateral, double first_contact) {
               .curve = ContactCurve{first_contact},
               .law = std::nullopt,
               .strokes = 0,
+              .contact_squares = 0,
+              .contact_count = 0,
               .used = uses_};
   if (places_.size() < kPlacesMax) {
     places_.push_back(fresh);
@@ -232,6 +237,7 @@ bool PaperEstimator::learn_loading(Place& place,
     place.first_contact = measured.first_contact;
     place.law.reset();
     place.strokes = 0;
+    place.contact_squares = place.contact_count = 0;
     law.reset();
     own = branch_curve(place, ContactCurve::Branch::Loading, law, noise_);
   }
@@ -252,6 +258,8 @@ bool PaperEstimator::learn_loading(Place& place,
   }
   place.law = law;
   place.curve.add(own.curve);
+  place.contact_squares += own.contact_squares;
+  place.contact_count += own.contact_count;
   if (++place.strokes == kStrokesMax) {
     place.curve.scale(0.5);
     place.strokes /= 2;
@@ -302,7 +310,10 @@ PaperEstimator::Branch PaperEstimator::branch_curve(const Place& place,
                                                     ContactCurve::Branch branch,
                                                     const std::optional<ContactLaw>& law,
                                                     double noise) const {
-  Branch out{.curve = ContactCurve{place.first_contact}, .noise = 0};
+  Branch out{.curve = ContactCurve{place.first_contact},
+             .noise = 0,
+             .contact_squares = 0,
+             .contact_count = 0};
   const std::span<const StrokeSample> samples = cutter_.samples();
   const double dithered = dither(noise, config_.force_quantum);
   double sensed = 0;    // [N], the law behind the transducer's pole
@@ -333,6 +344,11 @@ PaperEstimator::Branch PaperEstimator::branch_curve(const Place& place,
                    bias;
       const double rest = sample.measured.force - sensed - steps;
       if (loading) squares += rest * rest;
+      // In the air the steps hide most of the noise.
+      if (loading && sensed > config_.force_quantum) {
+        out.contact_squares += rest * rest;
+        out.contact_count += 1;
+      }
     }
     count += loading ? 1 : 0;
     if (loading == (branch == ContactCurve::Branch::Loading)) {

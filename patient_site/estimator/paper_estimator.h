@@ -73,7 +73,9 @@ class PaperEstimator {
     ContactCurve curve;
     std::optional<ContactLaw> law;
     int strokes{};
-    std::uint64_t used{};  ///< for replacing the one that was not used for longest
+    double contact_squares{};  ///< [N^2], measured force minus law, in contact
+    double contact_count{};    ///< [-]
+    std::uint64_t used{};      ///< for replacing the one that was not used for longest
   };
 
   struct Measured {
@@ -89,7 +91,9 @@ class PaperEstimator {
   /// law was.
   struct Branch {
     ContactCurve curve;
-    double noise{};  ///< [N], rms of measured force minus law, one sample
+    double noise{};            ///< [N], rms of measured force minus law, one sample
+    double contact_squares{};  ///< [N^2], sum of the same, in contact alone
+    double contact_count{};    ///< [-]
   };
 
   [[nodiscard]] StrokeSample filter(const ContactSample& sample) noexcept;
