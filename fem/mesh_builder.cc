@@ -11,8 +11,6 @@
 namespace palp::fem {
 namespace {
 
-constexpr double kAnySize = 1e9;  // [m], leaves a size to the other conditions
-
 /// One column of the fan: where it leaves the inclusion and where it ends on the box.
 struct Station {
   Node inner;
@@ -380,7 +378,7 @@ class Builder {
   const Block& block_;
   const Inclusion& inclusion_;
   const Indenter& indenter_;
-  MeshSizes sizes_;
+  Sizes sizes_;
   bool angular_;
   Mesh mesh_;
   double contact_reach_{};   ///< [m]

@@ -7,13 +7,15 @@
 
 namespace palp::fem {
 
+inline constexpr double kAnySize = 1e9;  // [m], leaves a size to the other conditions
+
 /// Element sizes and counts of one accuracy. Lengths are in indenter radii: the contact scales with
 /// it. The contact radius at d is near sqrt(R d), so sizes grow with r and every d sees about the
 /// same number of elements under the contact.
-struct MeshSizes {
+struct Sizes {
   double scale{1};               ///< [-], Normal: 1
   double contact{0.024};         ///< [-], at the axis
-  double contact_growth{0.045};  ///< [-], of the size with r
+  double contact_growth{0.045};  ///< [-], per radius
   double surface_row{0.045};     ///< [-], thickness of the first row below the contact
   int rows{12};                  ///< of the fan
   int inner_rows{4};             ///< of the inclusion
@@ -21,7 +23,7 @@ struct MeshSizes {
   int below{4};                  ///< along its lower part
   int rim{4};                    ///< columns between the contact and the box
 
-  explicit MeshSizes(Accuracy accuracy) {
+  explicit Sizes(Accuracy accuracy) {
     const double fine = accuracy == Accuracy::Fine ? 2 : accuracy == Accuracy::Coarse ? 0.6 : 1;
     scale = 1 / fine;
     contact *= scale;

@@ -73,7 +73,8 @@ double sample_information(double force, double noise, double quantum) {
   const auto density = [](double z) {
     return std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
   };
-  for (double code = middle - 4; code <= middle + 4; ++code) {
+  const double reach = 2 + std::ceil(6 * noise / quantum);
+  for (double code = middle - reach; code <= middle + reach; ++code) {
     const double low = ((code - 0.5) * quantum - force) / noise;
     const double high = ((code + 0.5) * quantum - force) / noise;
     const double share = normal_cdf(high) - normal_cdf(low);

@@ -84,7 +84,10 @@ estimator::DepthPrior prior_of(const DepthStudy& study) {
   } else {
     prior.depth_min = 4e-3;
     prior.depth_max = 25e-3;
+    prior.radius_min = 3e-3;
     prior.radius_max = 15e-3;
+    prior.ratio_min = 3;
+    prior.ratio_max = 900;
   }
   return prior;
 }

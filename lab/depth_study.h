@@ -13,9 +13,9 @@ namespace palp::lab {
 /// Monte Carlo of whole palpations: reference taps beside, then taps over an inclusion, through
 /// hand, coupling, network, servo and sensor, in virtual time.
 struct DepthStudy {
-  std::vector<double> depths;  ///< [m], the paper's phantom at these; empty: random phantoms
-  std::uint32_t count{100};    ///< random phantoms with, and as many without an inclusion
-  std::uint32_t repeats{1};    ///< of each depth
+  std::vector<double> depths{};  ///< [m], the paper's phantom at these; empty: random phantoms
+  std::uint32_t count{100};      ///< random phantoms with, and as many without an inclusion
+  std::uint32_t repeats{1};      ///< of each depth
   std::uint64_t seed{1};
   estimator::EstimatorKind estimator{estimator::EstimatorKind::Bayes};
   int taps{4};

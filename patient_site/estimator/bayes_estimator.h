@@ -10,14 +10,13 @@ namespace palp::estimator {
 
 struct BayesEstimatorConfig {
   PaperEstimatorConfig strokes;
-  /// [m]; shallower says too little. Less than eq. (2) needs: no cubic is fitted.
-  double indentation_min{1.5e-3};
+  /// Shallower says too little. Less than eq. (2) needs: no cubic is fitted.
+  double indentation_min{1.5e-3};  ///< [m]
   DepthPrior prior;
-  StiffnessPrior stiffness;  ///< before anything was touched
-  double evidence_min{3};    ///< [-], log of the odds from which an inclusion is found
-  double gain_min{12};       ///< [-], and what the best one must gain: 3.5 sigma
-  double reference_spread{
-      1e-3};  ///< [-], how much the block's stiffness differs from place to place
+  StiffnessPrior stiffness;       ///< before anything was touched
+  double evidence_min{3};         ///< [-], log of the odds from which an inclusion is found
+  double gain_min{12};            ///< [-], and what the best one must gain: 3.5 sigma
+  double reference_spread{1e-3};  ///< [-], of the block's stiffness from place to place
 };
 
 /// The estimator that knows how sure it is. Strokes are cut and cleaned as the paper's estimator

@@ -69,7 +69,14 @@ std::string text_of(const Settings& settings) {
       .add("estimator.filter_cut_off", settings.estimator.bayes.strokes.filter_cut_off)
       .add("estimator.period", settings.estimator.bayes.strokes.period)
       .add("estimator.force_quantum", settings.estimator.bayes.strokes.force_quantum)
-      .add("estimator.fit_range", settings.estimator.bayes.strokes.fit_range);
+      .add("estimator.fit_range", settings.estimator.bayes.strokes.fit_range)
+      .add("estimator.radius_min", settings.estimator.bayes.prior.radius_min)
+      .add("estimator.radius_max", settings.estimator.bayes.prior.radius_max)
+      .add("estimator.ratio_min", settings.estimator.bayes.prior.ratio_min)
+      .add("estimator.ratio_max", settings.estimator.bayes.prior.ratio_max)
+      .add("estimator.shape", std::string{to_string(settings.estimator.bayes.prior.shape)})
+      .add("estimator.scale", settings.estimator.bayes.stiffness.scale)
+      .add("estimator.scale_stddev", settings.estimator.bayes.stiffness.scale_stddev);
   add(list, settings.simulation);
   add(list, settings.loop);
   add(list, settings.impairment);
