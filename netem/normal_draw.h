@@ -31,7 +31,7 @@ class NormalDraw {
     // 52 bits and a half: never 0 or 1, not even rounded.
     return normal_quantile((static_cast<double>(bits >> 12U) + 0.5) * 0x1.0p-52);
   }
-  std::array<double, kCells + 1> knots_;
+  std::array<double, kCells + 1> knots_;  ///< [1]
 };
 
 }  // namespace palp::netem

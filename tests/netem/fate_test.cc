@@ -1,9 +1,7 @@
 #include "netem/fate.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +9,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "common/core/random.h"
+#include "tests/netem/fates.h"
 #include "tests/netem/impairment_builders.h"
 #include "tests/netem/impairment_generators.h"
 
@@ -18,43 +17,6 @@ namespace palp::netem {
 namespace {
 
 using std::chrono::milliseconds;
-
-constexpr std::size_t kRoom = 1'000'000;
-
-/// The fates of one datagram and its copies.
-struct Fate {
-  std::size_t count{};
-  std::array<CopyFate, kCopiesMax> copies{};
-};
-
-Fate fate_of(std::span<const CopyFate> copies) {
-  Fate fate{.count = copies.size()};
-  std::copy(copies.begin(), copies.end(), fate.copies.begin());
-  return fate;
-}
-
-/// The fates of `count` datagrams, one each `period`.
-std::vector<Fate> fates_of(const Impairment& impairment,
-                           std::size_t count,
-                           Duration period = milliseconds{1},
-                           std::uint64_t seed = 1,
-                           Direction direction = Direction::Up) {
-  FateSequence sequence{impairment, seed, direction, TimePoint{}};
-  std::vector<Fate> fates;
-  fates.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const TimePoint at{period * static_cast<std::int64_t>(i)};
-    fates.push_back(fate_of(sequence.next({.at = at, .length = 200, .room = kRoom})));
-  }
-  return fates;
-}
-
-bool lost(const Fate& fate) { return fate.copies[0].verdict == Verdict::Lost; }
-
-double loss_share(const std::vector<Fate>& fates) {
-  const auto count = std::count_if(fates.begin(), fates.end(), lost);
-  return static_cast<double>(count) / static_cast<double>(fates.size());
-}
 
 struct Moments {
   double mean{};    ///< [ms]
@@ -188,6 +150,29 @@ INSTANTIATE_TEST_SUITE_P(Shares,
                          ::testing::Combine(::testing::Values(0.0, 0.001, 0.05, 0.3, 0.9, 1.0),
                                             ::testing::Values(1, 2, 77)));
 
+TEST(FateTest, CorrelatedLossesKeepTheirShareAndCorrelateAsAsked) {
+  for (const double p : {0.01, 0.1, 0.5}) {
+    for (const double c : {0.25, 0.5, 0.9}) {
+      Impairment impairment;
+      impairment.loss = {p, c};
+      constexpr std::size_t kCount = 400'000;
+      const auto fates = fates_of(impairment, kCount);
+      // A mean of a chain has (1 + c) / (1 - c) times the variance of independent ones.
+      const double error = std::sqrt(p * (1 - p) / kCount * (1 + c) / (1 - c));
+      EXPECT_NEAR(loss_share(fates), p, 4 * error) << p << ' ' << c;
+      double losses = 0;
+      double again = 0;
+      for (std::size_t i = 0; i + 1 < kCount; ++i) {
+        if (!lost(fates[i])) continue;
+        losses += 1;
+        again += lost(fates[i + 1]) ? 1 : 0;
+      }
+      const double expected = p + c * (1 - p);
+      EXPECT_NEAR(again / losses, expected, 4 * std::sqrt(expected * (1 - expected) / losses));
+    }
+  }
+}
+
 /// Lengths of the runs of losses [ms]; a run that touches an end does not count.
 std::vector<double> loss_runs_ms(const std::vector<Fate>& fates, Duration period) {
   std::vector<double> runs;
@@ -201,6 +186,21 @@ std::vector<double> loss_runs_ms(const std::vector<Fate>& fates, Duration period
     }
   }
   return runs;
+}
+
+TEST(FateTest, PacketModelsOfLossGoAsTheirChainsSay) {
+  // Gilbert-Elliott: bad for p / (p + r) of the time. 4-state with p13, p31 alone: the same.
+  for (const auto& [words, share, run] : {std::tuple{"loss gemodel 1% 20%", 1.0 / 21, 5.0},
+                                          {"loss state 1% 30%", 1.0 / 31, 1 / 0.3}}) {
+    const auto fates = fates_of(impaired(words), 400'000);
+    const double c = 1 - 1 / run;
+    const double error = std::sqrt(share * (1 - share) / 400'000 * (1 + c) / (1 - c));
+    EXPECT_NEAR(loss_share(fates), share, 4 * error) << words;
+    const auto runs = loss_runs_ms(fates, milliseconds{1});
+    double mean = 0;
+    for (const double one : runs) mean += one / static_cast<double>(runs.size());
+    EXPECT_NEAR(mean, run, 4 * run * std::sqrt(c / static_cast<double>(runs.size()))) << words;
+  }
 }
 
 TEST(FateTest, BurstsLastEquallyLongAtAnySendingRate) {
@@ -332,6 +332,16 @@ TEST(FateTest, DelaysHaveTheAskedMeanAndSpread) {
   EXPECT_NEAR(uniform.lag1, 0, 4 / std::sqrt(kCount));
 }
 
+TEST(FateTest, EveryShapeHasTheAskedMeanAndSpread) {
+  for (const char* shape : {"pareto", "paretonormal", "gamma", "lognormal"}) {
+    const std::string words = std::string{"delay 50ms 10ms order netem distribution "} + shape;
+    const auto moments = delay_moments(fates_of(impaired(words), 200'000));
+    EXPECT_NEAR(moments.mean, 50, 4 * 10 / std::sqrt(200'000)) << shape;
+    // Heavy tails spread their own spread: kurtosis below 20.
+    EXPECT_NEAR(moments.stddev, 10, 4 * 10 * std::sqrt(19 / (4 * 200'000.0))) << shape;
+  }
+}
+
 TEST(FateTest, UniformDelaysStayInsideTheirInterval) {
   for (const char* words : {"delay 50ms 10ms", "delay 50ms 10ms 90%"}) {
     for (const Fate& fate : fates_of(impaired(words), 20'000)) {
@@ -342,7 +352,7 @@ TEST(FateTest, UniformDelaysStayInsideTheirInterval) {
 }
 
 TEST(FateTest, SuccessiveDelaysCorrelateAsAsked) {
-  for (const char* shape : {"uniform", "normal"}) {
+  for (const char* shape : {"uniform", "normal", "pareto", "paretonormal", "gamma", "lognormal"}) {
     for (const int percent : {0, 25, 50, 90}) {
       const std::string words =
           "delay 50ms 5ms " + std::to_string(percent) + "% distribution " + shape;

@@ -1,0 +1,113 @@
+#include "netem/exact_fates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/netem/fates.h"
+#include "tests/netem/impairment_builders.h"
+
+namespace palp::netem {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(ExactFatesTest, SwapsLetAFewOvertakeAsManyAsAsked) {
+  std::vector<TimePoint> releases;
+  for (const Fate& fate : fates_of(impaired("delay 50ms order swap 5% depth 3"), 20'000)) {
+    releases.push_back(fate.copies[0].release);
+  }
+  double swaps = 0;
+  for (std::size_t i = 4; i < releases.size(); ++i) {
+    std::size_t overtaken = 0;
+    for (std::size_t k = 1; k <= 8 && k <= i; ++k) overtaken += releases[i] < releases[i - k];
+    EXPECT_LE(overtaken, 3U + 8U);
+    swaps += overtaken >= 3 ? 1 : 0;
+  }
+  EXPECT_NEAR(swaps / 20'000, 0.05, 4 * std::sqrt(0.05 * 0.95 / 20'000));
+}
+
+TEST(ExactFatesTest, ARateSerialisesAndItsQueueDropsTheTail) {
+  // 242 bytes at 1 Mbit/s take 1.936 ms: two a millisecond fill any queue.
+  const auto fates = fates_of(impaired("rate 1mbit queue packets 10"), 1000, milliseconds{1});
+  TimePoint last{};
+  double dropped = 0;
+  for (const Fate& fate : fates) {
+    if (fate.copies[0].verdict == Verdict::OverLimit) {
+      dropped += 1;
+      continue;
+    }
+    if (last != TimePoint{}) {
+      EXPECT_EQ(fate.copies[0].release - last, Duration{1'936'000});
+    }
+    last = fate.copies[0].release;
+  }
+  EXPECT_NEAR(dropped / 1000, 1 - 1 / 1.936, 0.02);
+}
+
+TEST(ExactFatesTest, CodelKeepsAStandingQueueShort) {
+  // Half a per cent too much, for 12 s: CoDel drops ever more often until the queue is short.
+  const auto wait = [](const char* words) {
+    Duration longest{};
+    const auto fates = fates_of(impaired(words), 100'000, Duration{120'000});
+    for (std::size_t i = fates.size() / 2; i < fates.size(); ++i) {
+      if (fates[i].copies[0].verdict != Verdict::Delivered) continue;
+      longest = std::max(
+          longest,
+          fates[i].copies[0].release - TimePoint{Duration{120'000} * static_cast<std::int64_t>(i)});
+    }
+    return longest;
+  };
+  EXPECT_GT(wait("rate 16.05mbit"), milliseconds{50});
+  EXPECT_LT(wait("rate 16.05mbit queue codel"), milliseconds{15});
+}
+
+TEST(ExactFatesTest, FlippedBitsInHeadersAreLostAndInThePayloadArrive) {
+  double header = 0;
+  double payload = 0;
+  for (const Fate& fate : fates_of(impaired("corrupt 30%"), 40'000)) {
+    header += fate.copies[0].verdict == Verdict::HeaderHit ? 1 : 0;
+    payload += fate.copies[0].verdict == Verdict::Delivered && fate.copies[0].flipped_bit >= 0;
+  }
+  const double share = 0.3 * 42 / 242;
+  EXPECT_NEAR(header / 40'000, share, 4 * std::sqrt(share / 40'000));
+  EXPECT_NEAR((header + payload) / 40'000, 0.3, 4 * std::sqrt(0.21 / 40'000));
+  for (const Fate& fate : fates_of(impaired("corrupt 30% payload"), 2000)) {
+    EXPECT_EQ(fate.copies[0].verdict, Verdict::Delivered);
+  }
+}
+
+TEST(ExactFatesTest, SlotsReleaseOnTheirGridWithinTheirBudget) {
+  std::map<TimePoint, int> slots;
+  for (const Fate& fate : fates_of(impaired("delay 5ms slot 4ms 8ms packets 7"), 20'000)) {
+    ++slots[fate.copies[0].release];
+  }
+  TimePoint last{};
+  for (const auto& [at, count] : slots) {
+    EXPECT_LE(count, 7);
+    if (last != TimePoint{}) {
+      EXPECT_GE(at - last, milliseconds{4});
+    }
+    last = at;
+  }
+}
+
+TEST(ExactFatesTest, LongDatagramsDoNotFitTheMtu) {
+  FateSequence sequence{impaired("mtu 128"), 1, Direction::Up, TimePoint{}};
+  EXPECT_EQ(sequence.next({.length = 100, .room = 9})[0].verdict, Verdict::Delivered);
+  EXPECT_EQ(sequence.next({.length = 101, .room = 9})[0].verdict, Verdict::OverLimit);
+}
+
+TEST(ExactFatesTest, EcnMarksWhatCanBeMarkedAndDscpIsCleared) {
+  FateSequence sequence{impaired("loss 100% ecn dscp-clear"), 1, Direction::Up, TimePoint{}};
+  const CopyFate marked = sequence.next({.length = 1, .room = 9, .tos = 0xb9})[0];
+  EXPECT_EQ(marked.verdict, Verdict::Delivered);
+  EXPECT_EQ(marked.tos, 3);
+  EXPECT_EQ(sequence.next({.length = 1, .room = 9, .tos = 0xb8})[0].verdict, Verdict::Lost);
+}
+
+}  // namespace
+}  // namespace palp::netem
