@@ -114,6 +114,22 @@ INSTANTIATE_TEST_SUITE_P(Shipped,
                                                                                  : "Uplink";
                          });
 
+TEST(DelayTraceTest, BetweenTwoMessagesArrivalsGoEvenly) {
+  Impairment impairment;
+  impairment.trace = *parse_delay_trace("t", "t_ms,delay_ms\n0,5\n100,305\n200,205\n");
+  std::vector<Duration> delays;
+  (void)simulate(
+      {.plan = {.impairment = impairment}, .packets = 9, .interval = std::chrono::milliseconds{25}},
+      [&](const Decision& decision) {
+        delays.push_back(decision.released_at - decision.arrived_at);
+      });
+  EXPECT_EQ(delays[2], std::chrono::milliseconds{155});
+  // The hold ends for all at once: everybody of the second stretch arrives at 405 ms.
+  EXPECT_EQ(delays[5], std::chrono::milliseconds{280});
+  EXPECT_EQ(delays[6], std::chrono::milliseconds{255});
+  EXPECT_EQ(delays[8], std::chrono::milliseconds{205});
+}
+
 TEST(RecordingTest, ReplayingARecordingAndRecordingItAgainIsTheIdentity) {
   const auto record = [](const Impairment& impairment) {
     std::string text = std::string{kRecordingHeader} + "\n";

@@ -290,6 +290,15 @@ INSTANTIATE_TEST_SUITE_P(Recorded,
                          ::testing::ValuesIn(cases()),
                          [](const auto& test) { return test.param.name(); });
 
+TEST(NetemReferenceTest, GilbertElliottLosesByTheStateBeforeTheStep) {
+  const PathPlan plan{.impairment = *parse_impairment("loss gemodel 100% 100%", Mode::Netem61)};
+  std::vector<Verdict> verdicts;
+  (void)simulate({.plan = plan, .packets = 4},
+                 [&](const Decision& decision) { verdicts.push_back(decision.verdict); });
+  EXPECT_EQ(verdicts,
+            (std::vector{Verdict::Delivered, Verdict::Lost, Verdict::Delivered, Verdict::Lost}));
+}
+
 TEST(NetemReferenceTest, SpacesABurstExactlyByItsLengthOnTheLine) {
   for (const auto& [words, step] :
        {std::pair{"delay 10ms rate 2mbit", std::chrono::microseconds{568}},
