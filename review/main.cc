@@ -8,12 +8,13 @@
 
 #include "common/config/command_line.h"
 #include "common/config/exit_code.h"
+#include "common/config/report.h"
 #include "common/record/mapped_file.h"
+#include "common/record/mcap_reader.h"
 #include "review/check.h"
 #include "review/demo_report.h"
 #include "review/info.h"
 #include "review/recover.h"
-#include "review/report_file.h"
 #include "review/taps.h"
 
 namespace palp::review {
@@ -27,10 +28,27 @@ Ending cannot_open(const std::string& text) {
   return {ExitCode::CannotOpen, "palp-review: " + text};
 }
 
-Ending run_info(const std::string& path) {
-  const auto file = record::MappedFile::open(path);
+Ending ending_of(const Error& error) {
+  return error.unreachable ? cannot_open(error.text) : bad_input(error.text);
+}
+
+/// A file that may be cut off or damaged, but is a session file.
+Result<record::MappedFile> open_session(const std::string& path) {
+  auto file = record::MappedFile::open(path);
   if (!file) {
-    return cannot_open(file.error().text);
+    return file;
+  }
+  const record::McapReader reader{file->bytes()};
+  if (!reader.report().faults.empty()) {
+    return fail(path + ": " + reader.report().faults.front().text);
+  }
+  return file;
+}
+
+Ending run_info(const std::string& path) {
+  const auto file = open_session(path);
+  if (!file) {
+    return ending_of(file.error());
   }
   std::cout << describe(file->bytes());
   return {};
@@ -39,7 +57,7 @@ Ending run_info(const std::string& path) {
 Ending run_check(const std::string& path) {
   const auto file = record::MappedFile::open(path);
   if (!file) {
-    return cannot_open(file.error().text);
+    return ending_of(file.error());
   }
   if (const auto fault = first_fault(file->bytes())) {
     std::cout << path << ": " << *fault << '\n';
@@ -50,9 +68,9 @@ Ending run_check(const std::string& path) {
 }
 
 Ending run_recover(const std::string& in, const std::string& out) {
-  const auto file = record::MappedFile::open(in);
+  const auto file = open_session(in);
   if (!file) {
-    return cannot_open(file.error().text);
+    return ending_of(file.error());
   }
   auto sink = record::FileSink::create(out);
   if (!sink) {
@@ -90,7 +108,7 @@ Ending run_metrics(const MetricsFlags& flags) {
   const auto surgeon = load_site(flags.sessions.surgeon, link::Role::Surgeon);
   const auto patient = load_site(flags.sessions.patient, link::Role::Patient);
   if (!surgeon || !patient) {
-    return bad_input(!surgeon ? surgeon.error().text : patient.error().text);
+    return ending_of(!surgeon ? surgeon.error() : patient.error());
   }
   std::optional<TissueTable> tissue;
   if (patient->tissue_csv) {
@@ -109,8 +127,8 @@ Ending run_metrics(const MetricsFlags& flags) {
                                .patient = optional_text(flags.reports.patient),
                                .relay = optional_text(flags.relay)};
   const auto document = demo_report(*surgeon, *patient, taps, flags.asked, reports, flags.sessions);
-  if (const auto error = write_whole(flags.report, document)) {
-    return cannot_open(error->text);
+  if (const auto written = config::write_whole_file(flags.report, document); !written) {
+    return cannot_open("--report: " + written.error().text);
   }
   return {};
 }

@@ -59,7 +59,7 @@ std::optional<double> SiteData::number(const std::string& key) const {
 Result<SiteData> load_site(const std::string& path, link::Role site) {
   const auto file = record::MappedFile::open(path);
   if (!file) {
-    return fail(file.error().text);
+    return tl::unexpected(file.error());
   }
   return load_site(file->bytes(), path, site);
 }

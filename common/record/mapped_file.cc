@@ -14,7 +14,7 @@ namespace palp::record {
 Result<MappedFile> MappedFile::open(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) {
-    return fail("file " + path + " cannot be opened: " + std::strerror(errno));
+    return fail_to_reach("file " + path + " cannot be opened: " + std::strerror(errno));
   }
   struct stat status {};
   const bool regular = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
@@ -26,10 +26,10 @@ Result<MappedFile> MappedFile::open(const std::string& path) {
   const int error = errno;
   ::close(descriptor);
   if (!regular) {
-    return fail(path + " is not a regular file");
+    return fail_to_reach(path + " is not a regular file");
   }
   if (address == MAP_FAILED) {
-    return fail("file " + path + " cannot be read: " + std::strerror(error));
+    return fail_to_reach("file " + path + " cannot be read: " + std::strerror(error));
   }
   return MappedFile{{static_cast<std::byte*>(address), size}};
 }

@@ -82,8 +82,20 @@ TEST_F(PalpReviewTest, MetricsWorksOnCutOffFilesAndWithoutOptionalReports) {
   EXPECT_EQ(nlohmann::json::parse(text("r.json"))["sites"]["patient"]["closed"], false);
 }
 
+TEST_F(PalpReviewTest, AFileThatIsNoSessionFileIsBadInputAndNothingIsMadeOfIt) {
+  save("text.mcap", std::as_bytes(std::span{"d_mm,F_N"}));
+  EXPECT_EQ(run("info text.mcap"), 2);
+  EXPECT_EQ(run("recover text.mcap mended.mcap"), 2);
+  EXPECT_FALSE(fs::exists(folder_ + "/mended.mcap"));
+  EXPECT_EQ(run("metrics --surgeon text.mcap --patient p.mcap"), 2);
+  EXPECT_EQ(run("check text.mcap"), 1);
+}
+
 TEST_F(PalpReviewTest, WrongFilesAndFlagsHaveTheirExitCodes) {
   EXPECT_EQ(run("info nothing.mcap"), 3);
+  EXPECT_EQ(run("metrics --surgeon nothing.mcap --patient p.mcap"), 3);
+  EXPECT_EQ(run("metrics --surgeon s.mcap --patient nothing.mcap"), 3);
+  EXPECT_EQ(run("metrics --surgeon s.mcap --patient p.mcap --report none/r.json"), 3);
   EXPECT_EQ(run("metrics --surgeon p.mcap --patient s.mcap"), 2);
   EXPECT_EQ(run("metrics --surgeon s.mcap"), 2);
   EXPECT_EQ(run("polish s.mcap"), 2);
