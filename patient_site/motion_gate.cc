@@ -16,6 +16,8 @@ constexpr double kNoiseShare = 1.4;         // six standard deviations of a mean
 constexpr double kNoiseSmoothing = 1e-3;    // per tick: 1 s
 constexpr double kOutside = 0.5e-3;         // [m], of the learned surface: more than its error
 constexpr double kRetractedWithin = 50e-6;  // [m]
+/// A late tick must not buy a bigger step: what the process slept through, the stage has stood.
+constexpr Duration kTickMax = std::chrono::milliseconds{10};
 
 }  // namespace
 
@@ -117,7 +119,7 @@ void MotionGate::note_once(MotionAnswer& answer, NoteCode code, double detail) n
 
 MotionAnswer MotionGate::pass(const MotionRequest& request, Duration dt) noexcept {
   MotionAnswer answer;
-  const double span = seconds(dt);
+  const double span = seconds(std::min(dt, kTickMax));
   NoteCode condition = NoteCode::None;
   const bool finite = std::isfinite(request.position);
   if (request.state == SiteState::Stopped) {

@@ -57,6 +57,19 @@ TEST(MotionGateTest, NeverExceedsSpeedAndAccelerationWhateverIsAsked) {
   });
 }
 
+TEST(MotionGateTest, ALateTickBuysNoBiggerStep) {
+  for (const SiteState state : {SiteState::Engaged, SiteState::Retract}) {
+    const auto step_after = [&](Duration dt) {
+      MotionGate gate = gate_at(0);
+      touch(gate, 0, 0.2);
+      const MotionRequest request{state, 40e-3, 0, 0, 0};
+      return std::abs(gate.pass(request, dt).position);
+    };
+    EXPECT_GT(step_after(10 * kTick), 0);
+    EXPECT_EQ(step_after(500 * kTick), step_after(10 * kTick)) << to_string(state);
+  }
+}
+
 TEST(MotionGateTest, ATargetWithinTheSpeedStillWaitsForTheAcceleration) {
   MotionGate gate = gate_at(0);
   // 0.14 m/s from rest; 8 m/s^2 give 8 mm/s in the first tick.
