@@ -16,11 +16,20 @@
 namespace palp::io {
 namespace {
 
+/// Whether somebody asked that this program outlive its terminal, as nohup(1) does.
+bool hang_up_ignored() noexcept {
+  struct sigaction action {};
+  return sigaction(SIGHUP, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
 sigset_t stop_signals() noexcept {
   sigset_t set;
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
+  if (!hang_up_ignored()) {
+    sigaddset(&set, SIGHUP);
+  }
   return set;
 }
 
@@ -29,6 +38,8 @@ sigset_t stop_signals() noexcept {
 Terminal::Terminal() {
   const sigset_t set = stop_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  // Who reads what we print may leave; the session goes on.
+  std::signal(SIGPIPE, SIG_IGN);
   signals_ = Descriptor{signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC)};
   if (!signals_.valid()) {
     throw std::runtime_error{"cannot watch for signals: " + system_text(errno)};

@@ -13,10 +13,11 @@ namespace palp::io {
 
 enum class StopCause : std::uint8_t { Key, Signal };
 
-/// The person at the terminal: any key, ^C or SIGTERM asks the program to stop; a second signal
-/// ends it hard. Make it first in main, before any thread: threads inherit that the signals wait.
-/// Keys are read one by one and without echo while standard input is a terminal and the program in
-/// its foreground. One to a process. Thread: main.
+/// The person at the terminal: any key, ^C, SIGTERM or the terminal's own end asks the program to
+/// stop; a second signal ends it hard. That nobody reads its output any more does not end it. Make
+/// it first in main, before any thread: threads inherit that the signals wait. Keys are read one by
+/// one and without echo while standard input is a terminal and the program in its foreground. One
+/// to a process. Thread: main.
 class Terminal {
  public:
   Terminal();
