@@ -357,7 +357,9 @@ std::optional<Ending> CommandLine::parse(int argc, const char* const* argv) {
     return prefixed(bad_input(printable(error.what())));
   }
   std::optional<Ending> ending = parts_->unexpected_word();
-  if (!ending) {
+  if (ending) {
+    (void)parts_->take_values();  // who names a report gets one, also of a word too many
+  } else {
     ending = parts_->take_all();
   }
   for (const auto& verb : parts_->verbs) {

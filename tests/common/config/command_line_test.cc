@@ -88,6 +88,12 @@ TEST(CommandLineTest, ReadsFlagsOfEveryKind) {
   EXPECT_TRUE(program.line.given("--report"));
 }
 
+TEST(CommandLineTest, AReportIsKnownAlsoWhereAWordTooManyEndsTheProgram) {
+  Program program;
+  ASSERT_TRUE(parse(program.line, {"--bogus", "--report", "a.json"}));
+  EXPECT_EQ(program.report, "a.json");
+}
+
 TEST(CommandLineTest, KeepsDefaultsOfWhatIsNotGiven) {
   Program program;
   ASSERT_FALSE(parse(program.line, {}));
