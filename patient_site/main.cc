@@ -155,7 +155,7 @@ class Program {
 
  private:
   void look(TimePoint now);
-  [[nodiscard]] Ending told_to_stop();
+  [[nodiscard]] Ending end(std::string outcome);
 
   const Settings settings_;
   const Phantom phantom_;
@@ -183,9 +183,9 @@ Ending Program::run(io::Terminal& terminal) {
     const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
     const TimePoint now = clock_.now();
     look(now);
-    if (stop) return told_to_stop();
+    if (stop) return end(runner_.sessions() > 0 ? "completed" : "no session");
     if (settings_.duration > Duration{0} && now - began_at_ >= settings_.duration) {
-      return {ExitCode::Done, "duration reached", ""};
+      return end("duration reached");
     }
   }
 }
@@ -200,14 +200,14 @@ void Program::look(TimePoint now) {
 
 /// A patient site waits for surgeons until it is told to stop, so that is its normal end, unless it
 /// had stopped itself. A surgeon's goodbye may still be on its way.
-Ending Program::told_to_stop() {
+Ending Program::end(std::string outcome) {
   const PatientStatus& status = node_.status().get();
   if (status.state == SiteState::Stopped) {
     return {ExitCode::CutShort,
             "stopped",
             "the site had stopped itself: " + std::string{record::to_string(status.reason)}};
   }
-  return {ExitCode::Done, runner_.sessions() > 0 ? "completed" : "no session", ""};
+  return {ExitCode::Done, std::move(outcome), ""};
 }
 
 void Program::stop(site_program::SiteReport& report) {
@@ -249,7 +249,7 @@ int run(int argc, char** argv) {
   report.site = "patient";
   if (const auto ending = line.parse(argc, argv)) {
     if (ending->code == ExitCode::Done || report_file.empty()) return config::leave(*ending);
-    report.ending = {ending->code, "bad input", ending->text};
+    report.ending = ending_of(*ending);
     return site_program::finish(report, report_file);
   }
   try {

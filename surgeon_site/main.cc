@@ -190,10 +190,12 @@ std::optional<Ending> Program::look(TimePoint now) {
   line_.show(status_line(status), now);
   if (hopeless) return Ending{ExitCode::CannotOpen, "refused", *hopeless};
   if (const auto ending = end_of_script(status)) return ending;
-  if (settings_.duration > Duration{0} && now - began_at_ >= settings_.duration) {
-    return Ending{ExitCode::Done, "duration reached", ""};
+  if (const auto ending = watch_.judge(status.link, now)) return ending;
+  if (settings_.duration == Duration{0} || now - began_at_ < settings_.duration) {
+    return std::nullopt;
   }
-  return watch_.judge(status.link, now);
+  return watch_.ever_worked() ? Ending{ExitCode::Done, "duration reached", ""}
+                              : watch_.unreachable(status.link, settings_.duration);
 }
 
 void Program::stop(site_program::SiteReport& report) {
@@ -235,7 +237,7 @@ int run(int argc, char** argv) {
   report.site = "surgeon";
   if (const auto ending = line.parse(argc, argv)) {
     if (ending->code == ExitCode::Done || report_file.empty()) return config::leave(*ending);
-    report.ending = {ending->code, "bad input", ending->text};
+    report.ending = ending_of(*ending);
     return site_program::finish(report, report_file);
   }
   try {

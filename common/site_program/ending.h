@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "common/config/command_line.h"
 #include "common/config/exit_code.h"
 #include "common/core/result.h"
 
@@ -24,6 +25,12 @@ struct Ending {
 /// Of what was wrong, or could not be reached at all, before the session.
 [[nodiscard]] inline Ending ending_of(const Error& error) {
   return error.unreachable ? cannot_start(error.text) : bad_input(error.text);
+}
+
+/// Of a command line that was no order to begin.
+[[nodiscard]] inline Ending ending_of(const config::Ending& refusal) {
+  return refusal.code == config::ExitCode::CannotOpen ? cannot_start(refusal.text)
+                                                      : bad_input(refusal.text);
 }
 
 }  // namespace palp::site_program

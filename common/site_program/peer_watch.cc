@@ -19,22 +19,25 @@ std::optional<Ending> PeerWatch::judge(const link::LinkHealth& link, TimePoint n
     return std::nullopt;
   }
   if (now - worked_at_ < config_.patience) return std::nullopt;
-  const std::string waited = config::number_text(seconds(config_.patience)) + " s";
-  if (ever_) {
-    return Ending{config::ExitCode::CutShort,
-                  "peer lost",
-                  "the peer at " + config_.peer + " has been silent for " + waited};
-  }
+  if (!ever_) return unreachable(link, config_.patience);
+  return Ending{config::ExitCode::CutShort,
+                "peer lost",
+                "the peer at " + config_.peer + " has been silent for " +
+                    config::number_text(seconds(config_.patience)) + " s"};
+}
+
+Ending PeerWatch::unreachable(const link::LinkHealth& link, Duration waited) const {
   if (link.round_trip_min > config_.round_trip_max) {
-    return Ending{config::ExitCode::CannotOpen,
-                  "unreachable",
-                  "no session with " + config_.peer + ": its round trip of " +
-                      milliseconds_text(link.round_trip_min) + " is above the limit of " +
-                      milliseconds_text(config_.round_trip_max)};
+    return {config::ExitCode::CannotOpen,
+            "unreachable",
+            "no session with " + config_.peer + ": its round trip of " +
+                milliseconds_text(link.round_trip_min) + " is above the limit of " +
+                milliseconds_text(config_.round_trip_max)};
   }
-  return Ending{config::ExitCode::CannotOpen,
-                "unreachable",
-                "no session with " + config_.peer + " within " + waited + ": nobody answers there"};
+  return {config::ExitCode::CannotOpen,
+          "unreachable",
+          "no session with " + config_.peer + " within " + config::number_text(seconds(waited)) +
+              " s: nobody answers there"};
 }
 
 }  // namespace palp::site_program

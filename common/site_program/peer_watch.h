@@ -23,6 +23,9 @@ class PeerWatch {
 
   /// nullopt: go on.
   [[nodiscard]] std::optional<Ending> judge(const link::LinkHealth& link, TimePoint now);
+  [[nodiscard]] bool ever_worked() const noexcept { return ever_; }
+  /// How a wait of this length ends in which no link ever worked.
+  [[nodiscard]] Ending unreachable(const link::LinkHealth& link, Duration waited) const;
 
  private:
   PeerWatchConfig config_;

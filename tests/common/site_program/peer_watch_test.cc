@@ -41,6 +41,18 @@ TEST(PeerWatchTest, ALinkThatWorkedAndBrokeIsAPeerLost) {
   EXPECT_EQ(ending->outcome, "peer lost");
 }
 
+TEST(PeerWatchTest, KnowsWhetherThereEverWasALinkAndHowLongItWasWaitedFor) {
+  PeerWatch watch_it = watch();
+  (void)watch_it.judge(link_in(LinkState::Down), kStart + seconds{2});
+  EXPECT_FALSE(watch_it.ever_worked());
+  const Ending ending = watch_it.unreachable(link_in(LinkState::Down), seconds{2});
+  EXPECT_EQ(ending.code, config::ExitCode::CannotOpen);
+  EXPECT_THAT(ending.reason, HasSubstr("within 2 s"));
+  (void)watch_it.judge(link_in(LinkState::Live), kStart + seconds{3});
+  (void)watch_it.judge(link_in(LinkState::Down), kStart + seconds{4});
+  EXPECT_TRUE(watch_it.ever_worked());
+}
+
 TEST(PeerWatchTest, ARoundTripAboveTheLimitIsNamed) {
   PeerWatch watch_it = watch();
   link::LinkHealth link = link_in(LinkState::Down);
