@@ -192,6 +192,10 @@ std::optional<McapItem> McapReader::read_schema(const RawRecord& record) {
     fault(record.offset, "this schema is broken: its id is 0 or a field does not fit");
     return std::nullopt;
   }
+  if (schema.name.size() > limits_.name_size_max) {
+    fault(record.offset, "the name of this schema is longer than the limit");
+    return std::nullopt;
+  }
   if (const auto known = schemas_.find(schema.id); known != schemas_.end()) {
     if (!(known->second == schema)) {
       fault(record.offset, "schema " + std::to_string(schema.id) + " is defined twice, unlike");
@@ -214,6 +218,10 @@ std::optional<McapItem> McapReader::read_channel(const RawRecord& record) {
   channel.metadata = cursor.map();
   if (!cursor.ok()) {
     fault(record.offset, "a field of this channel reaches beyond its end");
+    return std::nullopt;
+  }
+  if (channel.topic.size() > limits_.name_size_max) {
+    fault(record.offset, "the topic of this channel is longer than the limit");
     return std::nullopt;
   }
   if (const auto known = channels_.find(channel.id); known != channels_.end()) {

@@ -78,7 +78,9 @@ struct McapFault {
 struct McapLimits {
   std::uint64_t chunk_size_max{64u << 20};        ///< [bytes], uncompressed
   std::uint64_t definitions_size_max{64u << 20};  ///< [bytes], of all schemas and channels
-  std::size_t faults_max{64};                     ///< kept with their text; all are counted
+  /// [bytes], of a schema or topic: names are compared with every message.
+  std::size_t name_size_max{4096};
+  std::size_t faults_max{64};  ///< kept with their text; all are counted
 };
 
 /// What the reader has seen so far.

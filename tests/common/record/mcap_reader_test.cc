@@ -147,11 +147,11 @@ class RawFile {
     fill(bytes_);
     return *this;
   }
-  RawFile& add_channel(std::uint16_t id, std::uint16_t schema) {
+  RawFile& add_channel(std::uint16_t id, std::uint16_t schema, std::string_view topic = "topic") {
     return add(McapOpcode::Channel, [&](Bytes& out) {
       append(out, id);
       append(out, schema);
-      append(out, std::string_view{"topic"});
+      append(out, topic);
       append(out, std::string_view{});
       append(out, McapMap{});
     });
@@ -309,6 +309,24 @@ TEST(McapReaderTest, RecordThatReachesBeyondTheFileEndsTheReading) {
   EXPECT_EQ(report.messages, 1u);
   EXPECT_EQ(report.bytes_unread, 9u);
   EXPECT_FALSE(report.closed);
+}
+
+TEST(McapReaderTest, NamesAreShortBecauseEveryMessageIsComparedWithThem) {
+  const auto messages = [](std::size_t size) {
+    RawFile file;
+    file.add_channel(1, 0, std::string(size, 'x')).add_message(1);
+    return read_all(file.bytes()).messages;
+  };
+  EXPECT_EQ(messages(4096), 1u);
+  EXPECT_EQ(messages(4097), 0u);
+  RawFile file;
+  file.add(McapOpcode::Schema, [](Bytes& out) {
+    append(out, std::uint16_t{1});
+    append(out, std::string_view{std::string(4097, 'x')});
+    append(out, std::string_view{});
+    append(out, std::uint32_t{0});
+  });
+  EXPECT_EQ(read_all(file.bytes()).fault_count, 1u);
 }
 
 TEST(McapReaderTest, OtherBytesAreNoMcapFile) {
