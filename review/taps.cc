@@ -10,27 +10,63 @@
 namespace palp::review {
 namespace {
 
-/// The stroke an estimate came from: the last one that the surgeon began before the estimate
-/// arrived. The clocks of the sites need not agree for that, and an estimate leaves at the stroke's
-/// reversal, long before the next stroke begins.
-const Excursion* excursion_of(const DepthEstimate& estimate,
-                              const SiteData& surgeon,
-                              const std::vector<Excursion>& excursions) {
-  const auto report = std::find_if(
-      surgeon.reports.begin(), surgeon.reports.end(), [&](const record::DepthArrived& arrived) {
-        return arrived.report.number == estimate.number;
-      });
-  if (report == surgeon.reports.end()) {
-    return nullptr;
-  }
-  const Excursion* last = nullptr;
-  for (const Excursion& excursion : excursions) {
-    if (excursion.began_at < report->at) {
-      last = &excursion;
+/// The surgeon's excursions, each with its stiffness once it was asked for.
+class Strokes {
+ public:
+  Strokes(const SiteData& surgeon, double surface, const TissueTable* tissue)
+      : surface_{surface}, tissue_{tissue} {
+    for (const record::DepthArrived& arrived : surgeon.reports) {
+      arrived_at_.try_emplace(arrived.report.number, arrived.at);
     }
+    for (const Excursion& excursion : find_excursions(surgeon.motion, surface)) {
+      strokes_.push_back({excursion, {}});
+    }
+    std::stable_sort(strokes_.begin(), strokes_.end(), [](const Stroke& a, const Stroke& b) {
+      return a.excursion.began_at < b.excursion.began_at;
+    });
   }
-  return last != nullptr && last->place == place_at(estimate.lateral) ? last : nullptr;
-}
+
+  /// The one an estimate came from: the last one that the surgeon began before the estimate
+  /// arrived. The clocks of the sites need not agree for that, and an estimate leaves at the
+  /// stroke's reversal, long before the next stroke begins.
+  [[nodiscard]] std::optional<std::size_t> of(const DepthEstimate& estimate) const {
+    const auto arrived = arrived_at_.find(estimate.number);
+    if (arrived == arrived_at_.end()) {
+      return std::nullopt;
+    }
+    const auto later = std::partition_point(
+        strokes_.begin(), strokes_.end(), [at = arrived->second](const Stroke& stroke) {
+          return stroke.excursion.began_at < at;
+        });
+    if (later == strokes_.begin() ||
+        std::prev(later)->excursion.place != place_at(estimate.lateral)) {
+      return std::nullopt;
+    }
+    return static_cast<std::size_t>(std::prev(later) - strokes_.begin());
+  }
+  [[nodiscard]] Duration span(std::size_t index) const {
+    const Excursion& excursion = strokes_[index].excursion;
+    return elapsed(excursion.began_at, excursion.ended_at);
+  }
+  [[nodiscard]] const Stiffness& stiffness(std::size_t index) {
+    Stroke& stroke = strokes_[index];
+    if (!stroke.stiffness) {
+      stroke.stiffness = fit_stiffness(stroke.excursion, surface_, tissue_);
+    }
+    return *stroke.stiffness;
+  }
+
+ private:
+  struct Stroke {
+    Excursion excursion;
+    std::optional<Stiffness> stiffness;
+  };
+
+  double surface_;  ///< [m]
+  const TissueTable* tissue_;
+  std::map<std::uint32_t, TimePoint> arrived_at_;  ///< by the estimate's number
+  std::vector<Stroke> strokes_;                    ///< in order of time
+};
 
 double surface_of(const SiteData& patient) {
   if (const auto offset = patient.number("surface_offset_mm")) {
@@ -54,23 +90,21 @@ std::string cell(const std::optional<double>& value, int digits, std::size_t wid
 std::vector<Tap> match_taps(const SiteData& surgeon,
                             const SiteData& patient,
                             const TissueTable* tissue) {
-  const double surface = surface_of(patient);
-  const auto excursions = find_excursions(surgeon.motion, surface);
+  Strokes strokes{surgeon, surface_of(patient), tissue};
   std::map<std::pair<Place, StrokeKind>, int> counts;
   std::vector<Tap> taps;
   for (const DepthEstimate& estimate : patient.estimates) {
-    const Excursion* excursion = excursion_of(estimate, surgeon, excursions);
-    const Duration span = excursion != nullptr
-                              ? elapsed(excursion->began_at, excursion->ended_at)
-                              : elapsed(estimate.stroke_began_at, estimate.stroke_ended_at);
+    const auto stroke = strokes.of(estimate);
+    const Duration span = stroke ? strokes.span(*stroke)
+                                 : elapsed(estimate.stroke_began_at, estimate.stroke_ended_at);
     Tap tap{.place = place_at(estimate.lateral),
             .kind = span > kTapMax ? StrokeKind::Press : StrokeKind::Tap,
             .index = 0,
             .estimate = estimate,
             .stiffness = {}};
     tap.index = ++counts[{tap.place, tap.kind}];
-    if (excursion != nullptr) {
-      tap.stiffness = fit_stiffness(*excursion, surface, tissue);
+    if (stroke) {
+      tap.stiffness = strokes.stiffness(*stroke);
     }
     taps.push_back(tap);
   }

@@ -43,6 +43,22 @@ TEST(TapsTest, StrokeThatThePatientNeverSawDoesNotShiftTheOthers) {
   EXPECT_EQ(taps[1].estimate.number, 3u);
 }
 
+TEST(TapsTest, ManyEstimatesOfOneLongStrokeTakeNoLonger) {
+  // A file that nobody of ours wrote: with every pair compared this would take minutes.
+  auto session = load(sample_session());
+  session.surgeon.motion.resize(1);
+  session.surgeon.motion.resize(300'000, session.surgeon.motion.front());
+  for (Motion& motion : session.surgeon.motion) {
+    motion.position = test::kSurface + 2e-3;
+    motion.velocity = 1;
+  }
+  session.surgeon.reports.resize(1);
+  session.patient.estimates.resize(1);
+  session.surgeon.reports.resize(50'000, session.surgeon.reports.front());
+  session.patient.estimates.resize(50'000, session.patient.estimates.front());
+  EXPECT_EQ(match_taps(session.surgeon, session.patient, nullptr).size(), 50'000u);
+}
+
 TEST(TapsTest, HandAtAnotherPlaceIsNotTheOneOfTheStroke) {
   auto session = load(sample_session());
   for (Motion& motion : session.surgeon.motion) {
