@@ -86,16 +86,17 @@ bool Endpoint::operator==(const Endpoint& other) const noexcept {
          std::memcmp(&a.sin6_addr, &b.sin6_addr, sizeof a.sin6_addr) == 0;
 }
 
-Endpoint Endpoint::any_of_family() const noexcept {
+Endpoint Endpoint::caller() const noexcept {
   if (family() == AF_INET6) {
-    sockaddr_in6 any{};
-    any.sin6_family = AF_INET6;
-    any.sin6_addr = in6addr_any;
-    return {&any, sizeof any};
+    sockaddr_in6 from{};
+    from.sin6_family = AF_INET6;
+    from.sin6_addr = loopback() ? in6addr_loopback : in6addr_any;
+    return {&from, sizeof from};
   }
-  sockaddr_in any{};
-  any.sin_family = AF_INET;
-  return {&any, sizeof any};
+  sockaddr_in from{};
+  from.sin_family = AF_INET;
+  from.sin_addr.s_addr = htonl(loopback() ? INADDR_LOOPBACK : INADDR_ANY);
+  return {&from, sizeof from};
 }
 
 Result<Endpoint> resolve(const HostAndPort& place) {

@@ -31,8 +31,9 @@ class Endpoint {
   [[nodiscard]] std::string to_string() const;
   /// The same address and port; flow labels do not count.
   [[nodiscard]] bool operator==(const Endpoint& other) const noexcept;
-  /// The address of the same family that means "any", with port 0.
-  [[nodiscard]] Endpoint any_of_family() const noexcept;
+  /// Where to call from: the address of the same family that means "any", with port 0; towards a
+  /// loopback address a loopback one, which nobody outside this machine can reach.
+  [[nodiscard]] Endpoint caller() const noexcept;
 
  private:
   sockaddr_storage storage_{};

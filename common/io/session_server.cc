@@ -132,7 +132,7 @@ SessionServer::Io::Io(const SessionServerConfig& config, HandoverDesk& desk)
                                ": the port must be 1 to 65535"};
     }
     callee_ = place;
-    wish = place.any_of_family();
+    wish = place.caller();
   }
   // Bound without leave to share: an owner of this port is noticed, and none can come after us.
   boost::system::error_code refusal;

@@ -40,6 +40,13 @@ TEST(EndpointTest, LoopbackIsWhatNeverLeavesTheMachine) {
   EXPECT_FALSE(Endpoint{}.loopback());
 }
 
+TEST(EndpointTest, ACallWithinTheMachineComesFromWithin) {
+  EXPECT_EQ(resolve_endpoint("127.0.0.2:9000")->caller().to_string(), "127.0.0.1:0");
+  EXPECT_EQ(resolve_endpoint("[::1]:9000")->caller().to_string(), "[::1]:0");
+  EXPECT_EQ(resolve_endpoint("192.0.2.1:9000")->caller().to_string(), "0.0.0.0:0");
+  EXPECT_EQ(resolve_endpoint("[2001:db8::1]:9000")->caller().to_string(), "[::]:0");
+}
+
 TEST(EndpointTest, ForeignFamiliesAndShortAddressesAreNone) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
