@@ -390,12 +390,10 @@ std::string CommandLine::chosen_verb() const {
 }
 
 int leave(const Ending& ending) {
-  const bool done = ending.code == ExitCode::Done;
-  const bool ended = !ending.text.empty() && ending.text.back() == '\n';
-  if (ending.text.empty()) {
-    return exit_status(ending.code);
+  if (!ending.text.empty()) {
+    const char* const rest = ending.text.back() == '\n' ? "" : "\n";
+    (void)std::fputs((ending.text + rest).c_str(), ending.code == ExitCode::Done ? stdout : stderr);
   }
-  (void)std::fputs((ending.text + (ended ? "" : "\n")).c_str(), done ? stdout : stderr);
   return exit_status(ending.code);
 }
 
