@@ -21,7 +21,8 @@ TEST(SessionInfoTest, SaysWhatTheSessionWasMadeWith) {
   EXPECT_THAT(info.metadata, Contains(Pair("program", "palp-surgeon")));
   EXPECT_THAT(info.metadata, Contains(Pair("version", std::string{version()})));
   EXPECT_THAT(info.metadata, Contains(Pair("git_commit", std::string{git_commit()})));
-  EXPECT_THAT(info.metadata, Contains(Pair("protocol_version", std::to_string(link::kProtocolVersion))));
+  const std::string protocol = std::to_string(link::kProtocolVersion);
+  EXPECT_THAT(info.metadata, Contains(Pair("protocol_version", protocol)));
   EXPECT_THAT(info.metadata, Contains(Pair("seed", "7")));
   EXPECT_THAT(info.metadata, Contains(Pair("time", "real")));
   EXPECT_THAT(info.metadata, Contains(Key("host_kernel")));
