@@ -89,11 +89,16 @@ std::optional<double> number_in(std::string_view text) noexcept {
   return value;
 }
 
+/// Pieces of one line that are looked at: more than any line may have, so that a long line takes no
+/// more memory than its text.
+constexpr std::size_t kPiecesMax = 16;
+
 std::vector<std::string_view> words_of(std::string_view line) {
   constexpr std::string_view kSpace = " \t\r";
   std::vector<std::string_view> words;
   line = line.substr(0, line.find('#'));
-  for (std::size_t at = line.find_first_not_of(kSpace); at != std::string_view::npos;) {
+  std::size_t at = line.find_first_not_of(kSpace);
+  while (at != std::string_view::npos && words.size() < kPiecesMax) {
     const std::size_t end = std::min(line.find_first_of(kSpace, at), line.size());
     words.push_back(line.substr(at, end - at));
     at = line.find_first_not_of(kSpace, end);
@@ -212,7 +217,7 @@ tl::unexpected<Error> fail_in_line(std::size_t line, const std::string& text) {
 std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> cells;
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  while (!line.empty()) {
+  while (!line.empty() && cells.size() < kPiecesMax) {
     const std::size_t end = std::min(line.find(','), line.size());
     cells.push_back(line.substr(0, end));
     if (end + 1 == line.size()) cells.push_back({});

@@ -26,6 +26,14 @@ std::string replay_refusal(const std::string& text) {
   return script ? "accepted" : script.error().text;
 }
 
+TEST(ScriptReaderTest, ALineOfManyPiecesIsRefusedAsAnyOther) {
+  std::string words = "hold";
+  for (int i = 0; i < 100'000; ++i) words += " 1";
+  EXPECT_FALSE(parse_script(words, 1000));
+  EXPECT_FALSE(parse_replay("t_s,position_mm\n" + std::string(100'000, ',')));
+  EXPECT_FALSE(parse_replay(std::string(100'000, ',') + "\n0,0\n1,1\n"));
+}
+
 TEST(ScriptReaderTest, StandardPalpationAsTextIsTheStandardPalpation) {
   const std::string site = "move -3 0.5\ntaps 4 4 1 0.5\npress 2 0.6 2\npress 4 .4 2\nlift 0.6 2\n";
   const Result<GestureScript> read = parse_script(
