@@ -80,6 +80,7 @@ const std::map<std::string, std::string>& suffixes() {
                                                         {"N", "_n"},
                                                         {"mN", "_mn"},
                                                         {"Hz", "_hz"},
+                                                        {"kPa", "_kpa"},
                                                         {"kg", "_kg"},
                                                         {"N/m", "_n_per_m"},
                                                         {"N/s", "_n_per_s"},

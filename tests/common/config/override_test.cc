@@ -56,7 +56,7 @@ TEST(OverrideTest, NamesFieldValueAndRange) {
   EXPECT_EQ(error_of("seed=9007199254740992"),
             "seed = 9007199254740992 is out of range: 0 to 9007199254740991");
   EXPECT_EQ(error_of("estimator.kind=bayesian"),
-            "estimator.kind = \"bayesian\" is not one of: paper");
+            "estimator.kind = \"bayesian\" is not one of: bayes, paper");
 }
 
 TEST(OverrideTest, RefusesValuesOfAnotherKind) {
