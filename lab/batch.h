@@ -22,7 +22,7 @@ struct CaseResult {
   std::string outcome;
   bool unstable{};
   std::string unstable_reason;
-  std::vector<double> values;  ///< as metric_table(), NaN: undefined
+  std::vector<double> values;  ///< [as the metric], as metric_table(), NaN: undefined
 };
 
 /// Calls the function once per index, in any order, on any threads.
@@ -39,7 +39,7 @@ using Progress = std::function<void(std::size_t done, std::size_t count)>;
 struct Spread {
   double p50{kUndefined};  ///< [as the metric]
   double p95{kUndefined};  ///< [as the metric]
-  double max{kUndefined};  ///< of the defined ones
+  double max{kUndefined};  ///< [as the metric], of the defined ones
   std::uint64_t undefined{};
 };
 [[nodiscard]] Spread spread_of(const std::vector<CaseResult>& results, std::size_t metric);
