@@ -7,7 +7,6 @@
 namespace palp::netem {
 namespace {
 
-constexpr double kTableScale = 8192;
 /// The gamma quantiles are kept from -kZMax to kZMax; random_normal() goes no further.
 constexpr double kZMax = 8.5;
 constexpr std::size_t kGammaCells = 1700;

@@ -24,6 +24,9 @@ class Attendant {
         config_{config},
         context_{.mode = config.mode, .up = config.up.impairment, .down = config.down.impairment},
         writer_{relay.recording, relay.start(), wall_now() - (monotonic_now() - relay.start())},
+        sides_{.client_side = relay.listening_on(),
+               .server_side = relay.forwarding_from(),
+               .server = config.forward},
         status_at_{relay.start() + config.status_every} {}
 
   Result<void> open() {
@@ -54,12 +57,7 @@ class Attendant {
   [[nodiscard]] bool told_to_quit() const noexcept { return quit_; }
 
  private:
-  Result<void> record(const std::string& prefix) {
-    return writer_.open(prefix,
-                        {.client_side = relay_.listening_on(),
-                         .server_side = relay_.forwarding_from(),
-                         .server = config_.forward});
-  }
+  Result<void> record(const std::string& prefix) { return writer_.open(prefix, sides_); }
 
   std::string answer(std::string_view line) {
     const auto request = parse_control_line(line, context_);
@@ -121,6 +119,8 @@ class Attendant {
   const RelayProgramConfig& config_;
   ControlContext context_;
   RecordingWriter writer_;
+  /// As they are at the start: the relay's own sockets are its thread's.
+  RecordingWriter::Sides sides_;
   std::optional<RelayControl> control_;
   TimePoint status_at_;
   std::atomic<bool> quit_{false};
