@@ -33,7 +33,7 @@ std::vector<DepthEstimate> estimates_at(Site site, std::span<const DepthEstimate
   return here;
 }
 
-Json depth_json(const DepthEstimate& estimate) {
+Json depth_json(const DepthEstimate& estimate, estimator::EstimatorKind kind) {
   const bool found = estimate.verdict == DepthVerdict::Found;
   const bool spread = found && estimate.depth_stddev > 0;
   Json json;
@@ -44,12 +44,12 @@ Json depth_json(const DepthEstimate& estimate) {
   json["stddev_mm"] = spread ? number(estimate.depth_stddev * 1e3) : Json(nullptr);
   json["h_n"] = number(estimate.hash);
   json["reason"] = to_string(estimate.reason);
-  json["estimator"] = "paper";
+  json["estimator"] = to_string(kind);
   return json;
 }
 
 /// The strokes of a site follow each other as its taps do; presses come behind them.
-Json taps_json(const TrialResult& result) {
+Json taps_json(const TrialResult& result, estimator::EstimatorKind kind) {
   const std::array<std::vector<DepthEstimate>, 2> strokes{estimates_at(Site::A, result.depths),
                                                           estimates_at(Site::B, result.depths)};
   Json taps = Json::array();
@@ -64,7 +64,7 @@ Json taps_json(const TrialResult& result) {
     json["force_max_n"] = known ? number(here[index].force_max) : Json(nullptr);
     json["stiffness_felt_n_per_m"] = number(tap.stiffness_felt);
     json["stiffness_true_n_per_m"] = number(tap.stiffness_true);
-    json["depth"] = known ? depth_json(here[index]) : Json(nullptr);
+    json["depth"] = known ? depth_json(here[index], kind) : Json(nullptr);
     taps.push_back(json);
   }
   return taps;
@@ -116,8 +116,9 @@ std::string run_report(const Scenario& scenario,
   json["speed"] = number(seconds(result.virtual_span) / account.cpu);
   json["records"] = result.records;
   json.update(metrics_json(result.metrics));
-  json["taps"] = taps_json(result);
-  json["depth"] = depth_json(estimator::summarise_depths(estimates_at(Site::B, result.depths)));
+  json["taps"] = taps_json(result, scenario.estimator.kind);
+  json["depth"] = depth_json(estimator::summarise_depths(estimates_at(Site::B, result.depths)),
+                             scenario.estimator.kind);
   return json.dump(2) + "\n";
 }
 
