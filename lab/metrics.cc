@@ -99,8 +99,8 @@ double swing(std::span<const TrialTick> hold) {
   double high = -INFINITY;
   for (const TrialTick& tick : hold) {
     if (!tick.counted || tick.phase.elapsed < 0.5 * tick.phase.duration) continue;
-    low = std::min(low, tick.hand);
-    high = std::max(high, tick.hand);
+    low = std::min(low, tick.hand + tick.surface);
+    high = std::max(high, tick.hand + tick.surface);
   }
   return high < low ? 0 : high - low;
 }

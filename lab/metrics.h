@@ -29,6 +29,7 @@ struct TrialTick {
   PhaseTag phase;
   bool counted{};                ///< the surgeon's site was Engaged or in Hold
   double hand{};                 ///< [m], x_m
+  double surface{};              ///< [m], where the surface is now, of its place at rest
   double hand_velocity{};        ///< [m/s]
   double hand_force{};           ///< [N], F_h as applied
   double force_true{};           ///< [N], static law of the tissue at the hand's position

@@ -173,9 +173,12 @@ void fill_blackout(Plan& plan, const PlanAsk& ask) {
   for (const double ms : {20, 100, 500}) add(plan, ask.seed, {.round_trip = ms * 1e-3}, ask);
 }
 
+constexpr std::uint64_t kBreathSeeds = 5;
+
 void fill_breath(Plan& plan, const PlanAsk& ask) {
-  for (const double ms : {0, 20, 50, 100, 200, 500}) {
-    add(plan, ask.seed, {.round_trip = ms * 1e-3}, ask);
+  for (std::uint64_t k = 0; k < 6 * kBreathSeeds; ++k) {
+    constexpr std::array kTrips{0.0, 20.0, 50.0, 100.0, 200.0, 500.0};
+    add(plan, ask.seed + k / 6, {.round_trip = kTrips[k % 6] * 1e-3}, ask);
     auto& settings = plan.cases.back().settings;
     settings.push_back({"patient.simulated_phantom.breathing_mm", "1"});
     settings.push_back({"patient.simulated_phantom.breathing_hz", "0.25"});

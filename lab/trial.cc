@@ -134,6 +134,7 @@ class Witness {
     tick.phase = phases_.at(hand.script_time);
     tick.counted = status.state == SiteState::Engaged || status.state == SiteState::Hold;
     tick.hand = hand.position - status.offset - tissue.surface;
+    tick.surface = tissue.surface - scenario_.tissue.surface_offset;
     tick.hand_velocity = hand.velocity;
     tick.hand_force = hand.force;
     tick.force_true = scenario_.phantom.at(status.lateral).force(tick.hand);

@@ -17,9 +17,13 @@ constexpr double kMeanGain = 0.1;              // per tick: 10 ms
 constexpr std::uint32_t kBox = 5;              // ticks per equation: what the pole lets through
 constexpr std::uint32_t kNoiseTicks = 1000;    // 1 s in the air
 constexpr std::uint32_t kNoiseTicksMin = 200;  // before them nobody knows what noise is
+constexpr double kSwingForce = 0.08;           // [N], where a contact shows the surface
+constexpr double kSwingSlope = 150;            // [N/m], that shows it as well as needed
 constexpr double kMisplaced = 2e-3;          // [m], below the surface as believed, and nothing felt
 constexpr std::uint32_t kForgetShapes = 60;  // ticks until the filtered shapes are zero again
 constexpr double kFullSpeed = 2e-3;          // [m/s], of the tip: below it data repeat themselves
+constexpr double kBreathSpeed = 10e-3;       // [m/s], the same where the surface breathes
+constexpr double kBreathWeightMin = 0.4;     // [-], and what is too slow to say anything there
 constexpr double kStillWeight = 0.2;         // [-], of an equation that repeats the last one
 constexpr std::size_t kNear = 4;             // candidates around the best that are always judged
 constexpr std::size_t kStride = 6;           // of the others, one in so many
@@ -59,7 +63,8 @@ double noise_over_quantum(double mean_square_over_quantum) noexcept {
 ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcept
     : config_{config},
       gain_{LowPass{config.sensor_cut_off, config.period}.gain()},
-      tip_{config.sensor_cut_off, config.period} {
+      tip_{config.sensor_cut_off, config.period},
+      swing_{config.period} {
   // Between Hertz's law and the one for a tip that is not a parabola.
   const double hertz = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
   expected_[0] = 0.5 * hertz;
@@ -101,6 +106,7 @@ void ContactEstimator::place_grid(double centre) noexcept {
 }
 
 void ContactEstimator::new_place() noexcept {
+  swing_.new_mean();
   contact_here_ = false;
   deepest_ = -1;
   if (!placed_) return;
@@ -171,8 +177,12 @@ void ContactEstimator::collect(double force) noexcept {
 void ContactEstimator::absorb() noexcept {
   const double travelled = std::abs(tip_.value() - box_tip_);
   box_tip_ = tip_.value();
-  const double share = travelled / (kFullSpeed * config_.period * kBox);
-  const double weight = std::clamp(share, kStillWeight, 1.0);
+  // A tip that stands still in a breathing tissue sees stiffness times motion of the surface, and
+  // cannot tell a soft tissue that moves much from a stiff one that moves little: motion can.
+  const bool breathes = model_.swing_rate > 0;
+  const double full = (breathes ? kBreathSpeed : kFullSpeed) * config_.period * kBox;
+  const double weight = std::clamp(travelled / full, breathes ? 0.0 : kStillWeight, 1.0);
+  if (breathes && weight < kBreathWeightMin) return;
   const double keep = 1 - weight * config_.period * kBox / config_.memory;
   const double scale = 1.0 / kBox;
   const double force = box_force_ * scale;
@@ -320,19 +330,44 @@ void ContactEstimator::publish(const Solution& solution) noexcept {
   model_.depth_max = std::max(0.0, deepest_ - model_.surface);
 }
 
+/// Where the surface must be for the present force: depth and force through the same filters.
+void ContactEstimator::watch_surface(double position) noexcept {
+  raw_tip_ += gain_ * (position - raw_tip_);
+  raw_tip_mean_ += kMeanGain * (raw_tip_ - raw_tip_mean_);
+  swing_.step();
+  if (++swing_ticks_ % kBox != 0 || model_.version == 0 || force_mean_ < kSwingForce) return;
+  const ContactModel believed = contact_model(model_);
+  double depth = 0;
+  double step = 8e-3;
+  for (int i = 0; i < 14; ++i) {
+    step *= 0.5;
+    if (believed.force(depth + step) < force_mean_) depth += step;
+  }
+  const double slope = believed.slope(depth) / kSwingSlope;
+  swing_.see(raw_tip_mean_ - depth, std::min(1.0, slope * slope));
+}
+
 void ContactEstimator::step(double position, double force) noexcept {
   if (!started_) {
+    raw_tip_ = raw_tip_mean_ = position;
     started_ = true;
     position_before_ = position;
     tip_.reset(position);
     tip_mean_ = position;
   }
   // The transducer's pole acted all through the period: the tip was half-way on average.
-  const double halfway = 0.5 * (position + position_before_);
+  const double moving = 0.5 * (position + position_before_);
   position_before_ = position;
+  const Swing swing = swing_.swing();
+  model_.swing = swing.now;
+  model_.swing_quadrature = swing.quadrature;
+  model_.swing_rate = swing.rate;
+  const double halfway = moving - swing.now;  // as if the surface stood still
   tip_.step(halfway);
   force_mean_ += kMeanGain * (force - force_mean_);
   tip_mean_ += kMeanGain * (tip_.value() - tip_mean_);
+
+  watch_surface(moving);
 
   const double noise = std::sqrt(noise_square_);
   // Six standard deviations of a mean over 10 ms.

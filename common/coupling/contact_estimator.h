@@ -7,6 +7,7 @@
 #include "common/core/filters.h"
 #include "common/core/port_sample.h"
 #include "common/core/time.h"
+#include "common/coupling/surface_swing.h"
 
 /// The patient's half of `mmt` at work: finds the contact model behind positions and forces.
 namespace palp::coupling {
@@ -55,6 +56,7 @@ class ContactEstimator {
   void absorb() noexcept;
   void search() noexcept;
   void publish(const Solution& solution) noexcept;
+  void watch_surface(double position) noexcept;
   [[nodiscard]] Solution solve(std::size_t candidate) noexcept;
   [[nodiscard]] double surface_of(std::size_t candidate) const noexcept;
   [[nodiscard]] double rounding_bias(double force) const noexcept;
@@ -94,7 +96,11 @@ class ContactEstimator {
   Terms expected_{};           ///< [N]
   double surface_expected_{};  ///< [m]
   ModelPayload model_;
-  double deepest_{};  ///< [m], tip in contact at this place
+  SurfaceSwing swing_;
+  std::uint32_t swing_ticks_{};
+  double raw_tip_mean_{};  ///< [m], as tip_mean_, in a frame that does not swing
+  double raw_tip_{};       ///< [m], behind the transducer's pole
+  double deepest_{};       ///< [m], tip in contact at this place
 };
 
 }  // namespace palp::coupling

@@ -6,6 +6,8 @@
 namespace palp::coupling {
 namespace {
 
+constexpr double kSwingMax = 5e-3;    // [m]
+constexpr double kSwingRateMax = 10;  // [rad/s]
 constexpr double kSoundDepth = 5e-3;  // [m], where the slope of a received model is judged
 
 double sum(const std::array<double, kModelTerms>& c,
@@ -81,6 +83,10 @@ bool is_sound(const ModelPayload& model, double travel, double slope_max) noexce
   for (const double coefficient : model.c) {
     if (!(coefficient >= 0) || !std::isfinite(coefficient)) return false;
   }
+  const bool swings = std::abs(model.swing) <= kSwingMax &&
+                      std::abs(model.swing_quadrature) <= kSwingMax &&
+                      std::abs(model.swing_rate) <= kSwingRateMax;
+  if (!swings) return false;
   const ContactModel contact{model.surface, model.c, kSoundDepth};
   return contact.slope(kSoundDepth) <= slope_max;
 }

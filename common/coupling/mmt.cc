@@ -41,7 +41,7 @@ void MmtSurgeon::drop_model() noexcept {
   shown_.c = {};
 }
 
-void MmtSurgeon::hear(std::span<const Incoming> arrived) noexcept {
+void MmtSurgeon::hear(std::span<const Incoming> arrived, Duration round_trip) noexcept {
   const Incoming* last = newest(arrived);
   if (last == nullptr) return;
   const auto* model = std::get_if<ModelPayload>(&last->sample.payload);
@@ -51,7 +51,10 @@ void MmtSurgeon::hear(std::span<const Incoming> arrived) noexcept {
     return;
   }
   version_ = model->version;
-  if (model->version > 0) candidate_ = contact_model(*model);
+  if (model->version == 0) return;
+  candidate_ = contact_model(*model);
+  swing_ = {model->swing, model->swing_quadrature, model->swing_rate};
+  swing_age_ = 0.5 * seconds(round_trip);
 }
 
 /// The shown model moves towards the newest one; in the air at once, for nothing is stored there.
@@ -59,6 +62,11 @@ void MmtSurgeon::approach_candidate(double position, double depth, double dt) no
   if (!candidate_) return;
   ContactModel aim = *candidate_;
   for (double& coefficient : aim.c) coefficient *= presence_.value();
+  // The surface swings on by itself; what is blended is the rest.
+  const double swung = swing_.after(swing_age_);
+  shown_.surface += swung - swung_;
+  aim.surface += swung;
+  swung_ = swung;
   if (!showing_ || (depth <= 0 && position <= aim.surface)) {
     shown_ = aim;
     showing_ = true;
@@ -101,8 +109,9 @@ double MmtSurgeon::slew_for(double position, Duration round_trip) const noexcept
 }
 
 SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
-  hear(in.arrived);
   const double span = seconds(dt);
+  swing_age_ += span;
+  hear(in.arrived, in.round_trip);
   const double speed = velocity_.step(in.position);
   const double work = in.force_applied * (in.position - position_before_);
   position_before_ = in.position;

@@ -8,6 +8,7 @@
 #include "common/coupling/contact_estimator.h"
 #include "common/coupling/contact_model.h"
 #include "common/coupling/coupling.h"
+#include "common/coupling/surface_swing.h"
 
 /// Coupling `mmt`: the patient site says what the tissue is like, not what it just did. The
 /// surgeon site renders that model at the device's rate, behind a tank that pays for every change
@@ -58,7 +59,7 @@ class MmtSurgeon {
   [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }  ///< models
 
  private:
-  void hear(std::span<const Incoming> arrived) noexcept;
+  void hear(std::span<const Incoming> arrived, Duration round_trip) noexcept;
   void drop_model() noexcept;
   void approach_candidate(double position, double depth, double dt) noexcept;
   [[nodiscard]] double slew_for(double position, Duration round_trip) const noexcept;
@@ -73,6 +74,9 @@ class MmtSurgeon {
   double offset_{};           ///< [m]
   ContactModel shown_;
   bool showing_{};
+  Swing swing_;                            ///< of the newest model, when it was sent
+  double swing_age_{};                     ///< [s], since then
+  double swung_{};                         ///< [m], of the shown surface
   std::optional<ContactModel> candidate_;  ///< none: nothing was learned yet
   std::uint32_t version_{};
   Ramp presence_{1};

@@ -10,10 +10,10 @@
 namespace palp::coupling {
 
 struct TdpaConfig {
-  double damping{2};             ///< [N s/m], deliberate: it feeds energy forward
+  double damping{1.5};           ///< [N s/m], deliberate: it feeds energy forward
   double damping_max{20};        ///< [N s/m], of the controller
   double velocity_cut_off{60};   ///< [Hz]
-  double direction_speed{4e-3};  ///< [m/s], outwards: here the limit on what comes back is in full
+  double direction_speed{0.03};  ///< [m/s], outwards: here the limit on what comes back is in full
   double energy_soft{0.1e-3};    ///< [J], below it what comes back fades, so that it never snaps
   double slew{25};               ///< [N/s], of the force
   double drift_rate{20};         ///< [1/s], of what the controller kept the stage from doing
