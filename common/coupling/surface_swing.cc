@@ -29,10 +29,12 @@ double Swing::after(double span) const noexcept {
   return now * std::cos(rate * span) + quadrature * std::sin(rate * span);
 }
 
-SurfaceSwing::SurfaceSwing(double period) noexcept : period_{period} {}
+SurfaceSwing::SurfaceSwing(double period) noexcept : period_{period} {
+  for (std::size_t i = 0; i < kFrequencies; ++i) rates_[i] = rate_of(static_cast<double>(i));
+}
 
-double SurfaceSwing::rate_of(std::size_t index) const noexcept {
-  const double share = static_cast<double>(index) / (kFrequencies - 1);
+double SurfaceSwing::rate_of(double index) const noexcept {
+  const double share = index / (kFrequencies - 1);
   return kSlowest * std::pow(kFastest / kSlowest, share);
 }
 
@@ -75,7 +77,7 @@ void SurfaceSwing::see(double position, double weight) noexcept {
   seen_ = keep * seen_ + weight * position;
   seen_square_ = keep * seen_square_ + weight * position * position;
   for (std::size_t i = 0; i < kFrequencies; ++i) {
-    const double angle = rate_of(i) * time_;
+    const double angle = rates_[i] * time_;
     const double c = std::cos(angle);
     const double s = std::sin(angle);
     Past& past = past_[i];
@@ -120,30 +122,42 @@ SurfaceSwing::Wave SurfaceSwing::solve(std::size_t index) const noexcept {
 void SurfaceSwing::judge() noexcept {
   const double spread = centred_square();
   if (time_ - first_seen_ < kSeenFor || !(spread > 0)) return;
-  Wave best;
+  std::array<Wave, kFrequencies> waves;
   std::size_t at = 0;
   for (std::size_t i = 0; i < kFrequencies; ++i) {
-    const Wave wave = solve(i);
-    if (wave.explained > best.explained) {
-      best = wave;
-      at = i;
-    }
+    waves[i] = solve(i);
+    if (waves[i].explained > waves[at].explained) at = i;
   }
+  const Wave& best = waves[at];
   const double amplitude = std::hypot(best.cosine, best.sine);
   const double explained = best.explained / spread;
   believed_ = amplitude > kAmplitudeMin && amplitude < kAmplitudeMax &&
               explained > (believed_ ? kExplainedLeast : kExplainedMin);
   if (!believed_) return;
-  cosine_ = best.cosine;
-  sine_ = best.sine;
-  rate_ = rate_of(at);
+  // Between the frequencies tried: the top of the parabola through the best and its neighbours.
+  double between = 0;
+  if (at > 0 && at + 1 < kFrequencies) {
+    const double left = waves[at - 1].explained;
+    const double right = waves[at + 1].explained;
+    const double bend = left - 2 * best.explained + right;
+    if (bend < 0) between = std::clamp(0.5 * (left - right) / bend, -0.5, 0.5);
+  }
+  const double angle = rates_[at] * time_;
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  last_.now = best.cosine * c + best.sine * s;
+  last_.quadrature = best.sine * c - best.cosine * s;
+  last_.rate = rate_of(static_cast<double>(at) + between);
 }
 
 Swing SurfaceSwing::swing() const noexcept {
   if (presence_ <= 0) return {};
-  const double c = std::cos(rate_ * time_);
-  const double s = std::sin(rate_ * time_);
-  return {presence_ * (cosine_ * c + sine_ * s), presence_ * (sine_ * c - cosine_ * s), rate_};
+  const double angle = last_.rate * (time_ - judged_);
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {presence_ * (last_.now * c + last_.quadrature * s),
+          presence_ * (last_.quadrature * c - last_.now * s),
+          last_.rate};
 }
 
 }  // namespace palp::coupling

@@ -29,7 +29,7 @@ class SurfaceSwing {
   [[nodiscard]] Swing swing() const noexcept;
 
  private:
-  static constexpr std::size_t kFrequencies = 24;
+  static constexpr std::size_t kFrequencies = 32;
   struct Sums {
     double cosine{};    ///< weighted sums of the regressors and their products [-]
     double sine{};      ///< [-]
@@ -44,7 +44,7 @@ class SurfaceSwing {
     double sine{};       ///< [m]
     double explained{};  ///< [m^2], of the weighted sum of squares
   };
-  [[nodiscard]] double rate_of(std::size_t index) const noexcept;
+  [[nodiscard]] double rate_of(double index) const noexcept;
   /// Sums about the means of the places before.
   struct Past {
     double cos_cos{};   ///< [-]
@@ -59,8 +59,9 @@ class SurfaceSwing {
   [[nodiscard]] Wave solve(std::size_t index) const noexcept;
   void judge() noexcept;
 
-  double period_;  ///< [s]
-  double time_{};  ///< [s]
+  double period_;                             ///< [s]
+  std::array<double, kFrequencies> rates_{};  ///< [rad/s]
+  double time_{};                             ///< [s]
   std::array<Sums, kFrequencies> sums_{};
   std::array<Past, kFrequencies> past_{};
   double past_weight_{};   ///< [-]
@@ -71,9 +72,7 @@ class SurfaceSwing {
   double first_seen_{-1};  ///< [s]
   double judged_{};        ///< [s]
   // What is believed.
-  double cosine_{};    ///< [m]
-  double sine_{};      ///< [m]
-  double rate_{};      ///< [rad/s]
+  Swing last_;         ///< as judged last, `judged_` ago
   double presence_{};  ///< [-], fades in and out
   bool believed_{};
 };
