@@ -16,6 +16,11 @@ constexpr bool may_carry_force(SiteState state) noexcept {
   return state == SiteState::Engaged || state == SiteState::Hold || state == SiteState::Retract;
 }
 
+/// `force`, but no larger than `target` asks for, and 0 where that has the other sign.
+constexpr double nearer_to_zero(double force, double target) noexcept {
+  return target >= 0 ? std::clamp(force, 0.0, target) : std::clamp(force, target, 0.0);
+}
+
 }  // namespace
 
 ForceGate::ForceGate(const ForceGateConfig& config) noexcept : config_{config} {
@@ -57,7 +62,10 @@ ForceAnswer ForceGate::pass(const ForceRequest& asked, Duration dt) noexcept {
     fading_ = true;
   } else if (fading_ || guard_left_ > Duration{0}) {
     const double step = config_.fade_slew * seconds(std::min(dt, kFadeTickMax));
-    force_ = step_towards(force_, target, step);
+    // Through an open gate only growing forces are faded in: holding one up that the law lets go of
+    // would give the hand energy behind the law's back.
+    const double from = open ? nearer_to_zero(force_, target) : force_;
+    force_ = step_towards(from, target, step);
     fading_ = force_ != target;
   } else {
     force_ = target;

@@ -33,7 +33,8 @@ struct ForceAnswer {
 /// The last word before the hand. Limits the force to the device's peak and, by an i^2 t account
 /// of the motors' heat, to its continuous force; passes none in Parked, Clutched and Stopped or
 /// while the pedal is up; and turns every jump that a change of state or pedal would make into a
-/// fade. Between changes it leaves the law's force alone. Thread: rt. A value.
+/// fade, where the force grows or the gate closes. Between changes it leaves the law's force alone.
+/// Thread: rt. A value.
 class ForceGate {
  public:
   explicit ForceGate(const ForceGateConfig& config) noexcept;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "common/coupling/contact_model.h"
+#include "common/coupling/rounding.h"
 
 namespace palp::coupling {
 namespace {
@@ -36,26 +37,6 @@ constexpr std::array<double, kModelTerms> kSpread{0.06, 0.02, 0.004, 0.06};
 constexpr std::size_t pair(std::size_t row, std::size_t column) noexcept {
   if (row > column) std::swap(row, column);
   return row * kModelTerms - row * (row + 1) / 2 + column;
-}
-
-/// Ratio of noise to quantum [-] of a rounding sensor, from the rms of its readings of no force:
-/// the mean square is 2 sum over j of (2j + 1) Q((j + 1/2)/s).
-double noise_over_quantum(double mean_square_over_quantum) noexcept {
-  double low = 0.01;
-  double high = 20;
-  for (int i = 0; i < 40; ++i) {
-    const double s = 0.5 * (low + high);
-    if (s > 1) {  // finer than the noise: rounding adds its twelfth
-      (s * s + 1.0 / 12 > mean_square_over_quantum ? high : low) = s;
-      continue;
-    }
-    double mean_square = 0;
-    for (int j = 0; j < 8; ++j) {
-      mean_square += (2 * j + 1) * std::erfc((j + 0.5) / s / std::numbers::sqrt2);
-    }
-    (mean_square > mean_square_over_quantum ? high : low) = s;
-  }
-  return 0.5 * (low + high);
 }
 
 }  // namespace
