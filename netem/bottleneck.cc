@@ -47,11 +47,11 @@ void Bottleneck::change(const Impairment& impairment) noexcept {
   if (queued_ && waiting_.empty()) waiting_.resize(kWaitingMax);
 }
 
-std::optional<TimePoint> Bottleneck::pass_queue(TimePoint at, std::uint64_t length) noexcept {
+TimePoint Bottleneck::pass_queue(TimePoint at, std::uint64_t length) noexcept {
   forget(at);
-  if (full(at, length)) return std::nullopt;
+  if (full(at, length)) return kDropped;
   const TimePoint head = std::max(at, free_at_);
-  if (queue_.codel && codel_drops(at, head)) return std::nullopt;
+  if (queue_.codel && codel_drops(at, head)) return kDropped;
   if (head > at) {
     waiting_[(first_ + count_++) % kWaitingMax] = {head, length};
     bytes_ += length;

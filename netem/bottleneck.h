@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "common/core/time.h"
@@ -25,8 +24,10 @@ class Bottleneck {
 
   void change(const Impairment& impairment) noexcept;
   [[nodiscard]] bool off() const noexcept { return rate_.bytes_per_s == 0; }
-  /// When the last bit of a frame of `length` bytes that comes at `at` has left. nullopt: dropped.
-  [[nodiscard]] std::optional<TimePoint> pass(TimePoint at, std::uint64_t length) noexcept {
+  /// Not an optional: reading one back in one piece, written in two, costs a tenth of a decision.
+  static constexpr TimePoint kDropped = TimePoint::max();
+  /// When the last bit of a frame of `length` bytes that comes at `at` has left, or kDropped.
+  [[nodiscard]] TimePoint pass(TimePoint at, std::uint64_t length) noexcept {
     return queued_ ? pass_queue(at, length) : serve(at > free_at_ ? at : free_at_, length);
   }
 
@@ -35,7 +36,7 @@ class Bottleneck {
     TimePoint begins{};      ///< to be sent; from then on it no longer waits
     std::uint64_t length{};  ///< [bytes]
   };
-  [[nodiscard]] std::optional<TimePoint> pass_queue(TimePoint at, std::uint64_t length) noexcept;
+  [[nodiscard]] TimePoint pass_queue(TimePoint at, std::uint64_t length) noexcept;
   TimePoint serve(TimePoint head, std::uint64_t length) noexcept {
     if (length != timed_length_) {
       timed_length_ = length;

@@ -7,9 +7,6 @@
 namespace palp::netem {
 namespace {
 
-/// The gamma quantiles are kept from -kZMax to kZMax; random_normal() goes no further.
-constexpr double kZMax = 8.5;
-constexpr std::size_t kGammaCells = 1700;
 /// Above it the gamma is so near to Wilson and Hilferty's cube of a normal that the difference,
 /// below 1e-5 of its spread, drowns.
 constexpr double kShapeMax = 400;
@@ -70,13 +67,6 @@ double gamma_quantile(double a, double z, double least) {
   return high;
 }
 
-double lerp_at(const std::vector<double>& values, double place) noexcept {
-  const double inside = std::clamp(place, 0.0, static_cast<double>(values.size() - 1));
-  const auto cell = std::min(static_cast<std::size_t>(inside), values.size() - 2);
-  const double part = inside - static_cast<double>(cell);
-  return values[cell] + part * (values[cell + 1] - values[cell]);
-}
-
 std::vector<double> as_doubles(const DelayTable& table) {
   return {table.entries.begin(), table.entries.end()};
 }
@@ -89,14 +79,18 @@ DelayCurve::DelayCurve(const DelayLaw& law)
       jitter_{static_cast<double>(law.jitter.count())},
       floor_{law.floor * mean_} {
   switch (shape_) {
-    case DelayShape::Uniform:
     case DelayShape::Normal:
+      break;
+    case DelayShape::Uniform:
+      make_bent();
       break;
     case DelayShape::Pareto:
       make_table(as_doubles(pareto_table()));
+      make_bent();
       break;
     case DelayShape::ParetoNormal:
       make_table(as_doubles(paretonormal_table()));
+      make_bent();
       break;
     case DelayShape::Table:
       make_table(as_doubles(law.table));
@@ -140,8 +134,7 @@ double DelayCurve::at_share(double p) const noexcept {
 double DelayCurve::bent(double z) const noexcept {
   switch (shape_) {
     case DelayShape::Gamma:
-      if (values_.empty()) return z;
-      return lerp_at(values_, (z + kZMax) * (kGammaCells / (2 * kZMax)));
+      return z;  // without a mean or a spread
     case DelayShape::LogNormal:
       if (log_spread_ <= 0) return z;
       return (log_scale_ * std::exp(log_spread_ * z) - 1) * (mean_ / jitter_);
@@ -197,16 +190,26 @@ void DelayCurve::make_gamma() {
   const double shape = mean_ * mean_ / (jitter_ * jitter_);  // [1]
   const double scale = std::sqrt(shape);                     // mean / jitter [1]
   double quantile = 0;
-  for (std::size_t i = 0; i <= kGammaCells; ++i) {
-    const double z = kZMax * (2.0 * static_cast<double>(i) / kGammaCells - 1);
+  for (std::size_t i = 0; i <= kCells; ++i) {
+    const double z = kZMax * (2.0 * static_cast<double>(i) / kCells - 1);
     if (shape > kShapeMax) {
       const double root = 1 - 1 / (9 * shape) + z / (3 * scale);
       quantile = shape * std::max(root * root * root, 0.0);
     } else {
       quantile = gamma_quantile(shape, z, quantile);
     }
-    values_.push_back(quantile / scale - scale);
+    bent_.push_back(quantile / scale - scale);
   }
+}
+
+/// Of laws without steps, whose values between knots lie within 1e-5 of their spread where all but
+/// a few in 10,000 are drawn.
+void DelayCurve::make_bent() {
+  std::vector<double> knots;
+  for (std::size_t i = 0; i <= kCells; ++i) {
+    knots.push_back(bent(kZMax * (2.0 * static_cast<double>(i) / kCells - 1)));
+  }
+  bent_ = std::move(knots);
 }
 
 /// The Hermite series of the delay as a function of its normal gives the correlation of two delays
@@ -217,11 +220,11 @@ double DelayCurve::normal_correlation(double asked) const {
   // No draw of a normal is so low that it would be lifted: its correlation is the delay's.
   if (shape_ == DelayShape::Normal && mean_ - kZMax * jitter_ > floor_) return asked;
   constexpr std::size_t kOrder = 60;
-  constexpr int kCells = 3000;
-  constexpr double kWidth = 2 * kZMax / kCells;
+  constexpr int kParts = 3000;
+  constexpr double kWidth = 2 * kZMax / kParts;
   std::vector<double> coefficients(kOrder + 1);
   double squares = 0;
-  for (int i = 0; i < kCells; ++i) {
+  for (int i = 0; i < kParts; ++i) {
     const double z = -kZMax + (i + 0.5) * kWidth;
     const double weight = std::exp(-0.5 * z * z) * kWidth * 0.39894228040143267794;
     const double value = std::max(mean_ + jitter_ * at_normal(z), floor_) - mean_;

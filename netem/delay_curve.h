@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "common/core/random.h"
@@ -18,7 +20,8 @@ class DelayCurve {
   [[nodiscard]] double at_share(double p) const noexcept;
   /// The same where the standard normal is `z`.
   [[nodiscard]] double at_normal(double z) const noexcept {
-    return shape_ == DelayShape::Normal ? z : bent(z);
+    if (shape_ == DelayShape::Normal) return z;
+    return bent_.empty() ? bent(z) : lerp_at(bent_, (z + kZMax) * (kCells / (2 * kZMax)));
   }
 
   /// Its argument should be a standard normal rather than a share.
@@ -36,10 +39,21 @@ class DelayCurve {
   [[nodiscard]] double normal_correlation(double asked) const;
 
  private:
+  /// How far bent_ goes; no draw goes further.
+  static constexpr double kZMax = 8.5;
+  static constexpr std::size_t kCells = 1700;
+
+  [[nodiscard]] static double lerp_at(const std::vector<double>& values, double place) noexcept {
+    const double inside = std::clamp(place, 0.0, static_cast<double>(values.size() - 1));
+    const auto cell = std::min(static_cast<std::size_t>(inside), values.size() - 2);
+    const double part = inside - static_cast<double>(cell);
+    return values[cell] + part * (values[cell + 1] - values[cell]);
+  }
   [[nodiscard]] double bent(double z) const noexcept;
   void make_table(std::vector<double> sorted);
   void make_histogram(const DelayHistogram& histogram);
   void make_gamma();
+  void make_bent();
 
   DelayShape shape_;
   double mean_;                 ///< [ns]
@@ -47,7 +61,8 @@ class DelayCurve {
   double floor_;                ///< [ns]
   double log_spread_{};         ///< [1], of the log-normal
   double log_scale_{};          ///< [1], of the log-normal
-  std::vector<double> values_;  ///< [1]: table: by rank; gamma: by z; histogram: edges
+  std::vector<double> bent_;    ///< [1], of the smooth laws: by z
+  std::vector<double> values_;  ///< [1]: table: by rank; histogram: edges
   std::vector<double> shares_;  ///< [1]: histogram: what lies below each edge
 };
 

@@ -247,12 +247,11 @@ inline void ExactFates::draw_delay(CopyFate& fate,
   if (!delivered) return;
   TimePoint from = common.onward;
   if (!bottleneck_.off()) {
-    const auto left = bottleneck_.pass(common.onward, fate.length + kFrameHeaders);
-    if (!left) {
+    from = bottleneck_.pass(common.onward, fate.length + kFrameHeaders);
+    if (from == Bottleneck::kDropped) {
       fate.verdict = Verdict::OverLimit;
       return;
     }
-    from = *left;
   }
   fate.immediate = copy == 0 && common.jumps;
   fate.release = fate.immediate ? from : from + fate.delay;

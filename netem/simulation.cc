@@ -15,13 +15,14 @@ constexpr std::size_t kInFlightMax = 1'000'000;
 
 /// With so many, the quantiles of every eighth delay are as good.
 constexpr std::uint64_t kManyPackets = 100'000;
-constexpr std::uint64_t kSampling = 8;
+constexpr std::uint64_t kEighth = 7;  ///< mask of a count
 
 /// Counts as the decisions come, without keeping any.
 class Account {
  public:
-  /// Every `sampling`-th delay goes into the histograms.
-  explicit Account(std::uint64_t sampling) : sampling_{sampling} {}
+  /// The delays whose number has none of the bits of `mask` go into the histograms. A remainder
+  /// would cost as much as the decision.
+  explicit Account(std::uint64_t mask) : mask_{mask} {}
 
   /// The original of the next datagram, and how many copies came with it.
   void add(Verdict verdict, bool corrupted, bool floored, Duration intended, std::size_t copies) {
@@ -35,11 +36,11 @@ class Account {
     lost_before_ = false;
     result.corrupted += corrupted ? 1 : 0;
     result.floored += floored ? 1 : 0;
-    if (++counted_ % sampling_ == 0) result.intended.record(intended);
+    if ((++counted_ & mask_) == 0) result.intended.record(intended);
   }
   /// An original that came at `at` leaves at `release`; in the order they came.
   void leaves(TimePoint at, TimePoint release) {
-    if (++left_ % sampling_ == 0) result.delay.record(release - at);
+    if ((++left_ & mask_) == 0) result.delay.record(release - at);
     // Those ahead that leave later are overtaken, once each (RFC 4737); who has left cannot be.
     while (pending_.size() > first_ && pending_.back() > release) {
       pending_.pop_back();
@@ -55,7 +56,7 @@ class Account {
   SimulationResult result;
 
  private:
-  std::uint64_t sampling_;
+  std::uint64_t mask_;
   std::uint64_t counted_{};
   std::uint64_t left_{};
   bool lost_before_{};
@@ -85,7 +86,7 @@ SimulationResult sums(const SimulationConfig& config) {
   const Impairment& law = config.plan.impairment;
   FateSequence fates{law, config.seed, config.direction, TimePoint{}};
   Occupancy occupancy{std::min(limit_of(law), kInFlightMax)};
-  Account account{config.packets >= kManyPackets ? kSampling : 1};
+  Account account{config.packets >= kManyPackets ? kEighth : 0};
   Arrival arrival{.length = payload_of(config)};
   const Duration tie{law.mode == Mode::Netem61 ? 1 : 0};
   send_all(
@@ -166,7 +167,7 @@ SimulationResult simulate(const SimulationConfig& config, const DecisionOrder::S
   const bool kernel_slots = law.mode == Mode::Netem61 && law.slot.max > Duration{};
   if (!each && config.plan.changes.empty() && !kernel_slots) return sums(config);
   Passage passage{config.plan, config.seed, config.direction, kInFlightMax, kInFlightMax, {}};
-  Account account{1};
+  Account account{0};
   DecisionOrder order{[&](const Decision& decision) {
     if (decision.copy == 0 && decision.verdict == Verdict::Delivered) {
       account.leaves(decision.arrived_at, decision.released_at);
