@@ -27,6 +27,11 @@ ordered_json mean_ms(const Histogram& histogram) {
   return milliseconds(histogram.mean());
 }
 
+ordered_json deviation_ms(const Histogram& histogram) {
+  if (histogram.count() == 0) return nullptr;
+  return milliseconds(histogram.deviation());
+}
+
 std::uint64_t lost_in(const ChannelCounters& counters) {
   return counters.lost + counters.header_hit + counters.blackout + counters.over_limit;
 }
@@ -50,6 +55,7 @@ ordered_json direction_report(const Relay& relay, Direction direction, const std
   report["unsent"] = traffic.unsent;
   report["delay_min_ms"] = quantile_ms(traffic.delay, 0);
   report["delay_mean_ms"] = mean_ms(traffic.delay);
+  report["jitter_ms"] = deviation_ms(traffic.delay);
   report["delay_p50_ms"] = quantile_ms(traffic.delay, 0.5);
   report["delay_p99_ms"] = quantile_ms(traffic.delay, 0.99);
   report["intended_delay_p50_ms"] = quantile_ms(channel.intended_delay(), 0.5);

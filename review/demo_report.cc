@@ -66,8 +66,14 @@ Json direction_json(const Json& relay, const char* direction) {
     return nullptr;
   }
   Json to;
-  for (const char* key :
-       {"delay_p50_ms", "delay_p99_ms", "sent", "received", "lost", "reordered", "duplicated"}) {
+  for (const char* key : {"delay_p50_ms",
+                          "delay_p99_ms",
+                          "jitter_ms",
+                          "sent",
+                          "received",
+                          "lost",
+                          "reordered",
+                          "duplicated"}) {
     to[key] = member(from, key);
   }
   return to;

@@ -4,9 +4,11 @@
 
 namespace palp {
 
-Duration Histogram::mean() const noexcept {
+Duration Histogram::mean() const noexcept { return Duration{std::llround(mean_)}; }
+
+Duration Histogram::deviation() const noexcept {
   if (count_ == 0) return {};
-  return Duration{std::llround(sum_ / static_cast<double>(count_))};
+  return Duration{std::llround(std::sqrt(squares_ / static_cast<double>(count_)))};
 }
 
 Duration Histogram::quantile(double share) const noexcept {

@@ -21,7 +21,10 @@ class Histogram {
     ++cells_[cell_of(static_cast<std::uint64_t>(inside.count()))];
     min_ = count_ == 0 ? inside : std::min(min_, inside);
     max_ = std::max(max_, inside);
-    sum_ += static_cast<double>(inside.count());
+    const auto value = static_cast<double>(inside.count());
+    const double above = value - mean_;
+    mean_ += above / static_cast<double>(count_ + 1);
+    squares_ += above * (value - mean_);
     ++count_;
   }
 
@@ -30,6 +33,7 @@ class Histogram {
   [[nodiscard]] Duration min() const noexcept { return min_; }
   [[nodiscard]] Duration max() const noexcept { return max_; }
   [[nodiscard]] Duration mean() const noexcept;
+  [[nodiscard]] Duration deviation() const noexcept;  ///< standard deviation
   /// The least span that at least `share` [1] of all do not exceed, interpolated inside its cell.
   [[nodiscard]] Duration quantile(double share) const noexcept;
 
@@ -49,7 +53,8 @@ class Histogram {
   std::uint64_t count_{};
   Duration min_{};
   Duration max_{};
-  double sum_{};  ///< [ns]
+  double mean_{};     ///< [ns]
+  double squares_{};  ///< [ns^2], sum of those of the distances to the mean (Welford 1962)
 };
 
 }  // namespace palp

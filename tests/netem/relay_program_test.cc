@@ -85,8 +85,12 @@ TEST_F(RelayProgramTest, ForwardsUntilASignalAndWritesItsReport) {
     EXPECT_EQ(report["down"]["sent"], 1);
     EXPECT_EQ(report["down"]["lost"], 1);
     EXPECT_TRUE(report["down"]["delay_p50_ms"].is_null());
-    for (const char* key :
-         {"duplicated", "reordered", "delay_p99_ms", "late_releases", "socket_errors"}) {
+    for (const char* key : {"duplicated",
+                            "reordered",
+                            "delay_p99_ms",
+                            "jitter_ms",
+                            "late_releases",
+                            "socket_errors"}) {
       EXPECT_TRUE(report["up"].contains(key)) << key;
     }
   }

@@ -105,7 +105,7 @@ TEST(DemoReportTest, ReportsOfTheProgramsOutrankTheFiles) {
       report({.surgeon = R"({"schema":"palp.site/1","ticks":7,"outcome":"done","missed_ticks":3,
                      "round_trip_p50_ms":19.5})",
               .patient = R"({"records_dropped":9})",
-              .relay = R"({"up":{"delay_p50_ms":9.9,"sent":100,"lost":1},"down":{"received":99}})"},
+              .relay = R"({"up":{"jitter_ms":0.5,"sent":100,"lost":1},"down":{"received":99}})"},
              {.preset = "metro-fibre", .rtt_ms = 20});
   EXPECT_EQ(json["outcome"], "done");
   EXPECT_EQ(json["sites"]["surgeon"]["ticks"], 7);
@@ -113,6 +113,7 @@ TEST(DemoReportTest, ReportsOfTheProgramsOutrankTheFiles) {
   EXPECT_EQ(json["sites"]["patient"]["records_dropped"], 9);
   EXPECT_EQ(json["link"]["achieved"]["rtt_p50_ms"], 19.5);
   EXPECT_EQ(json["link"]["achieved"]["up"]["lost"], 1);
+  EXPECT_EQ(json["link"]["achieved"]["up"]["jitter_ms"], 0.5);
   EXPECT_EQ(json["link"]["achieved"]["up"]["delay_p99_ms"], nullptr);
   EXPECT_EQ(json["link"]["achieved"]["down"]["received"], 99);
   EXPECT_EQ(json["preset"], "metro-fibre");

@@ -24,6 +24,18 @@ TEST(HistogramTest, IsExactWhenAllSpansAreEqual) {
     EXPECT_EQ(histogram.quantile(share), Duration{50'000'123});
   }
   EXPECT_EQ(histogram.mean(), Duration{50'000'123});
+  EXPECT_EQ(histogram.deviation(), Duration{});
+}
+
+TEST(HistogramTest, DeviationIsTheRootMeanSquareOfTheDistancesToTheMean) {
+  Histogram histogram;
+  EXPECT_EQ(histogram.deviation(), Duration{});
+  for (int i = 0; i < 500; ++i) {
+    histogram.record(Duration{50'000'000});
+    histogram.record(Duration{50'006'000});
+  }
+  EXPECT_EQ(histogram.mean(), Duration{50'003'000});
+  EXPECT_EQ(histogram.deviation(), Duration{3'000});
 }
 
 RC_GTEST_PROP(HistogramTest, QuantilesAreWithinACellOfTheSortedSpans, ()) {
