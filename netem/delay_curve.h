@@ -39,8 +39,7 @@ class DelayCurve {
   [[nodiscard]] double normal_correlation(double asked) const;
 
  private:
-  /// How far bent_ goes; no draw goes further.
-  static constexpr double kZMax = 8.5;
+  static constexpr double kZMax = 8.5;  ///< [-], how far bent_ goes; no draw goes further
   static constexpr std::size_t kCells = 1700;
 
   [[nodiscard]] static double lerp_at(const std::vector<double>& values, double place) noexcept {
