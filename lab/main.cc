@@ -35,7 +35,7 @@ struct Arguments {
   bool bare{};
 };
 
-Ending bad_input(const Error& error) { return {ExitCode::BadInput, "palp-lab: " + error.text}; }
+Ending refusal(const Error& fault) { return config::refusal("palp-lab", fault); }
 
 Result<Scenario> scenario_of(const Arguments& arguments) {
   auto document = load_scenario(arguments.scenario);
@@ -77,7 +77,7 @@ Result<SessionFiles> open_files(const std::string& prefix) {
 
 Ending run(const Arguments& arguments) {
   const auto scenario = scenario_of(arguments);
-  if (!scenario) return bad_input(scenario.error());
+  if (!scenario) return refusal(scenario.error());
   auto files = open_files(arguments.session_files);
   if (!files) return {ExitCode::CannotOpen, "palp-lab: " + files.error().text};
 

@@ -24,7 +24,7 @@ using config::ExitCode;
 
 constexpr std::uint64_t kSeedMax = 9007199254740991;  // what a JSON number holds exactly
 
-Ending bad_input(const Error& error) { return {ExitCode::BadInput, "palp-lab: " + error.text}; }
+Ending refusal(const Error& fault) { return config::refusal("palp-lab", fault); }
 
 /// One line that grows, for a person.
 void show_progress(std::size_t done, std::size_t count) {
@@ -131,9 +131,9 @@ Ending finish(const Run& done, const BatchArguments& arguments, const std::strin
 
 Ending montecarlo(const BatchArguments& arguments, const Machine& machine, bool lying) {
   auto plan = make_set(lying ? "mc-adv" : arguments.set, ask_of(arguments));
-  if (!plan) return bad_input(plan.error());
+  if (!plan) return refusal(plan.error());
   auto done = run(std::move(*plan), arguments, machine);
-  if (!done) return bad_input(done.error());
+  if (!done) return refusal(done.error());
   if (lying) done->account.schema = "palp.adversary/1";
   return finish(*done, arguments, plot(*done, arguments.metric, "set " + done->plan.name));
 }
@@ -142,9 +142,9 @@ Ending sweep(const BatchArguments& arguments, const Machine& machine) {
   PlanAsk ask = ask_of(arguments);
   ask.coupling = arguments.coupling;
   auto plan = make_sweep(arguments.scenario, arguments.list, arguments.repeats, ask);
-  if (!plan) return bad_input(plan.error());
+  if (!plan) return refusal(plan.error());
   auto done = run(std::move(*plan), arguments, machine);
-  if (!done) return bad_input(done.error());
+  if (!done) return refusal(done.error());
   done->account.schema = "palp.sweep/1";
   return finish(*done, arguments, plot(*done, arguments.metric, "sweep of " + arguments.scenario));
 }
@@ -191,10 +191,10 @@ std::string map_report(const Run& done) {
 
 Ending map(const BatchArguments& arguments, const Machine& machine) {
   if (!arguments.coupling.empty() && arguments.coupling != "direct") {
-    return bad_input({"the map is that of eq. (1): coupling direct"});
+    return refusal({"the map is that of eq. (1): coupling direct"});
   }
   auto done = run(make_map(ask_of(arguments)), arguments, machine);
-  if (!done) return bad_input(done.error());
+  if (!done) return refusal(done.error());
   if (auto failed = write_files({{arguments.cases, cases_csv(done->plan, done->results)},
                                  {arguments.report, map_report(*done)},
                                  {arguments.svg, map_svg(done->plan, done->results)}})) {
@@ -220,9 +220,9 @@ Ending compare(const BatchArguments& arguments, const Machine& machine) {
     BatchArguments one = arguments;
     one.coupling = name;
     auto plan = make_set(one.set, ask_of(one));
-    if (!plan) return bad_input(plan.error());
+    if (!plan) return refusal(plan.error());
     auto done = run(std::move(*plan), one, machine);
-    if (!done) return bad_input(done.error());
+    if (!done) return refusal(done.error());
     text += batch_summary(done->plan, done->results, done->account) + "\n";
     json["couplings"][one.coupling] =
         nlohmann::ordered_json::parse(batch_report(done->plan, done->results, done->account));
@@ -249,7 +249,7 @@ Ending merge(const BatchArguments& arguments) {
     const auto text = config::read_whole_file(path);
     if (!text) return {ExitCode::CannotOpen, "palp-lab: " + text.error().text};
     auto rows = read_cases_csv(*text, path, all.plan);
-    if (!rows) return bad_input(rows.error());
+    if (!rows) return refusal(rows.error());
     all.results.insert(all.results.end(), rows->begin(), rows->end());
   }
   std::sort(all.results.begin(), all.results.end(), [](const auto& a, const auto& b) {
@@ -257,8 +257,8 @@ Ending merge(const BatchArguments& arguments) {
   });
   for (std::size_t i = 0; i < all.results.size(); ++i) {
     if (all.results[i].index == i) continue;
-    return bad_input({"case " + std::to_string(i) + " is missing or given twice: merge the cases " +
-                      "of all shards of one plan"});
+    return refusal({"case " + std::to_string(i) + " is missing or given twice: merge the cases " +
+                    "of all shards of one plan"});
   }
   all.plan.name = arguments.set;
   all.plan.seed = arguments.seed.value_or(1);

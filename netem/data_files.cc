@@ -42,10 +42,10 @@ Result<std::string> read_data_file(const std::string& name) {
       return fail("'" + name + "' is longer than 64 MiB");
     }
     std::ifstream file{place, std::ios::binary};
-    if (!file) return fail("'" + name + "' cannot be read");
+    if (!file) return fail_to_reach("'" + name + "' cannot be read");
     return std::string{std::istreambuf_iterator<char>{file}, {}};
   }
-  return fail("no file '" + name + "'");
+  return fail_to_reach("no file '" + name + "'");
 }
 
 }  // namespace palp::netem

@@ -236,9 +236,8 @@ inline void ExactFates::draw_delay(CopyFate& fate,
       around = law_->curve.at_normal(draw_normal(copy));
     } else {
       const RandomStream stream = stream_of(delay_stream_, Stage::Delay, copy);
-      // The middle of each of 2^53 cells: never 0 or 1.
       around = law_->curve.by_normal() ? law_->curve.at_normal(law_->normal.at(stream.bits(index_)))
-                                       : law_->curve.at_share(stream.uniform(index_) + 0x1.0p-54);
+                                       : law_->curve.at_share(random_middle(stream.bits(index_)));
     }
     const double drawn = mean_ + jitter_ * around;
     fate.floored = drawn < least_;
@@ -326,11 +325,10 @@ void ExactFates::fit_slot(CopyFate& fate) noexcept {
   if (!slots_begun_) slot_at_ = start_;
   slots_begun_ = true;
   const auto next_slot = [&](TimePoint from) {
-    const double draw = slot_stream_.uniform(slot_number_++);
+    const double draw = random_middle(slot_stream_.bits(slot_number_++));
     double span = static_cast<double>(law.min.count()) +
                   draw * static_cast<double>((law.max - law.min).count());
-    if (law.spacing)
-      span += law_->slot_curve.jitter() * law_->slot_curve.at_share(draw + 0x1.0p-54);
+    if (law.spacing) span += law_->slot_curve.jitter() * law_->slot_curve.at_share(draw);
     slot_packets_ = 0;
     slot_bytes_ = 0;
     return from + std::max(rounded(std::max(span, 1.0)), Duration{1});

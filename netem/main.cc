@@ -133,7 +133,7 @@ Result<Plans> plain_impairments(const Flags& flags) {
 /// The timeline's file; a name of a preset in it is understood.
 Result<Timeline> load_timeline(const std::string& path) {
   const auto text = read_data_file(path);
-  if (!text) return fail("--timeline: " + text.error().text);
+  if (!text) return fail("--timeline", text.error());
   return parse_timeline(path, *text, [](const std::string& name) { return find_preset(name); });
 }
 
@@ -182,7 +182,7 @@ Ending serve(const Flags& flags) {
   if (!forward) return bad_input("--forward: " + forward.error().text);
   config.forward = *forward;
   const auto asked = asked_plans(flags);
-  if (!asked) return bad_input(asked.error().text);
+  if (!asked) return config::refusal("palp-netem", asked.error());
   config.up = asked->up;
   config.down = asked->down;
   config.mode = asked->up.impairment.mode;

@@ -28,8 +28,7 @@ class NormalDraw {
   static constexpr std::uint64_t kCells = std::uint64_t{1} << (64 - kShift);
   static constexpr std::uint64_t kOuter = kCells / 100;
   [[nodiscard]] static double exact(std::uint64_t bits) noexcept {
-    // 52 bits and a half: never 0 or 1, not even rounded.
-    return normal_quantile((static_cast<double>(bits >> 12U) + 0.5) * 0x1.0p-52);
+    return normal_quantile(random_middle(bits));
   }
   std::array<double, kCells + 1> knots_;  ///< [1]
 };

@@ -389,6 +389,11 @@ std::string CommandLine::chosen_verb() const {
   return {};
 }
 
+Ending refusal(const std::string& program, const Error& fault) {
+  return {fault.unreachable ? ExitCode::CannotOpen : ExitCode::BadInput,
+          program + ": " + fault.text};
+}
+
 int leave(const Ending& ending) {
   if (!ending.text.empty()) {
     const char* const rest = ending.text.back() == '\n' ? "" : "\n";

@@ -24,6 +24,9 @@ struct Ending {
 /// not at all) and gives main()'s value.
 [[nodiscard]] int leave(const Ending& ending);
 
+/// `program` was given something wrong, or something that cannot be read.
+[[nodiscard]] Ending refusal(const std::string& program, const Error& fault);
+
 /// The flags of a program, or of one of its verbs. Each declaration binds a flag to a variable that
 /// outlives parse(); the variable's value before it is the default. Every flag is given at most
 /// once, in any order, as "--flag value" or "--flag=value". Beyond what is declared there are

@@ -26,9 +26,7 @@ double random_uniform(std::uint64_t seed, std::uint64_t stream, std::uint64_t in
 }
 
 double random_normal(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) noexcept {
-  // The middle of each of 2^53 cells: never 0 or 1.
-  const double p = (static_cast<double>(random_bits(seed, stream, index) >> 11) + 0.5) * 0x1.0p-53;
-  return normal_quantile(p);
+  return RandomStream{seed, stream}.normal(index);
 }
 
 double normal_quantile(double p) noexcept {

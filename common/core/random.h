@@ -28,6 +28,12 @@ namespace palp {
                                    std::uint64_t stream,
                                    std::uint64_t index) noexcept;
 
+/// The middle of one of 2^52 equal cells between 0 and 1: never either, as with 53 bits and a half,
+/// which a double rounds, it could be.
+[[nodiscard]] constexpr double random_middle(std::uint64_t bits) noexcept {
+  return (static_cast<double>(bits >> 12) + 0.5) * 0x1.0p-52;
+}
+
 /// Quantile of the standard normal distribution, 0 < p < 1; relative error below 1e-15 times a few
 /// (Wichura, algorithm AS 241, PPND16).
 [[nodiscard]] double normal_quantile(double p) noexcept;
@@ -49,7 +55,7 @@ class RandomStream {
     return static_cast<double>(bits(index) >> 11) * 0x1.0p-53;
   }
   [[nodiscard]] double normal(std::uint64_t index) const noexcept {
-    return normal_quantile((static_cast<double>(bits(index) >> 11) + 0.5) * 0x1.0p-53);
+    return normal_quantile(random_middle(bits(index)));
   }
 
  private:

@@ -46,6 +46,12 @@ TEST(RandomTest, AStreamIsTheGeneratorWithTheFirstTwoNumbersSet) {
   }
 }
 
+TEST(RandomTest, TheMiddleOfACellIsNeverTheEndOfTheInterval) {
+  EXPECT_GT(random_middle(0), 0);
+  EXPECT_LT(random_middle(~std::uint64_t{0}), 1);
+  EXPECT_TRUE(std::isfinite(normal_quantile(random_middle(~std::uint64_t{0}))));
+}
+
 using Argument = std::function<std::uint64_t(std::uint64_t base, std::uint64_t changed)>;
 
 /// Flips each bit of one argument; each of the 64 bits of the draw must flip with probability 1/2.
