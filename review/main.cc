@@ -28,9 +28,7 @@ Ending cannot_open(const std::string& text) {
   return {ExitCode::CannotOpen, "palp-review: " + text};
 }
 
-Ending ending_of(const Error& error) {
-  return error.unreachable ? cannot_open(error.text) : bad_input(error.text);
-}
+Ending ending_of(const Error& error) { return config::refusal("palp-review", error); }
 
 /// A file that may be cut off or damaged, but is a session file.
 Result<record::MappedFile> open_session(const std::string& path) {

@@ -8,24 +8,11 @@
 #include <vector>
 
 #include "common/config/document.h"
-#include "common/config/exit_code.h"
+#include "common/config/ending.h"
 #include "common/config/flag_value.h"
 #include "common/core/host_and_port.h"
 
 namespace palp::config {
-
-/// Why a program ends before it began, and what it says.
-struct Ending {
-  ExitCode code{};
-  std::string text;
-};
-
-/// Prints the text (to standard output if Done, else to standard error; an empty one
-/// not at all) and gives main()'s value.
-[[nodiscard]] int leave(const Ending& ending);
-
-/// `program` was given something wrong, or something that cannot be read.
-[[nodiscard]] Ending refusal(const std::string& program, const Error& fault);
 
 /// The flags of a program, or of one of its verbs. Each declaration binds a flag to a variable that
 /// outlives parse(); the variable's value before it is the default. Every flag is given at most

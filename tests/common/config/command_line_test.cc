@@ -350,24 +350,6 @@ RC_GTEST_PROP(CommandLineTest, GarbageGetsOneSentence, (const std::vector<std::s
             (ending->code == ExitCode::BadInput && ending->text.find('\n') == std::string::npos));
 }
 
-TEST(LeaveTest, GivesTheExitStatusOfEachCode) {
-  EXPECT_EQ(leave({ExitCode::Done, "done"}), 0);
-  EXPECT_EQ(leave({ExitCode::Missed, "missed"}), 1);
-  EXPECT_EQ(leave({ExitCode::BadInput, "bad"}), 2);
-  EXPECT_EQ(leave({ExitCode::CannotOpen, "closed"}), 3);
-  EXPECT_EQ(leave({ExitCode::CutShort, "cut"}), 4);
-}
-
-TEST(LeaveTest, PrintsOneLineEndAndNothingForAnEmptyText) {
-  testing::internal::CaptureStdout();
-  (void)leave({ExitCode::Done, ""});
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-  testing::internal::CaptureStdout();
-  (void)leave({ExitCode::Done, "done"});
-  (void)leave({ExitCode::Done, "done\n"});
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "done\ndone\n");
-}
-
 TEST(FooterTest, StandsInTheHelpOfItsVerb) {
   CommandLine line{"palp-x", "does x"};
   line.verb("go", "goes").footer("Words of a path: straight, round.");
