@@ -289,7 +289,12 @@ void Link::accept(const WireTelegram& wire, std::uint64_t number, TimePoint arri
 
   if (wire.echo_ns == kNothingHeard) return;
   const TimePoint echo = conversation.began_at + as_duration(wire.echo_ns);
-  if (!conversation.clock.add_round_trip(echo, microseconds{wire.hold_us}, arrived_at)) return;
+  const microseconds hold{wire.hold_us};
+  if (!conversation.clock.add_round_trip(echo, hold, arrived_at)) return;
+  const Duration sent_at = as_duration(wire.sent_at_ns);
+  conversation.offset.add(sent_at - hold - as_duration(wire.echo_ns),
+                          arrived_at - conversation.began_at - sent_at,
+                          arrived_at);
   if (conversation.echo_ns == kNothingHeard || wire.echo_ns > conversation.echo_ns) {
     conversation.echo_ns = wire.echo_ns;
     ++conversation.exchanges;
@@ -340,6 +345,9 @@ LinkHealth Link::health(TimePoint now) const noexcept {
   health.round_trip = conversation_.clock.smoothed();
   health.round_trip_min = conversation_.clock.least(now);
   health.jitter = conversation_.clock.deviation();
+  health.peer_clock = conversation_.offset.estimate();
+  health.way_there = conversation_.offset.way_there();
+  health.way_here = conversation_.offset.way_here();
   health.lost += conversation_.received.missing();
   return health;
 }

@@ -9,6 +9,7 @@
 
 #include "common/core/result.h"
 #include "common/core/watchdog.h"
+#include "common/link/clock_offset.h"
 #include "common/link/codec.h"
 #include "common/link/handover.h"
 #include "common/link/peer_clock.h"
@@ -70,6 +71,7 @@ class Link {
     ReplayWindow received;     ///< datagrams
     ReplayWindow handed_over;  ///< samples, repaired ones included
     PeerClock clock;
+    ClockOffsetEstimator offset;
     bool heard{};  ///< the next four speak of the newest accepted telegram
     std::uint64_t newest_number{};
     std::uint64_t newest_sent_at_ns{};

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "common/core/port_sample.h"
 #include "common/core/site_state.h"
 #include "common/core/stroke.h"
+#include "common/link/clock_offset.h"
 
 /// What sites say to each other, before bytes.
 namespace palp::link {
@@ -53,7 +55,10 @@ struct LinkHealth {
   Duration gap{};         ///< since the newest accepted datagram arrived; first since the handover
   Duration round_trip{};  ///< smoothed (1/8); 0: not measured yet
   Duration round_trip_min{};
-  Duration jitter{};  ///< smoothed mean deviation of the round trip (1/4)
+  Duration jitter{};                        ///< smoothed mean deviation of the round trip (1/4)
+  std::optional<ClockOffset> peer_clock{};  ///< from the second second on
+  Duration way_there{};  ///< smoothed (1/8), if the least both ways are equal; 0: not known yet
+  Duration way_here{};
   std::uint64_t sent{};
   std::uint64_t accepted{};  ///< telegrams newer than all before
   std::uint64_t late{};      ///< authentic, but older than the newest accepted

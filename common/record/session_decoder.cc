@@ -79,6 +79,14 @@ Record arrived_of(const session::ArrivedSample& in, TimePoint at) {
                               .arrived_at = TimePoint{Duration{in.arrived_at_ns()}}}};
 }
 
+std::optional<link::ClockOffset> peer_clock_of(const session::LinkStatus& in) {
+  if (!in.has_clock_offset_ns()) return std::nullopt;
+  return link::ClockOffset{.offset = Duration{in.clock_offset_ns()},
+                           .skew = in.clock_skew(),
+                           .uncertainty = Duration{in.clock_uncertainty_ns()},
+                           .at = TimePoint{Duration{in.clock_at_ns()}}};
+}
+
 Record link_status_of(const session::LinkStatus& in, TimePoint at, Range& range) {
   return LinkStatus{.at = at,
                     .health = {.state = range.checked<LinkState>(in.state(), kLinkStateCount),
@@ -86,6 +94,9 @@ Record link_status_of(const session::LinkStatus& in, TimePoint at, Range& range)
                                .round_trip = Duration{in.round_trip_ns()},
                                .round_trip_min = Duration{in.round_trip_min_ns()},
                                .jitter = Duration{in.jitter_ns()},
+                               .peer_clock = peer_clock_of(in),
+                               .way_there = Duration{in.way_there_ns()},
+                               .way_here = Duration{in.way_here_ns()},
                                .sent = in.sent(),
                                .accepted = in.accepted(),
                                .late = in.late(),

@@ -127,6 +127,19 @@ void put(const link::LinkHealth& health, std::uint64_t records_dropped, session:
   out.set_round_trip_ns(health.round_trip.count());
   out.set_round_trip_min_ns(health.round_trip_min.count());
   out.set_jitter_ns(health.jitter.count());
+  if (health.peer_clock) {
+    out.set_clock_offset_ns(health.peer_clock->offset.count());
+    out.set_clock_skew(health.peer_clock->skew);
+    out.set_clock_uncertainty_ns(health.peer_clock->uncertainty.count());
+    out.set_clock_at_ns(health.peer_clock->at.time_since_epoch().count());
+  } else {
+    out.clear_clock_offset_ns();
+    out.set_clock_skew(0);
+    out.set_clock_uncertainty_ns(0);
+    out.set_clock_at_ns(0);
+  }
+  out.set_way_there_ns(health.way_there.count());
+  out.set_way_here_ns(health.way_here.count());
   out.set_sent(health.sent);
   out.set_accepted(health.accepted);
   out.set_late(health.late);

@@ -40,6 +40,16 @@ ordered_json rejected_json(const link::LinkHealth& link, const link::SessionCoun
           {"forged", link.forged}};
 }
 
+/// null before there is an estimate.
+ordered_json clock_json(const link::LinkHealth& link) {
+  if (!link.peer_clock) return nullptr;
+  return {{"offset_ms", milliseconds(link.peer_clock->offset)},
+          {"uncertainty_ms", milliseconds(link.peer_clock->uncertainty)},
+          {"skew_ppm", link.peer_clock->skew * 1e6},
+          {"way_there_ms", milliseconds(link.way_there)},
+          {"way_here_ms", milliseconds(link.way_here)}};
+}
+
 }  // namespace
 
 void RoundTrips::add(const link::LinkHealth& link) noexcept {
@@ -90,6 +100,7 @@ std::string to_json(const SiteReport& report) {
   json["rejected"] = rejected_json(link, report.noise);
   json["round_trip_p50_ms"] = milliseconds(report.round_trips.median());
   json["round_trip_min_ms"] = milliseconds(report.round_trips.least());
+  json["clock"] = clock_json(link);
   json["sessions"] = report.sessions;
   if (report.estimates) json["estimates"] = *report.estimates;
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";

@@ -103,6 +103,7 @@ inline void add_fields(Fields& out, const Arrived& a) {
 }
 inline void add_fields(Fields& out, const LinkStatus& s) {
   const link::LinkHealth& h = s.health;
+  const link::ClockOffset clock = h.peer_clock.value_or(link::ClockOffset{});
   add_all(out,
           s.at,
           h.state,
@@ -110,6 +111,13 @@ inline void add_fields(Fields& out, const LinkStatus& s) {
           h.round_trip,
           h.round_trip_min,
           h.jitter,
+          h.peer_clock.has_value(),
+          clock.offset,
+          clock.skew,
+          clock.uncertainty,
+          clock.at,
+          h.way_there,
+          h.way_here,
           h.sent,
           h.accepted,
           h.late,

@@ -42,6 +42,7 @@ TEST(SiteReportTest, HasTheKeysThatScriptsRelyOn) {
                           "unsent",
                           "round_trip_p50_ms",
                           "round_trip_min_ms",
+                          "clock",
                           "sessions"}) {
     EXPECT_TRUE(report.contains(key)) << key;
   }
@@ -53,6 +54,21 @@ TEST(SiteReportTest, HasTheKeysThatScriptsRelyOn) {
   EXPECT_TRUE(report["realtime"].contains("priority"));
   EXPECT_TRUE(report["realtime"].contains("memory_locked"));
   EXPECT_FALSE(report.contains("estimates")) << "the patient's only";
+}
+
+TEST(SiteReportTest, TheClockOfThePeerIsNullBeforeItIsKnown) {
+  SiteReport made;
+  EXPECT_TRUE(json::parse(to_json(made))["clock"].is_null());
+  made.link.peer_clock = link::ClockOffset{.offset = std::chrono::milliseconds{-1500},
+                                           .skew = 20e-6,
+                                           .uncertainty = std::chrono::milliseconds{40},
+                                           .at = {}};
+  made.link.way_here = std::chrono::milliseconds{41};
+  const json clock = json::parse(to_json(made))["clock"];
+  EXPECT_EQ(clock["offset_ms"], -1500);
+  EXPECT_EQ(clock["uncertainty_ms"], 40);
+  EXPECT_NEAR(clock["skew_ppm"].get<double>(), 20, 1e-9);
+  EXPECT_EQ(clock["way_here_ms"], 41);
 }
 
 TEST(SiteReportTest, TheCountsByTypeAddUpToTheRecordsWritten) {

@@ -1,0 +1,118 @@
+#include "common/link/clock_offset.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "common/core/random.h"
+
+namespace palp::link {
+namespace {
+
+using std::chrono_literals::operator""s;
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""us;
+
+/// A peer whose clock is `offset` ahead at 0 and gains `skew`.
+struct Peer {
+  Duration offset{};
+  double skew{};  ///< [s/s]
+
+  [[nodiscard]] Duration clock(TimePoint now) const {
+    return offset + now.time_since_epoch() + from_seconds(skew * seconds(now.time_since_epoch()));
+  }
+  [[nodiscard]] Duration ahead(TimePoint now) const { return clock(now) - now.time_since_epoch(); }
+
+  /// An exchange that began at `now`: `there`, 300 us at the peer, `here`.
+  void exchange(ClockOffsetEstimator& estimator, TimePoint now, Duration there, Duration here) {
+    const TimePoint met = now + there;
+    const TimePoint sent = met + 300us;
+    const TimePoint back = sent + here;
+    estimator.add(clock(met) - now.time_since_epoch(), back.time_since_epoch() - clock(sent), back);
+  }
+};
+
+TEST(ClockOffsetTest, SaysNothingBeforeTheFirstWholeSecond) {
+  ClockOffsetEstimator estimator;
+  Peer peer{5s, 0};
+  for (auto at = 0ms; at < 990ms; at += 10ms) peer.exchange(estimator, TimePoint{at}, 1ms, 1ms);
+  EXPECT_FALSE(estimator.estimate());
+  EXPECT_EQ(estimator.way_here(), Duration{});
+  peer.exchange(estimator, TimePoint{1s}, 1ms, 1ms);
+  EXPECT_TRUE(estimator.estimate());
+}
+
+RC_GTEST_PROP(ClockOffsetTest, IsExactOverEqualConstantWays, ()) {
+  Peer peer{std::chrono::milliseconds{*rc::gen::inRange(-100'000'000, 100'000'000)},
+            *rc::gen::inRange(-50, 50) * 1e-6};
+  const Duration way = std::chrono::microseconds{*rc::gen::inRange(0, 500'000)};
+  const TimePoint begin{std::chrono::milliseconds{*rc::gen::inRange(-50'000, 50'000)}};
+  const Duration length = std::chrono::seconds{*rc::gen::inRange(3, 40)};
+  ClockOffsetEstimator estimator;
+  for (Duration since{}; since < length; since += 10ms) {
+    peer.exchange(estimator, begin + since, way, way);
+  }
+  RC_ASSERT(estimator.estimate().has_value());
+  const TimePoint now = begin + length;
+  // The prior of the skew pulls a little while few seconds are there.
+  const double error = seconds(estimator.estimate()->offset_at(now) - peer.ahead(now));
+  RC_ASSERT(std::abs(error) <= (length > 8s ? 3e-6 : 20e-6));
+  RC_ASSERT(std::abs(seconds(estimator.estimate()->uncertainty - way)) <= 2e-6);
+  RC_ASSERT(std::abs(seconds(estimator.way_here() - way)) <= (length > 8s ? 5e-6 : 25e-6));
+}
+
+TEST(ClockOffsetTest, AnUnequalWayShowsAsHalfItsDifferenceWhichIsWithinTheUncertainty) {
+  Peer peer{};
+  ClockOffsetEstimator estimator;
+  for (auto at = 0ms; at < 20s; at += 10ms) peer.exchange(estimator, TimePoint{at}, 30ms, 10ms);
+  const ClockOffset estimate = *estimator.estimate();
+  EXPECT_NEAR(seconds(estimate.offset), 10e-3, 1e-6);
+  EXPECT_NEAR(seconds(estimate.uncertainty), 20e-3, 2e-6);
+  EXPECT_LE(std::chrono::abs(estimate.offset), estimate.uncertainty);
+}
+
+/// Absolute errors [s] after 20 s over `seeds` links whose queues are Pareto's (shape 2, mean
+/// excess `queue`), 100 exchanges a second, 20 ppm.
+std::vector<double> errors_over_queues(Duration way, Duration queue, std::uint64_t seeds) {
+  std::vector<double> errors;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    Peer peer{1234567us, 20e-6};
+    ClockOffsetEstimator estimator;
+    for (std::uint64_t k = 0; k < 3000; ++k) {
+      const auto queued = [&](std::uint64_t stream) {
+        const double u = random_middle(random_bits(seed, stream, k));
+        return way + from_seconds(seconds(queue) * (1 / std::sqrt(u) - 1));
+      };
+      const TimePoint now{10ms * static_cast<std::int64_t>(k)};
+      peer.exchange(estimator, now, queued(1), queued(2));
+      if (k > 2000 && k % 50 == 0) {
+        errors.push_back(std::abs(seconds(estimator.estimate()->offset_at(now) - peer.ahead(now))));
+      }
+    }
+  }
+  std::sort(errors.begin(), errors.end());
+  return errors;
+}
+
+TEST(ClockOffsetTest, QueuesWithAFloorLeaveMicroseconds) {
+  for (const auto& errors : {errors_over_queues(40ms, 1ms, 20), errors_over_queues(8ms, 3ms, 20)}) {
+    EXPECT_LE(errors[errors.size() / 2], 20e-6);
+    EXPECT_LE(errors[errors.size() * 99 / 100], 100e-6);
+  }
+}
+
+TEST(ClockOffsetTest, SecondsThatWereQueuedAsAWholeCountForLittle) {
+  Peer peer{1s, 0};
+  ClockOffsetEstimator estimator;
+  for (auto at = 0ms; at < 20s; at += 10ms) {
+    const bool stuck = at / 1s % 5 == 2;
+    peer.exchange(estimator, TimePoint{at}, stuck ? 80ms : 20ms, 20ms);
+  }
+  EXPECT_NEAR(seconds(estimator.estimate()->offset), 1, 20e-6);
+}
+
+}  // namespace
+}  // namespace palp::link
