@@ -19,7 +19,9 @@ std::size_t PlainProtection::seal(const Header& header,
 
 tl::expected<std::size_t, Rejection> PlainProtection::open(std::span<const std::byte> datagram,
                                                            std::span<std::byte> plain) noexcept {
-  if (!parse_header(datagram)) return tl::unexpected(Rejection::Malformed);
+  const std::optional<Header> header = parse_header(datagram);
+  if (!header) return tl::unexpected(Rejection::Malformed);
+  if (header->key != 0) return tl::unexpected(Rejection::Foreign);
   const std::span<const std::byte> payload = datagram.subspan(kHeaderSize);
   if (payload.size() > plain.size()) return tl::unexpected(Rejection::Malformed);
   std::copy(payload.begin(), payload.end(), plain.begin());

@@ -25,7 +25,8 @@ class PacketProtection {
   virtual ~PacketProtection() = default;
   /// Bytes added behind the payload; at most 16 (the tag).
   [[nodiscard]] virtual std::size_t overhead() const noexcept = 0;
-  /// Writes header, payload and tag; sets the header's length itself. Each number at most once.
+  /// Writes header, payload and tag; sets the header's length and key id itself. Each number at
+  /// most once.
   /// @returns bytes written, 0 where `out` is too small.
   virtual std::size_t seal(const Header& header,
                            std::span<const std::byte> plain,

@@ -147,6 +147,12 @@ const std::vector<Fence>& fences() {
       {"CLI/", {"common/config/command_line.cc"}},
       {"spdlog/", {"common/io/diagnostics.cc", "*/main.cc"}},
       {"fmt/", {"common/io/diagnostics.cc", "*/main.cc"}},
+      {"openssl/",
+       {"common/link/aead_protection.cc",
+        "common/io/credentials.cc",
+        "common/io/dtls_*.cc",
+        "common/io/certificates.cc",
+        "common/io/openssl_*.h"}},
       {"readerwriterqueue/", {"common/core/spsc_queue.h"}},
       // link answers with reasons of its own, not with sentences.
       {"tl/expected.hpp", {"common/core/result.h"}},

@@ -4,8 +4,10 @@
 
 #include "common/io/handover_desk.h"
 #include "common/io/udp_socket.h"
+#include "common/link/aead_protection.h"
 #include "common/link/codec_protobuf.h"
 #include "tests/common/io/loopback.h"
+#include "tests/common/link/some_keys.h"
 #include "tests/support/realtime_guard.h"
 
 namespace palp::io {
@@ -76,6 +78,36 @@ TEST(RealtimeSafetyTest, DeskIsCleanWhileSessionsComeAndGo) {
   guard.release();
   EXPECT_TRUE(guard.clean()) << guard.first_violation();
   EXPECT_EQ(desk.inbox().counting.sent, 100U);
+}
+
+TEST(RealtimeSafetyTest, SealingAndOpeningIsCleanAlsoWhereTagsAreRefusedAndKeysAreReplaced) {
+  using link::AeadProtection;
+  const link::TrafficKeys first = link::some_keys(1, link::Role::Surgeon, 0).data;
+  const link::TrafficKeys second = link::some_keys(2, link::Role::Surgeon, 1).data;
+  const auto mirrored = [](link::TrafficKeys keys) {
+    std::swap(keys.send, keys.receive);
+    return keys;
+  };
+  AeadProtection here{first, second, AeadProtection::Lead::Peer};
+  AeadProtection there{mirrored(first), mirrored(second), AeadProtection::Lead::Own};
+  std::array<std::byte, link::kDatagramSizeMax> datagram{};
+  std::array<std::byte, link::kDatagramSizeMax> room{};
+  const std::array<std::byte, 150> plain{};
+  std::uint64_t opened = 0;
+
+  RealtimeGuard guard;
+  for (std::uint64_t number = 0; number < 1000; ++number) {
+    for (AeadProtection* sender : {&here, &there}) {
+      AeadProtection& receiver = sender == &here ? there : here;
+      const std::size_t size = sender->seal({.number = number}, plain, datagram);
+      opened += receiver.open(std::span{datagram}.first(size), room) ? 1U : 0U;
+      datagram[20] ^= std::byte{1};
+      opened += receiver.open(std::span{datagram}.first(size), room) ? 1U : 0U;
+    }
+  }
+  guard.release();
+  EXPECT_TRUE(guard.clean()) << guard.first_violation();
+  EXPECT_EQ(opened, 2000U);
 }
 
 }  // namespace

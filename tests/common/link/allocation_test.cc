@@ -6,9 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include "common/link/aead_protection.h"
 #include "common/link/codec_protobuf.h"
 #include "common/link/link.h"
 #include "proto/link.pb.h"
+#include "tests/common/link/some_keys.h"
 #include "tests/common/link/some_telegram.h"
 
 // Counts every heap allocation of C++ in this binary, shared libraries included.

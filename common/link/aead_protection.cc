@@ -1,0 +1,178 @@
+#include "common/link/aead_protection.h"
+
+#include <limits>
+#include <stdexcept>
+
+#include <openssl/evp.h>
+
+#include "common/core/check.h"
+
+namespace palp::link {
+namespace {
+
+struct FreeContext {
+  void operator()(EVP_CIPHER_CTX* context) const noexcept { EVP_CIPHER_CTX_free(context); }
+};
+using Context = std::unique_ptr<EVP_CIPHER_CTX, FreeContext>;
+using Nonce = std::array<std::uint8_t, AeadKey::kSaltSize>;
+
+constexpr bool kEncrypt = true;
+constexpr bool kDecrypt = false;
+
+const std::uint8_t* octets(std::span<const std::byte> bytes) noexcept {
+  return reinterpret_cast<const std::uint8_t*>(bytes.data());
+}
+
+std::uint8_t* octets(std::span<std::byte> bytes) noexcept {
+  return reinterpret_cast<std::uint8_t*>(bytes.data());
+}
+
+Context make_context(const AeadKey& key, bool encrypts) {
+  Context context{EVP_CIPHER_CTX_new()};
+  const Nonce any{};  // the first one allocates
+  if (context == nullptr || EVP_CipherInit_ex2(context.get(),
+                                               EVP_aes_256_gcm(),
+                                               octets(key.key.bytes()),
+                                               any.data(),
+                                               encrypts ? 1 : 0,
+                                               nullptr) != 1) {
+    throw std::runtime_error{"cannot prepare AES-256-GCM: OpenSSL has none"};
+  }
+  return context;
+}
+
+}  // namespace
+
+struct AeadProtection::Generation {
+  explicit Generation(const TrafficKeys& keys)
+      : id{keys.id},
+        send_salt{keys.send.salt},
+        receive_salt{keys.receive.salt},
+        sealing{make_context(keys.send, kEncrypt)},
+        opening{make_context(keys.receive, kDecrypt)} {
+    PALP_CHECK(id <= kKeyMax, "a key id has two bits");
+  }
+  [[nodiscard]] static Nonce nonce(const Secret<AeadKey::kSaltSize>& salt,
+                                   std::uint64_t number) noexcept {
+    Nonce nonce{};
+    for (std::size_t i = 0; i < nonce.size(); ++i) {
+      nonce[i] = std::to_integer<std::uint8_t>(salt.bytes()[i]);
+    }
+    for (std::size_t i = 0; i < sizeof number; ++i) {
+      nonce[nonce.size() - 1 - i] ^= static_cast<std::uint8_t>(number >> (8 * i));
+    }
+    return nonce;
+  }
+  bool seal(std::uint64_t number,
+            std::span<const std::byte> header,
+            std::span<const std::byte> plain,
+            std::span<std::byte> out) noexcept;
+  bool open(std::uint64_t number,
+            std::span<const std::byte> header,
+            std::span<const std::byte> sealed,
+            std::span<std::byte> plain) noexcept;
+
+  std::uint8_t id;
+  Secret<AeadKey::kSaltSize> send_salt;
+  Secret<AeadKey::kSaltSize> receive_salt;
+  Context sealing;
+  Context opening;
+  std::uint64_t sealed{};  ///< packets
+};
+
+bool AeadProtection::Generation::seal(std::uint64_t number,
+                                      std::span<const std::byte> header,
+                                      std::span<const std::byte> plain,
+                                      std::span<std::byte> out) noexcept {
+  EVP_CIPHER_CTX* context = sealing.get();
+  const Nonce once = nonce(send_salt, number);
+  const auto size = static_cast<int>(plain.size());
+  int done = 0;
+  int rest = 0;
+  return EVP_EncryptInit_ex2(context, nullptr, nullptr, once.data(), nullptr) == 1 &&
+         EVP_EncryptUpdate(
+             context, nullptr, &done, octets(header), static_cast<int>(header.size())) == 1 &&
+         EVP_EncryptUpdate(context, octets(out), &done, octets(plain), size) == 1 &&
+         EVP_EncryptFinal_ex(context, octets(out) + done, &rest) == 1 && done + rest == size &&
+         EVP_CIPHER_CTX_ctrl(context,
+                             EVP_CTRL_AEAD_GET_TAG,
+                             kTagSize,
+                             octets(out.subspan(plain.size(), kTagSize))) == 1;
+}
+
+bool AeadProtection::Generation::open(std::uint64_t number,
+                                      std::span<const std::byte> header,
+                                      std::span<const std::byte> sealed_bytes,
+                                      std::span<std::byte> plain) noexcept {
+  EVP_CIPHER_CTX* context = opening.get();
+  const Nonce once = nonce(receive_salt, number);
+  const std::span<const std::byte> content = sealed_bytes.first(sealed_bytes.size() - kTagSize);
+  // The call takes the tag through a pointer to what is not const.
+  std::array<std::uint8_t, kTagSize> tag{};
+  for (std::size_t i = 0; i < kTagSize; ++i) {
+    tag[i] = std::to_integer<std::uint8_t>(sealed_bytes[content.size() + i]);
+  }
+  int done = 0;
+  int rest = 0;
+  return EVP_DecryptInit_ex2(context, nullptr, nullptr, once.data(), nullptr) == 1 &&
+         EVP_CIPHER_CTX_ctrl(context, EVP_CTRL_AEAD_SET_TAG, kTagSize, tag.data()) == 1 &&
+         EVP_DecryptUpdate(
+             context, nullptr, &done, octets(header), static_cast<int>(header.size())) == 1 &&
+         EVP_DecryptUpdate(
+             context, octets(plain), &done, octets(content), static_cast<int>(content.size())) ==
+             1 &&
+         EVP_DecryptFinal_ex(context, octets(plain) + done, &rest) == 1;
+}
+
+AeadProtection::AeadProtection(const TrafficKeys& keys)
+    : present_{std::make_unique<Generation>(keys)} {}
+
+AeadProtection::AeadProtection(const TrafficKeys& present, const TrafficKeys& next, Lead lead)
+    : present_{std::make_unique<Generation>(present)},
+      next_{std::make_unique<Generation>(next)},
+      seals_with_next_{lead == Lead::Own} {
+  PALP_CHECK(present.id != next.id, "two generations have two ids");
+}
+
+AeadProtection::~AeadProtection() = default;
+
+std::size_t AeadProtection::seal(const Header& header,
+                                 std::span<const std::byte> plain,
+                                 std::span<std::byte> out) noexcept {
+  PALP_CHECK(header.number >= number_least_, "a packet number is sealed once");
+  const std::size_t size = plain.size() + kTagSize;
+  if (size > std::numeric_limits<std::uint16_t>::max()) return 0;
+  if (out.size() < kHeaderSize + size) return 0;
+  Generation& keys = seals_with_next_ ? *next_ : *present_;
+  if (keys.sealed >= kPacketsMax) return 0;
+  Header complete = header;
+  complete.key = keys.id;
+  complete.length = static_cast<std::uint16_t>(size);
+  pack_header(complete, out.first<kHeaderSize>());
+  number_least_ = header.number + 1;
+  ++keys.sealed;
+  const bool done =
+      keys.seal(header.number, out.first(kHeaderSize), plain, out.subspan(kHeaderSize));
+  return done ? kHeaderSize + size : 0;
+}
+
+tl::expected<std::size_t, Rejection> AeadProtection::open(std::span<const std::byte> datagram,
+                                                          std::span<std::byte> plain) noexcept {
+  const std::optional<Header> header = parse_header(datagram);
+  if (!header || header->length < kTagSize) return tl::unexpected(Rejection::Malformed);
+  const std::size_t size = header->length - kTagSize;
+  if (size > plain.size()) return tl::unexpected(Rejection::Malformed);
+  const bool by_next = next_ != nullptr && header->key == next_->id;
+  if (!by_next && header->key != present_->id) return tl::unexpected(Rejection::Foreign);
+  Generation& keys = by_next ? *next_ : *present_;
+  if (!keys.open(header->number,
+                 datagram.first(kHeaderSize),
+                 datagram.subspan(kHeaderSize),
+                 plain.first(size))) {
+    return tl::unexpected(Rejection::Forged);
+  }
+  seals_with_next_ = seals_with_next_ || by_next;
+  return size;
+}
+
+}  // namespace palp::link
