@@ -18,10 +18,10 @@
 #include "common/site_program/build_info.h"
 #include "common/site_program/ending.h"
 #include "common/site_program/impaired_reception.h"
-#include "common/site_program/plain_address.h"
 #include "common/site_program/recording.h"
 #include "common/site_program/runner.h"
 #include "common/site_program/session_info.h"
+#include "common/site_program/site_address.h"
 #include "common/site_program/site_report.h"
 #include "common/site_program/status_line.h"
 #include "patient_site/display.h"
@@ -58,6 +58,7 @@ void declare_flags(config::CommandLine& line, config::Document& document, std::s
   line.knob("--loss", "impairment.loss");
   line.knob("--impair", "impairment.spec");
   line.knob("--seed", "seed");
+  line.knob("--identity", "link.identity");
   line.knob("--insecure", "link.insecure");
 }
 
@@ -92,7 +93,7 @@ tl::expected<Plan, Ending> make_plan(const config::Document& document) {
   auto settings = make_settings(document);
   if (!settings) return bad(settings.error());
   const auto address =
-      site_program::plain_address("--listen", settings->listen, settings->insecure, 0);
+      site_program::site_address("--listen", settings->listen, settings->protection, 0);
   if (!address) return tl::unexpected{address.error()};
   auto phantom = make_phantom(settings->phantom);
   if (!phantom) return bad(phantom.error());
@@ -111,6 +112,7 @@ tl::expected<Plan, Ending> make_plan(const config::Document& document) {
                     .coupling = settings->coupling.name,
                     .git = std::string{site_program::git_commit()}};
   runner.address = *address;
+  runner.protection = settings->protection;
   runner.wrap_transport = std::move(*wrap);
   runner.loop = settings->loop;
   auto info =
@@ -231,7 +233,9 @@ Ending run(const config::Document& document, site_program::SiteReport& report) {
   report.coupling = plan->settings.coupling.name;
   report.session_file = plan->settings.record.file;
   io::Terminal terminal;
-  io::warn("datagrams are neither encrypted nor authenticated: they stay on this machine");
+  if (plan->settings.protection.insecure) {
+    io::warn("datagrams are neither encrypted nor authenticated: they stay on this machine");
+  }
   Program program{std::move(*plan)};
   report.ending = program.run(terminal);
   program.stop(report);

@@ -110,7 +110,7 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
   const auto estimator = make_estimator(message.estimator(), made.loop.period);
   if (!estimator) return fail(estimator.error().text);
   made.listen = message.listen();
-  made.insecure = message.link().insecure();
+  made.protection = settings::make_protection(message.link());
   made.coupling = *coupling;
   made.agreement = settings::agreement_hash(message.coupling(), made.loop.period);
   made.link = settings::make_link(message.link(), made.loop.period);

@@ -22,7 +22,7 @@ namespace palp::patient {
 /// part has its own defaults.
 struct Settings {
   std::string listen;  ///< ADDRESS:PORT; a program needs one, virtual time does not
-  bool insecure{};     ///< plain datagrams are accepted
+  settings::ProtectionSettings protection;
   coupling::CouplingConfig coupling;
   std::uint64_t agreement{};  ///< both sites must have the same
   link::LinkConfig link;

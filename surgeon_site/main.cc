@@ -14,13 +14,14 @@
 #include "common/io/terminal.h"
 #include "common/link/codec_protobuf.h"
 #include "common/site_program/build_info.h"
+#include "common/site_program/certificates_command.h"
 #include "common/site_program/ending.h"
 #include "common/site_program/impaired_reception.h"
 #include "common/site_program/peer_watch.h"
-#include "common/site_program/plain_address.h"
 #include "common/site_program/recording.h"
 #include "common/site_program/runner.h"
 #include "common/site_program/session_info.h"
+#include "common/site_program/site_address.h"
 #include "common/site_program/site_report.h"
 #include "common/site_program/status_line.h"
 #include "surgeon_site/display.h"
@@ -53,6 +54,7 @@ void declare_flags(config::CommandLine& line, config::Document& document, std::s
   line.knob("--loss", "impairment.loss");
   line.knob("--impair", "impairment.spec");
   line.knob("--seed", "seed");
+  line.knob("--identity", "link.identity");
   line.knob("--insecure", "link.insecure");
   line.knob("--force-engage", "engagement.forced");
 }
@@ -91,7 +93,8 @@ tl::expected<Plan, Ending> make_plan(const config::Document& document) {
   const auto bad = [](const Error& error) { return tl::unexpected{ending_of(error)}; };
   auto settings = make_settings(document);
   if (!settings) return bad(settings.error());
-  const auto address = site_program::plain_address("--peer", settings->peer, settings->insecure, 1);
+  const auto address =
+      site_program::site_address("--peer", settings->peer, settings->protection, 1);
   if (!address) return tl::unexpected{address.error()};
   auto script = load_script(settings->master, {settings->hand.plant.grip.stiffness, {}});
   if (!script) return bad(script.error());
@@ -106,6 +109,7 @@ tl::expected<Plan, Ending> make_plan(const config::Document& document) {
                     .coupling = settings->coupling.name,
                     .git = std::string{site_program::git_commit()}};
   runner.address = *address;
+  runner.protection = settings->protection;
   runner.wrap_transport = std::move(*wrap);
   runner.loop = settings->loop;
   auto info =
@@ -219,7 +223,9 @@ Ending run(const config::Document& document, site_program::SiteReport& report) {
   report.coupling = plan->settings.coupling.name;
   report.session_file = plan->settings.record.file;
   io::Terminal terminal;
-  io::warn("datagrams are neither encrypted nor authenticated: they stay on this machine");
+  if (plan->settings.protection.insecure) {
+    io::warn("datagrams are neither encrypted nor authenticated: they stay on this machine");
+  }
   Program program{std::move(*plan)};
   report.ending = program.run(terminal);
   program.stop(report);
@@ -233,12 +239,18 @@ int run(int argc, char** argv) {
   config::CommandLine line{"palp-surgeon", "The surgeon's site: a haptic device, a hand, a link."};
   std::string report_file;
   declare_flags(line, document, report_file);
+  line.verbs_optional();
+  const site_program::CertificatesCommand certificates{line};
   site_program::SiteReport report;
   report.site = "surgeon";
   if (const auto ending = line.parse(argc, argv)) {
     if (ending->code == ExitCode::Done || report_file.empty()) return config::leave(*ending);
     report.ending = ending_of(*ending);
     return site_program::finish(report, report_file);
+  }
+  if (line.chosen_verb() == "certificates") {
+    const Ending ending = certificates.run();
+    return config::leave({ending.code, ending.reason});
   }
   try {
     report.ending = run(document, report);

@@ -46,7 +46,7 @@ Result<Settings> make_settings(const proto::config::SurgeonConfig& message) {
   if (!hand) return fail(hand.error().text);
   Settings made;
   made.peer = message.peer();
-  made.insecure = message.link().insecure();
+  made.protection = settings::make_protection(message.link());
   made.coupling = *coupling;
   made.loop = settings::make_loop(message.loop());
   made.agreement = settings::agreement_hash(message.coupling(), made.loop.period);

@@ -21,7 +21,7 @@ namespace palp::surgeon {
 /// part has its own defaults.
 struct Settings {
   std::string peer;  ///< HOST:PORT; a program needs one, virtual time does not
-  bool insecure{};   ///< plain datagrams are accepted
+  settings::ProtectionSettings protection;
   coupling::CouplingConfig coupling;
   std::uint64_t agreement{};  ///< both sites must have the same
   link::LinkConfig link;

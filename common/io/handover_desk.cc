@@ -17,7 +17,10 @@ void HandoverDesk::serve(link::Link& link, TimePoint now) noexcept {
     }
   }
   const link::LinkHealth health = link.health(now);
-  glance_.put({.state = health.state, .session_id = health.session_id});
+  glance_.put({.state = health.state,
+               .session_id = health.session_id,
+               .newest_number = health.newest_number,
+               .key = health.key});
 }
 
 void HandoverDesk::destroy_retired() {

@@ -16,7 +16,9 @@ namespace palp::io {
 /// What io must know of the link on rt.
 struct LinkGlance {
   LinkState state{};
-  std::uint64_t session_id{};  ///< which session that is of; 0: none
+  std::uint64_t session_id{};     ///< which session that is of; 0: none
+  std::uint64_t newest_number{};  ///< of the telegrams of that session
+  std::uint8_t key{};             ///< id of the keys under which the newest one came
 };
 
 /// Where io and rt meet: sessions go to rt, what they replaced comes back to be freed, and both

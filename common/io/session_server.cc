@@ -16,12 +16,11 @@
 #include <boost/asio/ip/udp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <sys/random.h>
 
 #include "common/io/realtime.h"
+#include "common/io/secure_conversation.h"
 #include "common/io/steady_clock.h"
 #include "common/io/system_text.h"
-#include "common/link/packet_protection.h"
 
 namespace palp::io {
 namespace {
@@ -48,14 +47,6 @@ Endpoint from_asio(const udp::endpoint& endpoint) { return {endpoint.data(), end
 
 void set_option(udp::socket& socket, int level, int name, int value) noexcept {
   (void)setsockopt(socket.native_handle(), level, name, &value, sizeof value);
-}
-
-std::uint64_t entropy() {
-  std::uint64_t bits = 0;
-  if (getrandom(&bits, sizeof bits, 0) != static_cast<ssize_t>(sizeof bits)) {
-    throw std::runtime_error{"cannot draw session ids: " + system_text(errno)};
-  }
-  return bits;
 }
 
 Endpoint found(const HostAndPort& place) {
@@ -96,15 +87,20 @@ class SessionServer::Io {
   void wait_for_strangers();
   void hear_strangers();
   void hear(std::span<const std::byte> datagram, const Endpoint& from);
-  void carry_out(const link::SessionOutput& output, const Endpoint& to);
-  void meet(const link::Established& session, const Endpoint& peer);
+  /// `from`: where the datagram came from that is answered; none: nothing came.
+  void carry_out(ConversationOutput output, const Endpoint& from);
+  void meet(const link::Established& session,
+            std::unique_ptr<link::PacketProtection> protection,
+            const Endpoint& peer);
+  void replace_keys(std::unique_ptr<link::PacketProtection> protection);
+  void move(const Endpoint& peer);
   [[nodiscard]] Result<std::unique_ptr<link::Transport>> way_to(const Endpoint& peer);
   void leave();
   void tell(SessionNews::Kind kind, const Endpoint& peer, std::string sentence, bool final = false);
 
   SessionServerConfig config_;
   HandoverDesk& desk_;
-  link::Session session_;
+  std::unique_ptr<Conversation> conversation_;
   SpscQueue<SessionNews> news_{kNewsMax};  ///< writer: io, reader: the maker
   Mailbox<link::SessionCounters> noise_;   ///< writer: io, reader: the maker
   asio::io_context context_{1};
@@ -114,6 +110,7 @@ class SessionServer::Io {
   Endpoint local_;
   Endpoint callee_;                     ///< surgeon: whom to call; patient: none
   Endpoint connected_;                  ///< rt has or will get a socket to there
+  link::Established present_;           ///< rt has or will get this session; id 0: none
   std::deque<link::Handover> waiting_;  ///< for room on the desk
   std::deque<Early> early_;             ///< taken by a data socket before it was connected
   std::array<std::byte, link::kDatagramSizeMax + 1> buffer_{};
@@ -123,7 +120,7 @@ class SessionServer::Io {
 };
 
 SessionServer::Io::Io(const SessionServerConfig& config, HandoverDesk& desk)
-    : config_{config}, desk_{desk}, session_{config.session, entropy()} {
+    : config_{config}, desk_{desk} {
   const Endpoint place = found(config.address);
   Endpoint wish = place;
   if (config.session.role == link::Role::Surgeon) {
@@ -151,6 +148,9 @@ SessionServer::Io::Io(const SessionServerConfig& config, HandoverDesk& desk)
     set_option(listening_, IPPROTO_IP, IP_TOS, kClassSelector3);
   }
   local_ = from_asio(listening_.local_endpoint());
+  conversation_ = make_conversation(
+      {.session = config_.session, .callee = callee_, .rekey_after = config_.rekey_after},
+      config_.credentials);
 }
 
 void SessionServer::Io::start() {
@@ -168,7 +168,7 @@ void SessionServer::Io::close(const std::string& why) {
     return;
   }
   asio::post(context_, [this, why] {
-    carry_out(session_.close(why), connected_);
+    carry_out(conversation_->close(why), {});
     context_.stop();
   });
   thread_.join();
@@ -191,15 +191,14 @@ void SessionServer::Io::run_round() {
     }
     hear(aside.datagram(), aside.from);
   }
-  const LinkGlance link = desk_.link();
-  carry_out(session_.tick(clock_.now(), link.state, link.session_id), callee_);
+  carry_out(conversation_->tick(clock_.now(), desk_.link()), callee_);
   for (std::deque<Early> early = std::exchange(early_, {}); !early.empty(); early.pop_front()) {
     hear(early.front().bytes, early.front().from);
   }
   while (!waiting_.empty() && desk_.offer(std::move(waiting_.front()))) {
     waiting_.pop_front();
   }
-  noise_.put(session_.counters());
+  noise_.put(conversation_->counters());
   strangers_ = 0;
   wait_for_strangers();
   round_.expires_at(round_.expiry() + kRound);
@@ -243,29 +242,33 @@ void SessionServer::Io::hear_strangers() {
 }
 
 void SessionServer::Io::hear(std::span<const std::byte> datagram, const Endpoint& from) {
-  carry_out(session_.on_datagram(datagram, clock_.now()), from);
+  carry_out(conversation_->hear(datagram, from, clock_.now()), from);
 }
 
-void SessionServer::Io::carry_out(const link::SessionOutput& output, const Endpoint& to) {
+void SessionServer::Io::carry_out(ConversationOutput output, const Endpoint& from) {
   if (output.event) {
     if (const auto* session = std::get_if<link::Established>(&*output.event)) {
-      meet(*session, to);
+      meet(*session, std::move(output.protection), from);
     } else if (const auto* refused = std::get_if<link::Refused>(&*output.event)) {
-      tell(SessionNews::Kind::Refused, to, "no session: " + refused->text, refused->final);
+      tell(SessionNews::Kind::Refused, from, "no session: " + refused->text, refused->final);
     } else if (const auto* closed = std::get_if<link::Closed>(&*output.event)) {
       tell(SessionNews::Kind::Closed, connected_, "the session is over: " + closed->text);
       leave();
     }
   }
-  for (const link::ControlBytes& datagram : output.datagrams) {
+  if (output.protection != nullptr) replace_keys(std::move(output.protection));
+  if (output.moved_to) move(*output.moved_to);
+  for (const Letter& letter : output.letters) {
     boost::system::error_code refusal;  // nothing to do about it: what matters is repeated
-    listening_.send_to(asio::buffer(datagram.bytes.data(), datagram.size), as_asio(to), 0, refusal);
+    listening_.send_to(asio::buffer(letter.bytes), as_asio(letter.to), 0, refusal);
   }
 }
 
-void SessionServer::Io::meet(const link::Established& session, const Endpoint& peer) {
+void SessionServer::Io::meet(const link::Established& session,
+                             std::unique_ptr<link::PacketProtection> protection,
+                             const Endpoint& peer) {
   link::Handover next{.transport = nullptr,
-                      .protection = std::make_unique<link::PlainProtection>(),
+                      .protection = std::move(protection),
                       .send_connection = session.send_connection,
                       .receive_connection = session.receive_connection,
                       .session_id = session.session_id};
@@ -279,11 +282,40 @@ void SessionServer::Io::meet(const link::Established& session, const Endpoint& p
     next.transport = std::move(*way);
     connected_ = peer;
   }
+  present_ = session;
   waiting_.push_back(std::move(next));
+  const std::string proof = conversation_->proof();
   tell(SessionNews::Kind::Established,
        peer,
        "session with " + name_of_peer(config_.session.role) + " at " + peer.to_string() +
-           (session.peer_git.empty() ? "" : ", its build " + session.peer_git));
+           (session.peer_git.empty() ? "" : ", its build " + session.peer_git) +
+           (proof.empty() ? "" : ", proven by " + proof));
+}
+
+/// The present session goes on under other keys.
+void SessionServer::Io::replace_keys(std::unique_ptr<link::PacketProtection> protection) {
+  if (present_.session_id == 0) return;
+  waiting_.push_back({.transport = nullptr,
+                      .protection = std::move(protection),
+                      .send_connection = present_.send_connection,
+                      .receive_connection = present_.receive_connection,
+                      .session_id = present_.session_id,
+                      .continues = true});
+}
+
+/// The present session goes on with another address of the peer.
+void SessionServer::Io::move(const Endpoint& peer) {
+  if (present_.session_id == 0 || peer == connected_) return;
+  Result<std::unique_ptr<link::Transport>> way = way_to(peer);
+  if (!way) return;  // its next datagram begins anew
+  waiting_.push_back({.transport = std::move(*way),
+                      .protection = nullptr,
+                      .send_connection = present_.send_connection,
+                      .receive_connection = present_.receive_connection,
+                      .session_id = present_.session_id,
+                      .continues = true});
+  connected_ = peer;
+  tell(SessionNews::Kind::Moved, peer, "the peer's address is now " + peer.to_string());
 }
 
 Result<std::unique_ptr<link::Transport>> SessionServer::Io::way_to(const Endpoint& peer) {
@@ -314,6 +346,7 @@ Result<std::unique_ptr<link::Transport>> SessionServer::Io::way_to(const Endpoin
 
 void SessionServer::Io::leave() {
   connected_ = {};
+  present_ = {};
   waiting_.push_back({});
 }
 

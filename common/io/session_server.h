@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/core/time.h"
+#include "common/io/credentials.h"
 #include "common/io/endpoint.h"
 #include "common/io/handover_desk.h"
 #include "common/io/udp_socket.h"
@@ -23,13 +24,15 @@ struct SessionServerConfig {
   link::SessionConfig session;
   HostAndPort address;  ///< patient: where to listen, port 0: any; surgeon: the patient site
   UdpSocketConfig socket;
-  TransportWrap wrap_transport;  ///< empty: the link gets the socket itself
-  int priority{};                ///< SCHED_FIFO of the io thread, below rt's; 0: leave as it is
+  TransportWrap wrap_transport;      ///< empty: the link gets the socket itself
+  int priority{};                    ///< SCHED_FIFO of the io thread, below rt's; 0: leave as it is
+  const Credentials* credentials{};  ///< outlives the server; null: plain, for benches
+  Duration rekey_after{std::chrono::hours{1}};  ///< age of keys that the surgeon replaces
 };
 
 /// What people are told of sessions.
 struct SessionNews {
-  enum class Kind : std::uint8_t { Established, Refused, Closed };
+  enum class Kind : std::uint8_t { Established, Refused, Closed, Moved };
   Kind kind{};
   bool final{};  ///< refused, and there will never be a session with these settings
   TimePoint at{};
@@ -39,7 +42,8 @@ struct SessionNews {
 
 /// Finds the peer and makes sessions, on a thread of its own (io): owns the listening socket,
 /// drives link::Session, reads what rt set aside, and gives rt a connected socket and its
-/// protection over the desk for each new session. Plain datagrams for now. Thread: its maker's.
+/// protection over the desk for each new session, new keys or a new way within one.
+/// Thread: its maker's.
 class SessionServer {
  public:
   /// Starts to listen or to call. `desk` outlives the server.

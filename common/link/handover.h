@@ -17,6 +17,8 @@ struct Handover {
   std::uint32_t receive_connection{};  ///< given out by us
   std::uint64_t
       session_id{};  ///< another one: a new session, all starts anew; 0: the session ended
+  /// Only for the session that is there: where it has ended meanwhile, all comes back unused.
+  bool continues{};
 };
 
 }  // namespace palp::link

@@ -66,6 +66,8 @@ void Link::end_session() noexcept {
 }
 
 Handover Link::adopt(Handover next, TimePoint now) noexcept {
+  // Its numbers would start at 0 again, under keys that have sealed such numbers.
+  if (next.continues && next.session_id != session_id_) return next;
   Handover retired{.transport = nullptr,
                    .protection = nullptr,
                    .send_connection = send_connection_,
@@ -184,7 +186,11 @@ void Link::drain(TimePoint now) noexcept {
     }
     // From here on the datagram is authentic.
     conversation_.received.mark(opened->number);
-    if (conversation_.received.newest() > opened->number) ++counters_.reordered;
+    if (conversation_.received.newest() > opened->number) {
+      ++counters_.reordered;
+    } else {
+      conversation_.newest_key = opened->key;
+    }
     const auto wire = codec_->decode(std::span{plain_}.first(opened->size));
     if (!wire) {
       count(Rejection::Malformed);
@@ -211,7 +217,7 @@ tl::expected<Link::Opened, Rejection> Link::open(std::span<const std::byte> data
   }
   const auto size = protection_->open(datagram, plain_);
   if (!size) return tl::unexpected(size.error());
-  return Opened{header->number, *size};
+  return Opened{header->number, header->key, *size};
 }
 
 void Link::count(Rejection rejection) noexcept {
@@ -345,6 +351,8 @@ LinkHealth Link::health(TimePoint now) const noexcept {
   health.state = judge(now);
   health.session_id = session_id_;
   health.gap = gap(now);
+  health.newest_number = conversation_.received.newest();
+  health.key = conversation_.newest_key;
   health.round_trip = conversation_.clock.smoothed();
   health.round_trip_min = conversation_.clock.least(now);
   health.jitter = conversation_.clock.deviation();

@@ -68,8 +68,9 @@ class Link {
     std::uint32_t epoch_sent{};  ///< newest
     std::array<Sent, kHistory> history{};
 
-    ReplayWindow received;     ///< datagrams
-    ReplayWindow handed_over;  ///< samples, repaired ones included
+    ReplayWindow received;      ///< datagrams
+    std::uint8_t newest_key{};  ///< of the newest of them
+    ReplayWindow handed_over;   ///< samples, repaired ones included
     PeerClock clock;
     ClockOffsetEstimator offset;
     bool heard{};  ///< the next four speak of the newest accepted telegram
@@ -85,6 +86,7 @@ class Link {
 
   struct Opened {
     std::uint64_t number{};
+    std::uint8_t key{};
     std::size_t size{};  ///< [bytes] of plain_
   };
 

@@ -232,6 +232,17 @@ void Session::establish(const Hello& hello, SessionOutput& out) {
                           .peer_git = peer_git_};
 }
 
+ControlBytes Session::greeting() {
+  return hello_to(present_.value_or(Pair{.own = offered_, .peer = 0}));
+}
+
+bool Session::speaks_of_present(std::span<const std::byte> datagram) const {
+  const auto header = parse_header(datagram);
+  if (!present_ || !header || header->type != PacketType::Control) return false;
+  const auto hello = decode_hello(datagram.subspan(kHeaderSize));
+  return hello && hello->session_id == present_->peer && hello->peer_session_id == present_->own;
+}
+
 void Session::forget_session() {
   present_.reset();
   link_state_ = LinkState::Down;

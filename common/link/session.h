@@ -78,6 +78,12 @@ class Session {
   /// We leave: three equal Byes, because nobody confirms them. Afterwards nothing is answered.
   [[nodiscard]] SessionOutput close(std::string_view text);
 
+  /// A Hello outside the order of tick(): to the peer of the present session, else to anybody.
+  [[nodiscard]] ControlBytes greeting();
+  /// Whether this is a Hello that carries both ids of the present session, which nobody knows who
+  /// did not hear them.
+  [[nodiscard]] bool speaks_of_present(std::span<const std::byte> datagram) const;
+
   [[nodiscard]] bool established() const noexcept { return present_.has_value(); }
   [[nodiscard]] std::uint64_t session_id() const noexcept;  ///< 0: none
   [[nodiscard]] const SessionCounters& counters() const noexcept { return counters_; }

@@ -59,6 +59,8 @@ struct LinkHealth {
   std::optional<ClockOffset> peer_clock{};  ///< from the second second on
   Duration way_there{};  ///< smoothed (1/8), if the least both ways are equal; 0: not known yet
   Duration way_here{};
+  std::uint64_t newest_number{};  ///< highest authentic number of the session
+  std::uint8_t key{};             ///< id of the keys under which the newest telegram came
   std::uint64_t sent{};
   std::uint64_t accepted{};  ///< telegrams newer than all before
   std::uint64_t late{};      ///< authentic, but older than the newest accepted

@@ -84,6 +84,12 @@ ImpairmentSettings make_impairment(const proto::config::Impairment& message) {
           .loss = message.loss()};
 }
 
+ProtectionSettings make_protection(const proto::config::Link& message) {
+  return {.insecure = message.insecure(),
+          .identity = message.identity(),
+          .rekey_after = from_seconds(message.rekey_after_s())};
+}
+
 RecordSettings make_record(const proto::config::Record& message) {
   return {.file = message.file(), .queue_records = message.queue_records()};
 }

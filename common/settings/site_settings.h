@@ -46,11 +46,19 @@ struct RecordSettings {
   std::size_t queue_records{16384};
 };
 
+/// Of the link: who may hear and say something on it.
+struct ProtectionSettings {
+  bool insecure{};         ///< plain datagrams are accepted
+  std::string identity{};  ///< folder of certificate and key; empty: none
+  Duration rekey_after{std::chrono::hours{1}};
+};
+
 /// The sentence lists the couplings there are.
 [[nodiscard]] Result<coupling::CouplingConfig> make_coupling(
     const proto::config::Coupling& message);
 /// `period`: of the control loop, which is that of sending.
 [[nodiscard]] link::LinkConfig make_link(const proto::config::Link& message, Duration period);
+[[nodiscard]] ProtectionSettings make_protection(const proto::config::Link& message);
 [[nodiscard]] LoopSettings make_loop(const proto::config::Loop& message);
 [[nodiscard]] ImpairmentSettings make_impairment(const proto::config::Impairment& message);
 [[nodiscard]] RecordSettings make_record(const proto::config::Record& message);

@@ -1,5 +1,6 @@
 #include "common/site_program/runner.h"
 
+#include <stdexcept>
 #include <utility>
 
 namespace palp::site_program {
@@ -16,6 +17,13 @@ Runner::Runner(const RunnerConfig& config) : loop_{config.loop} {
   server.address = config.address;
   server.wrap_transport = config.wrap_transport;
   server.priority = io_priority(loop_.priority);
+  if (!config.protection.identity.empty()) {
+    auto credentials = io::Credentials::read(config.protection.identity, config.session.role);
+    if (!credentials) throw std::runtime_error{credentials.error().text};
+    credentials_ = std::move(*credentials);
+    server.credentials = credentials_.get();
+    server.rekey_after = config.protection.rekey_after;
+  }
   server_ = std::make_unique<io::SessionServer>(server, desk_);
 }
 

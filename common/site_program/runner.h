@@ -19,6 +19,7 @@ namespace palp::site_program {
 struct RunnerConfig {
   link::SessionConfig session;
   HostAndPort address;
+  settings::ProtectionSettings protection;
   io::TransportWrap wrap_transport;
   settings::LoopSettings loop;
 };
@@ -27,7 +28,8 @@ struct RunnerConfig {
 /// maker's.
 class Runner {
  public:
-  /// Listens or calls. @throws std::runtime_error with one sentence.
+  /// Reads the identity, if there is one; listens or calls. @throws std::runtime_error with one
+  /// sentence.
   explicit Runner(const RunnerConfig& config);
   ~Runner();
   Runner(const Runner&) = delete;
@@ -51,6 +53,7 @@ class Runner {
 
  private:
   settings::LoopSettings loop_;
+  std::unique_ptr<io::Credentials> credentials_;  ///< null: plain datagrams
   io::HandoverDesk desk_;
   std::unique_ptr<io::SessionServer> server_;
   std::unique_ptr<io::PeriodicThread> rt_;

@@ -168,7 +168,7 @@ Violations randomness(const Source& source) {
                           "getrandom",
                           "random_shuffle"},
                          "the only randomness is common/core/random.h",
-                         {"common/io/session_server.cc"});
+                         {"common/io/entropy.cc"});
 }
 
 Violations threads(const Source& source) {

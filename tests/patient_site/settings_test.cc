@@ -53,7 +53,8 @@ void add(settings_test::FieldList& list, const SimulatedPhantomConfig& simulatio
 
 std::string text_of(const Settings& settings) {
   settings_test::FieldList list;
-  list.add("listen", settings.listen).add("insecure", settings.insecure);
+  list.add("listen", settings.listen);
+  add(list, settings.protection);
   add(list, settings.coupling);
   add(list, settings.link);
   list.add("node.period", settings.node.period)

@@ -14,7 +14,8 @@ using testing::HasSubstr;
 
 std::string text_of(const Settings& settings) {
   settings_test::FieldList list;
-  list.add("peer", settings.peer).add("insecure", settings.insecure);
+  list.add("peer", settings.peer);
+  add(list, settings.protection);
   add(list, settings.coupling);
   add(list, settings.link);
   list.add("node.period", settings.node.period)

@@ -105,4 +105,9 @@ std::string make_folder(const std::string& name) {
   return folder.string();
 }
 
+bool make_certificates(const std::string& folder) {
+  Process program{"palp-surgeon", {"certificates", "--folder", folder}, folder + ".log"};
+  return program.wait(std::chrono::seconds{20}) == 0;
+}
+
 }  // namespace palp::system_test

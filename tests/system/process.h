@@ -36,6 +36,9 @@ class Process {
   std::string log_;
 };
 
+/// An authority and certificates for both sites in `folder`/surgeon and `folder`/patient.
+[[nodiscard]] bool make_certificates(const std::string& folder);
+
 /// An empty folder of its own below the build tree.
 [[nodiscard]] std::string make_folder(const std::string& name);
 

@@ -36,7 +36,10 @@ constexpr char kScript[] =
 
 class RestartTest : public ::testing::Test {
  protected:
-  void SetUp() override { write_text(path("script.txt"), kScript); }
+  void SetUp() override {
+    write_text(path("script.txt"), kScript);
+    ASSERT_TRUE(make_certificates(path("keys")));
+  }
   ~RestartTest() override {
     if (!HasFailure()) std::filesystem::remove_all(folder_);
   }
@@ -47,7 +50,8 @@ class RestartTest : public ::testing::Test {
     return {"palp-patient",
             {"--listen",
              address,
-             "--insecure",
+             "--identity",
+             path("keys/patient"),
              "--phantom",
              "closed-form",
              "--session-file",
@@ -58,7 +62,8 @@ class RestartTest : public ::testing::Test {
     return {"palp-surgeon",
             {"--peer",
              peer,
-             "--insecure",
+             "--identity",
+             path("keys/surgeon"),
              "--master",
              "script:" + path("script.txt"),
              "--session-file",

@@ -61,9 +61,14 @@ class SessionTest : public ::testing::Test {
 
 TEST_F(SessionTest, EndsInOrderAndLeavesSoundFiles) {
   write_text(path("script.txt"), kScript);
+  ASSERT_TRUE(make_certificates(path("keys")));
   const auto with_files = [this](std::string site, std::vector<std::string> arguments) {
-    const std::vector<std::string> more{
-        "--insecure", "--session-file", path(site + ".mcap"), "--report", path(site + ".json")};
+    const std::vector<std::string> more{"--identity",
+                                        path("keys/" + site),
+                                        "--session-file",
+                                        path(site + ".mcap"),
+                                        "--report",
+                                        path(site + ".json")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Process{"palp-" + site, arguments, path(site + ".log")};
   };

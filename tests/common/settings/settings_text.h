@@ -55,6 +55,12 @@ inline void add(FieldList& list, const coupling::CouplingConfig& config) {
       .add("coupling.direct.fade_in", config.direct.fade_in);
 }
 
+inline void add(FieldList& list, const settings::ProtectionSettings& protection) {
+  list.add("insecure", protection.insecure)
+      .add("identity", protection.identity)
+      .add("rekey_after", protection.rekey_after);
+}
+
 inline void add(FieldList& list, const link::LinkConfig& config) {
   list.add("link.period", config.period)
       .add("link.hold_after", config.watchdog.hold_after)

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "common/core/time.h"
+#include "common/io/associations.h"
+#include "common/io/endpoint.h"
+#include "common/io/handover_desk.h"
+#include "common/link/packet_protection.h"
+#include "common/link/session.h"
+
+namespace palp::io {
+
+/// What a Conversation wants done after an input, in the order of the members.
+struct ConversationOutput {
+  std::optional<link::SessionEvent> event;
+  /// With Established: for the new session. Alone: replaces that of the present one.
+  std::unique_ptr<link::PacketProtection> protection;
+  std::optional<Endpoint> moved_to;  ///< the peer of the present session now has this address
+  std::vector<Letter> letters;
+};
+
+/// A Session and the protection of what it says. Knows no socket. Thread: io.
+class Conversation {
+ public:
+  virtual ~Conversation() = default;
+  /// Any bytes.
+  [[nodiscard]] virtual ConversationOutput hear(std::span<const std::byte> datagram,
+                                                const Endpoint& from,
+                                                TimePoint now) = 0;
+  /// Every few milliseconds.
+  [[nodiscard]] virtual ConversationOutput tick(TimePoint now, const LinkGlance& link) = 0;
+  /// We leave; nothing is said afterwards.
+  [[nodiscard]] virtual ConversationOutput close(std::string_view why) = 0;
+  [[nodiscard]] virtual link::SessionCounters counters() const = 0;
+  /// For people: who the peer has proven to be; empty: nobody has proven anything.
+  [[nodiscard]] virtual std::string proof() const = 0;
+};
+
+/// Neither encrypted nor authenticated: for benches within one machine.
+class PlainConversation final : public Conversation {
+ public:
+  /// `callee`: the surgeon's; none for a patient.
+  PlainConversation(const link::SessionConfig& config,
+                    std::uint64_t entropy,
+                    const Endpoint& callee)
+      : session_{config, entropy}, peer_{callee}, callee_{callee} {}
+  [[nodiscard]] ConversationOutput hear(std::span<const std::byte> datagram,
+                                        const Endpoint& from,
+                                        TimePoint now) override;
+  [[nodiscard]] ConversationOutput tick(TimePoint now, const LinkGlance& link) override;
+  [[nodiscard]] ConversationOutput close(std::string_view why) override;
+  [[nodiscard]] link::SessionCounters counters() const override { return session_.counters(); }
+  [[nodiscard]] std::string proof() const override { return {}; }
+
+ private:
+  [[nodiscard]] ConversationOutput carried(link::SessionOutput output, const Endpoint& to);
+
+  link::Session session_;
+  Endpoint peer_;  ///< of the session
+  Endpoint callee_;
+};
+
+}  // namespace palp::io

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/core/result.h"
+#include "common/link/telegram.h"
+
+namespace palp::io {
+
+/// What a site proves itself with and trusts: read once from a folder.
+///
+///     certificate.pem    its own certificate, which names its role
+///     key.pem            the private key of it
+///     authority.pem      whoever signs the certificates of both sites
+///     revoked.pem        optional: a revocation list of that authority
+///
+/// or, for a bench, `pre_shared_key.txt` alone: 64 hexadecimal digits, the same at both sites.
+/// Immutable after construction. Thread: made by any, then io's.
+class Credentials {
+ public:
+  /// The sentence names the file and what is wrong with it.
+  [[nodiscard]] static Result<std::unique_ptr<Credentials>> read(const std::string& folder,
+                                                                 link::Role role);
+  ~Credentials();
+  Credentials(const Credentials&) = delete;
+  Credentials& operator=(const Credentials&) = delete;
+
+  [[nodiscard]] link::Role role() const noexcept { return role_; }
+  /// For people: the name in the own certificate, or "a pre-shared key".
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+
+  /// The settings of a DTLS endpoint (an SSL_CTX): keeps OpenSSL's types out of this header.
+  struct Context;
+  [[nodiscard]] Context& context() const noexcept { return *context_; }
+
+ private:
+  Credentials(std::unique_ptr<Context> context, link::Role role, std::string name);
+
+  std::unique_ptr<Context> context_;
+  link::Role role_;
+  std::string name_;
+};
+
+/// The URI in a certificate's subject alternative names that says which site it is for.
+[[nodiscard]] std::string role_uri(link::Role role);
+
+}  // namespace palp::io
