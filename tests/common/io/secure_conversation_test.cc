@@ -1,0 +1,444 @@
+// Goal: what strangers, liars and a bad network can do to a session under keys.
+// Method: both conversations in one thread and virtual time, letters passed by hand; a real
+// handshake with real certificates at the beginning of each test.
+#include "common/io/secure_conversation.h"
+
+#include <algorithm>
+#include <deque>
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/core/random.h"
+#include "common/link/codec_protobuf.h"
+#include "common/link/link.h"
+#include "tests/common/io/keys_folder.h"
+#include "tests/common/io/loopback.h"
+
+namespace palp::io {
+namespace {
+
+using link::Role;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using test::KeysFolder;
+using testing::HasSubstr;
+
+const Endpoint kPatientAt = *resolve_endpoint("127.0.0.1:2000");
+const Endpoint kSurgeonAt = *resolve_endpoint("127.0.0.1:1000");
+const Endpoint kElsewhere = *resolve_endpoint("127.0.0.1:1001");
+
+link::SessionConfig session_of(Role role) {
+  return {.role = role, .settings_hash = 77, .coupling = "direct", .git = "abc"};
+}
+
+/// Datagrams that wait for a Link, and those it has sent.
+struct Wire {
+  std::deque<std::vector<std::byte>> in;
+  std::deque<std::vector<std::byte>> out;
+};
+
+class WireEnd final : public link::Transport {
+ public:
+  explicit WireEnd(Wire& wire) : wire_{wire} {}
+  bool send(std::span<const std::byte> datagram, TimePoint) noexcept override {
+    wire_.out.emplace_back(datagram.begin(), datagram.end());
+    return true;
+  }
+  std::optional<link::Datagram> receive(std::span<std::byte, link::kDatagramSizeMax> buffer,
+                                        TimePoint now) noexcept override {
+    if (wire_.in.empty()) return std::nullopt;
+    const auto bytes = std::move(wire_.in.front());
+    wire_.in.pop_front();
+    std::copy_n(bytes.begin(), std::min(bytes.size(), buffer.size()), buffer.begin());
+    return link::Datagram{bytes.size(), now};
+  }
+
+ private:
+  Wire& wire_;
+};
+
+/// A site's io thread without sockets, and its Link.
+struct Site {
+  Site(Role role, const Credentials& credentials, Duration rekey_after, std::uint64_t entropy)
+      : at{role == Role::Surgeon ? kSurgeonAt : kPatientAt},
+        conversation{{.session = session_of(role),
+                      .callee = role == Role::Surgeon ? kPatientAt : Endpoint{},
+                      .rekey_after = rekey_after},
+                     credentials,
+                     entropy} {}
+
+  void take(ConversationOutput output, TimePoint now) {
+    for (Letter& letter : output.letters) letters.push_back(std::move(letter));
+    if (output.moved_to) moved_to.push_back(*output.moved_to);
+    if (output.event) {
+      if (const auto* session = std::get_if<link::Established>(&*output.event)) {
+        established.push_back(*session);
+        (void)link.adopt({.transport = std::make_unique<WireEnd>(wire),
+                          .protection = std::move(output.protection),
+                          .send_connection = session->send_connection,
+                          .receive_connection = session->receive_connection,
+                          .session_id = session->session_id},
+                         now);
+      } else if (const auto* refusal = std::get_if<link::Refused>(&*output.event)) {
+        refused.push_back(refusal->text);
+      } else {
+        ++closed;
+        (void)link.adopt({}, now);
+      }
+    }
+    if (output.protection) {
+      ++rekeyed;
+      const link::Established& session = established.back();
+      (void)link.adopt({.transport = nullptr,
+                        .protection = std::move(output.protection),
+                        .send_connection = session.send_connection,
+                        .receive_connection = session.receive_connection,
+                        .session_id = session.session_id,
+                        .continues = true},
+                       now);
+    }
+  }
+  void tick(TimePoint now) {
+    (void)link.receive(now);
+    link.send({}, now);
+    const link::LinkHealth health = link.health(now);
+    take(conversation.tick(now,
+                           {.state = health.state,
+                            .session_id = health.session_id,
+                            .newest_number = health.newest_number,
+                            .key = health.key}),
+         now);
+  }
+
+  Endpoint at;
+  SecureConversation conversation;
+  link::Link link{{}, std::make_unique<link::ProtobufCodec>()};
+  Wire wire;
+  std::deque<Letter> letters;
+  std::vector<link::Established> established;
+  std::vector<std::string> refused;
+  std::vector<Endpoint> moved_to;
+  int closed{};
+  int rekeyed{};
+};
+
+/// Both sites and what lies between.
+class World {
+ public:
+  explicit World(const std::string& name, Duration rekey_after = std::chrono::hours{1})
+      : keys{name},
+        surgeon_credentials{keys.credentials(Role::Surgeon)},
+        patient_credentials{keys.credentials(Role::Patient)},
+        rekey_after_{rekey_after} {
+    start(Role::Surgeon);
+    start(Role::Patient);
+  }
+  void start(Role role) {
+    auto& site = role == Role::Surgeon ? surgeon : patient;
+    site =
+        std::make_unique<Site>(role,
+                               role == Role::Surgeon ? *surgeon_credentials : *patient_credentials,
+                               rekey_after_,
+                               ++started_);
+  }
+  void run(Duration span) {
+    for (const TimePoint end = now + span; now < end; now += milliseconds{1}) {
+      surgeon->tick(now);
+      patient->tick(now);
+      pass(*surgeon, *patient, surgeon_seen_at);
+      pass(*patient, *surgeon, kPatientAt);
+    }
+  }
+  void pass(Site& from, Site& to, const Endpoint& seen_at) {
+    for (auto& bytes : std::exchange(from.wire.out, {})) {
+      if (cut || (lose && lose())) continue;
+      if (from.at == kSurgeonAt) recorded.push_back(bytes);
+      // As the kernel does: rt's socket is connected to the peer's address, the others go to io.
+      const bool known = !(to.at == kPatientAt) || seen_at == patient_hears;
+      if (known) {
+        to.wire.in.push_back(std::move(bytes));
+      } else {
+        to.take(to.conversation.hear(bytes, seen_at, now), now);
+        follow();
+      }
+    }
+    for (Letter& letter : std::exchange(from.letters, {})) {
+      // Lost handshakes are repeated by OpenSSL's clock, which does not know this time.
+      if (cut || (lose && !looks_like_dtls(letter.bytes) && lose())) continue;
+      if (letter.to == elsewhere_watched) watched.push_back(letter.bytes);
+      if (!(letter.to == (to.at == kSurgeonAt ? surgeon_seen_at : to.at))) continue;
+      control.push_back(letter.bytes);
+      to.take(to.conversation.hear(letter.bytes, seen_at, now), now);
+      follow();
+    }
+  }
+  void follow() {
+    if (!patient->moved_to.empty()) patient_hears = patient->moved_to.back();
+  }
+  [[nodiscard]] LinkState state(const Site& site) const { return site.link.health(now).state; }
+  [[nodiscard]] bool live() const {
+    return state(*surgeon) == LinkState::Live && state(*patient) == LinkState::Live;
+  }
+
+  KeysFolder keys;
+  std::unique_ptr<Credentials> surgeon_credentials;
+  std::unique_ptr<Credentials> patient_credentials;
+  std::unique_ptr<Site> surgeon;
+  std::unique_ptr<Site> patient;
+  TimePoint now{};
+  bool cut{};
+  std::function<bool()> lose;
+  Endpoint surgeon_seen_at{kSurgeonAt};
+  Endpoint patient_hears{kSurgeonAt};  ///< whom the patient's data socket is connected to
+  Endpoint elsewhere_watched;
+  std::vector<std::vector<std::byte>> watched;   ///< letters to that address
+  std::vector<std::vector<std::byte>> recorded;  ///< telegrams of the surgeon
+  std::vector<std::vector<std::byte>> control;   ///< handshakes and control messages of both
+
+ private:
+  Duration rekey_after_;
+  std::uint64_t started_{};
+};
+
+TEST(SecureConversationTest, SitesMeetUnderKeysAndSayByeUnderThem) {
+  World world{"meet"};
+  world.run(milliseconds{300});
+  ASSERT_TRUE(world.live());
+  EXPECT_EQ(world.surgeon->established.size(), 1U);
+  EXPECT_EQ(world.surgeon->conversation.proof(), "test patient site");
+  EXPECT_EQ(world.patient->conversation.proof(), "test surgeon site");
+  world.surgeon->take(world.surgeon->conversation.close("enough"), world.now);
+  world.run(milliseconds{5});
+  EXPECT_EQ(world.patient->closed, 1);
+}
+
+TEST(SecureConversationTest, NewKeysCostNoTelegram) {
+  World world{"rekey", seconds{4}};
+  world.run(seconds{30});
+  EXPECT_TRUE(world.live());
+  EXPECT_GE(world.surgeon->rekeyed, 8) << "two handovers for each changeover";
+  EXPECT_GE(world.patient->rekeyed, 8);
+  for (const Site* site : {world.surgeon.get(), world.patient.get()}) {
+    const link::LinkHealth health = site->link.health(world.now);
+    EXPECT_EQ(health.lost + health.forged + health.replayed, 0U);
+    EXPECT_EQ(site->established.size(), 1U) << "the same session all the time";
+    EXPECT_GT(health.accepted, 29'000U);
+  }
+}
+
+TEST(SecureConversationTest, NewKeysComeAboutOverABadNetworkToo) {
+  World world{"rekey-loss", seconds{4}};
+  std::uint64_t index = 0;
+  world.lose = [&] { return random_bits(3, 4, index++) % 5 == 0; };
+  world.run(seconds{40});
+  EXPECT_GE(world.patient->rekeyed, 2);
+  world.lose = nullptr;
+  world.run(seconds{5});
+  EXPECT_TRUE(world.live());
+  EXPECT_EQ(world.patient->established.size(), 1U);
+}
+
+TEST(SecureConversationTest, ABlackoutOfTenSecondsKeepsTheSession) {
+  World world{"blackout"};
+  world.run(seconds{1});
+  world.cut = true;
+  world.run(seconds{10});
+  EXPECT_EQ(world.state(*world.patient), LinkState::Lost);
+  world.cut = false;
+  world.run(milliseconds{100});
+  EXPECT_TRUE(world.live());
+  world.run(seconds{20});
+  EXPECT_TRUE(world.live());
+  EXPECT_EQ(world.patient->established.size(), 1U);
+  EXPECT_EQ(world.patient->closed, 0);
+}
+
+TEST(SecureConversationTest, ABlackoutThatEndsTheSessionIsFollowedByANewOneWithNewKeys) {
+  World world{"long-blackout"};
+  world.run(seconds{1});
+  world.cut = true;
+  world.run(seconds{40});
+  world.cut = false;
+  world.run(seconds{20});  // a call made in the dark first has to be given up
+  EXPECT_TRUE(world.live());
+  EXPECT_EQ(world.patient->established.size(), 2U);
+}
+
+TEST(SecureConversationTest, ARestartedSiteIsANewSession) {
+  for (const Role role : {Role::Surgeon, Role::Patient}) {
+    World world{"restart"};
+    world.run(seconds{1});
+    world.start(role);
+    world.run(seconds{6});
+    EXPECT_TRUE(world.live());
+    Site& other = role == Role::Surgeon ? *world.patient : *world.surgeon;
+    EXPECT_EQ(other.established.size(), 2U);
+  }
+}
+
+TEST(SecureConversationTest, PlainHellosAndByesAreNotHeard) {
+  World world{"plain"};
+  world.run(seconds{1});
+  link::Session liar{session_of(Role::Surgeon), 9};
+  const auto hello = liar.tick(world.now, LinkState::Down, 0).datagrams.at(0);
+  const auto& session = world.patient->established.at(0);
+  const link::ControlBytes bye =
+      encode(link::Bye{.session_id = session.peer_session_id,
+                       .peer_session_id = world.surgeon->established.at(0).peer_session_id,
+                       .reason = link::ByeReason::Leaving,
+                       .text = "trust me"});
+  std::vector<std::byte> close(link::kHeaderSize + bye.size);
+  link::PlainProtection{}.seal({.type = link::PacketType::Close}, bye.view(), close);
+  for (const auto datagram : {hello.view(), std::span<const std::byte>{close}}) {
+    const auto out = world.patient->conversation.hear(datagram, kSurgeonAt, world.now);
+    EXPECT_FALSE(out.event);
+    EXPECT_TRUE(out.letters.empty());
+  }
+  world.run(seconds{1});
+  EXPECT_TRUE(world.live());
+}
+
+TEST(SecureConversationTest, AForgedAlertEndsNothing) {
+  World world{"alert"};
+  world.run(seconds{1});
+  for (const unsigned epoch : {0U, 1U}) {
+    test::Bytes alert = test::bytes_of(21, 15);  // fatal, handshake failure
+    const std::array<std::uint8_t, 15> bytes{
+        21, 254, 253, 0, static_cast<std::uint8_t>(epoch), 0, 0, 0, 0, 0, 9, 0, 2, 2, 40};
+    std::ranges::copy(std::as_bytes(std::span{bytes}), alert.begin());
+    (void)world.patient->conversation.hear(alert, kSurgeonAt, world.now);
+    (void)world.surgeon->conversation.hear(alert, kPatientAt, world.now);
+  }
+  world.run(seconds{1});
+  EXPECT_TRUE(world.live());
+  EXPECT_EQ(world.patient->established.size(), 1U);
+}
+
+TEST(SecureConversationTest, ARecordedConversationPlayedAgainChangesNothing) {
+  World world{"replay"};
+  world.run(seconds{1});
+  const auto control = world.control;
+  for (const auto& bytes : control) {
+    for (Site* site : {world.surgeon.get(), world.patient.get()}) {
+      const Endpoint& from = site->at == kSurgeonAt ? kPatientAt : kSurgeonAt;
+      auto out = site->conversation.hear(bytes, from, world.now);
+      EXPECT_FALSE(out.event);
+      EXPECT_FALSE(out.protection);
+      site->take(std::move(out), world.now);
+    }
+  }
+  world.run(seconds{1});
+  EXPECT_TRUE(world.live());
+  EXPECT_EQ(world.patient->established.size(), 1U);
+}
+
+TEST(SecureConversationTest, ASecondSurgeonWithAGoodCertificateIsToldThatThePatientIsBusy) {
+  World world{"second"};
+  world.run(seconds{1});
+  Site second{Role::Surgeon, *world.surgeon_credentials, std::chrono::hours{1}, 9};
+  for (int i = 0; i < 300; ++i, world.now += milliseconds{1}) {
+    second.take(second.conversation.tick(world.now, {}), world.now);
+    for (Letter& letter : std::exchange(second.letters, {})) {
+      auto out = world.patient->conversation.hear(letter.bytes, kElsewhere, world.now);
+      EXPECT_FALSE(out.protection);
+      for (Letter& answer : out.letters) {
+        if (!(answer.to == kElsewhere)) continue;
+        second.take(second.conversation.hear(answer.bytes, kPatientAt, world.now), world.now);
+      }
+    }
+    world.surgeon->tick(world.now);
+    world.patient->tick(world.now);
+    world.pass(*world.surgeon, *world.patient, kSurgeonAt);
+    world.pass(*world.patient, *world.surgeon, kPatientAt);
+  }
+  EXPECT_TRUE(world.live());
+  EXPECT_TRUE(second.established.empty());
+  ASSERT_FALSE(second.refused.empty());
+  EXPECT_THAT(second.refused[0], HasSubstr("busy"));
+}
+
+TEST(RoamingTest, ThePatientFollowsTheSurgeonToANewAddress) {
+  World world{"roam"};
+  world.run(seconds{1});
+  world.surgeon_seen_at = kElsewhere;
+  world.run(milliseconds{20});
+  ASSERT_EQ(world.patient->moved_to.size(), 1U);
+  EXPECT_TRUE(world.patient->moved_to[0] == kElsewhere);
+  world.run(seconds{1});
+  EXPECT_TRUE(world.live());
+  EXPECT_EQ(world.patient->established.size(), 1U) << "no new session, no new handshake";
+  EXPECT_EQ(world.patient->rekeyed, 0);
+}
+
+TEST(RoamingTest, AnOldTelegramFromElsewhereMovesNobody) {
+  World world{"spoof"};
+  world.run(seconds{1});
+  world.patient->tick(world.now);  // takes what was on the way
+  for (const auto& bytes : world.recorded) {
+    const auto out = world.patient->conversation.hear(bytes, kElsewhere, world.now);
+    EXPECT_TRUE(out.letters.empty());
+    EXPECT_FALSE(out.moved_to);
+  }
+}
+
+TEST(RoamingTest, ANewTelegramTakenOffTheWayMovesNobodyAndDrawsLittle) {
+  World world{"steal"};
+  world.run(seconds{1});
+  world.elsewhere_watched = kElsewhere;
+  std::size_t in = 0;
+  // Somebody on the way holds each telegram back and sends it from elsewhere, but cannot answer.
+  for (int i = 0; i < 2000; ++i, world.now += milliseconds{1}) {
+    world.surgeon->tick(world.now);
+    world.patient->tick(world.now);
+    if (i < 3) {
+      for (auto& bytes : std::exchange(world.surgeon->wire.out, {})) {
+        in += bytes.size();
+        world.patient->take(world.patient->conversation.hear(bytes, kElsewhere, world.now),
+                            world.now);
+      }
+    }
+    world.pass(*world.surgeon, *world.patient, kSurgeonAt);
+    world.pass(*world.patient, *world.surgeon, kPatientAt);
+  }
+  std::size_t out = 0;
+  for (const auto& bytes : world.watched) out += bytes.size();
+  EXPECT_GT(out, 0U);
+  EXPECT_LE(out, 3 * in);
+  EXPECT_TRUE(world.patient->moved_to.empty());
+  EXPECT_TRUE(world.live());
+}
+
+TEST(RoamingTest, AnAnswerFromAnotherPlaceThanTheQuestionWentToMovesNobody) {
+  World world{"answer"};
+  world.run(seconds{1});
+  world.elsewhere_watched = kElsewhere;
+  world.surgeon->tick(world.now);
+  const auto stolen = world.surgeon->wire.out.back();
+  world.surgeon->wire.out.clear();
+  world.patient->take(world.patient->conversation.hear(stolen, kElsewhere, world.now), world.now);
+  ASSERT_EQ(world.patient->letters.size(), 1U);
+  // The question reaches the surgeon after all, who answers it from where he is.
+  auto answer =
+      world.surgeon->conversation.hear(world.patient->letters[0].bytes, kPatientAt, world.now);
+  ASSERT_EQ(answer.letters.size(), 1U);
+  const auto out = world.patient->conversation.hear(answer.letters[0].bytes, kSurgeonAt, world.now);
+  EXPECT_FALSE(out.moved_to);
+}
+
+TEST(FailureTest, AForeignCertificateIsToldOnceAndNotForEachAttempt) {
+  World world{"told"};
+  const KeysFolder foreign{"told-foreign"};
+  const auto credentials = foreign.credentials(Role::Surgeon);
+  world.surgeon = std::make_unique<Site>(Role::Surgeon, *credentials, std::chrono::hours{1}, 9);
+  world.run(seconds{12});
+  EXPECT_TRUE(world.patient->established.empty());
+  ASSERT_FALSE(world.patient->refused.empty());
+  EXPECT_THAT(world.patient->refused[0], HasSubstr("127.0.0.1:1000"));
+  EXPECT_LE(world.patient->refused.size(), 3U);
+  EXPECT_THAT(world.surgeon->refused.at(0), HasSubstr("certificate"));
+}
+
+}  // namespace
+}  // namespace palp::io
