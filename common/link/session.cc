@@ -9,6 +9,8 @@
 namespace palp::link {
 namespace {
 
+constexpr Duration kRefusalPause = std::chrono::seconds{10};
+
 enum class Stream : std::uint64_t { Id = 1, Connection, SessionId };
 
 std::uint64_t draw(std::uint64_t seed, Stream stream, std::uint64_t index) noexcept {
@@ -158,23 +160,23 @@ void Session::on_hello(const Hello& hello, TimePoint now, SessionOutput& out) {
       ++counters_.foreign;
       return;
     }
-    refuse(hello, ByeReason::Mismatch, *text, out);
+    refuse(hello, ByeReason::Mismatch, *text, now, out);
     return;
   }
   if (config_.role == Role::Patient) {
-    answer_as_patient(hello, out);
+    answer_as_patient(hello, now, out);
   } else {
     hear_as_surgeon(hello, now, out);
   }
 }
 
-void Session::answer_as_patient(const Hello& hello, SessionOutput& out) {
+void Session::answer_as_patient(const Hello& hello, TimePoint now, SessionOutput& out) {
   if (present_ && hello.session_id == present_->peer) {
     out.datagrams.push_back(hello_to(*present_));
     return;
   }
   if (link_works()) {
-    refuse(hello, ByeReason::Busy, "the patient site is busy with another surgeon site", out);
+    refuse(hello, ByeReason::Busy, "the patient site is busy with another surgeon site", now, out);
     return;
   }
   if (hello.peer_session_id == offered_ && hello.connection_id != 0) {
@@ -204,6 +206,7 @@ void Session::hear_as_surgeon(const Hello& hello, TimePoint now, SessionOutput& 
 void Session::refuse(const Hello& hello,
                      ByeReason reason,
                      const std::string& text,
+                     TimePoint now,
                      SessionOutput& out) {
   out.datagrams.push_back(framed(PacketType::Close,
                                  encode(Bye{.session_id = offered_,
@@ -214,6 +217,9 @@ void Session::refuse(const Hello& hello,
   stopped_ = stopped_ || final;
   if (hello.session_id == last_refused_) return;  // it repeats itself; people were told
   last_refused_ = hello.session_id;
+  // An id costs nothing: who sends ever new ones must not fill the log.
+  if (!final && refused_at_ && now - *refused_at_ < kRefusalPause) return;
+  refused_at_ = now;
   out.event = Refused{text, final};
 }
 

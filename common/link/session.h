@@ -95,10 +95,14 @@ class Session {
   };
 
   void on_hello(const Hello& hello, TimePoint now, SessionOutput& out);
-  void answer_as_patient(const Hello& hello, SessionOutput& out);
+  void answer_as_patient(const Hello& hello, TimePoint now, SessionOutput& out);
   void hear_as_surgeon(const Hello& hello, TimePoint now, SessionOutput& out);
   void on_bye(const Bye& bye, SessionOutput& out);
-  void refuse(const Hello& hello, ByeReason reason, const std::string& text, SessionOutput& out);
+  void refuse(const Hello& hello,
+              ByeReason reason,
+              const std::string& text,
+              TimePoint now,
+              SessionOutput& out);
   void establish(const Hello& hello, SessionOutput& out);
   void forget_session();
   [[nodiscard]] std::optional<std::string> mismatch(const Hello& hello) const;
@@ -115,11 +119,12 @@ class Session {
   std::uint64_t offered_;        ///< our id for the next session
   std::optional<Pair> present_;  ///< the session there is
   std::string peer_git_;
-  LinkState link_state_{};        ///< of the present session
-  bool link_has_session_{};       ///< our Link was seen in the present session
-  bool stopped_{};                ///< refused for good, or closed by us
-  std::uint64_t last_refused_{};  ///< peer id of which people were told
-  std::uint64_t next_number_{};   ///< of control datagrams
+  LinkState link_state_{};               ///< of the present session
+  bool link_has_session_{};              ///< our Link was seen in the present session
+  bool stopped_{};                       ///< refused for good, or closed by us
+  std::uint64_t last_refused_{};         ///< peer id of which people were told
+  std::optional<TimePoint> refused_at_;  ///< when people were told last
+  std::uint64_t next_number_{};          ///< of control datagrams
   std::optional<TimePoint> next_hello_at_;
   Duration repeat_{};
   SessionCounters counters_;

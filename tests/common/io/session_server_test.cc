@@ -4,11 +4,13 @@
 #include "common/io/session_server.h"
 
 #include <atomic>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/link/codec_protobuf.h"
+#include "tests/common/io/keys_folder.h"
 #include "tests/common/io/loopback.h"
 
 namespace palp::io {
@@ -65,6 +67,8 @@ class Relay {
   [[nodiscard]] std::uint16_t port() const { return front_.local().port(); }
   void lead_to(const Endpoint& patient) { patient_ = patient; }
   void cut() { patient_ = {}; }
+  /// As a NAT that forgets: the patient sees another port from now on.
+  void rebind() { back_ = test::PlainSocket{}; }
   void pump() {
     while (auto taken = front_.take()) {
       surgeon_ = taken->from;
@@ -263,6 +267,82 @@ TEST(SessionServerTest, FloodOfJunkBreaksNothing) {
   EXPECT_GT(patient.server.noise().malformed, 0U);
   EXPECT_EQ(patient.count(SessionNews::Kind::Established), 1);
   EXPECT_EQ(surgeon.count(SessionNews::Kind::Established), 1);
+}
+
+/// A site that proves itself.
+SessionServerConfig secure_config(Role role,
+                                  std::uint16_t port,
+                                  const Credentials& credentials,
+                                  Duration rekey_after = std::chrono::hours{1}) {
+  SessionServerConfig config = config_of(role, port, "direct");
+  config.credentials = &credentials;
+  config.rekey_after = rekey_after;
+  return config;
+}
+
+TEST(SecureSessionTest, SitesMeetAndReplaceTheirKeys) {
+  const test::KeysFolder keys{"server"};
+  const auto surgeon_keys = keys.credentials(Role::Surgeon);
+  const auto patient_keys = keys.credentials(Role::Patient);
+  Site patient{secure_config(Role::Patient, 0, *patient_keys)};
+  const std::uint16_t port = patient.server.local().port();
+  Site surgeon{secure_config(Role::Surgeon, port, *surgeon_keys, milliseconds{100})};
+  ASSERT_TRUE(meet(surgeon, patient));
+  EXPECT_THAT(patient.news.at(0).sentence, HasSubstr("proven by test surgeon site"));
+  std::set<std::uint8_t> ids;
+  ASSERT_TRUE(run_until({&surgeon, &patient}, nullptr, [&] {
+    ids.insert(patient.link.health(SteadyClock{}.now()).key);
+    return ids.size() >= 3;
+  }));
+  EXPECT_EQ(patient.link.health(SteadyClock{}.now()).forged, 0U);
+  EXPECT_EQ(patient.count(SessionNews::Kind::Established), 1);
+  surgeon.server.close("done");
+  EXPECT_TRUE(run_until({&patient}, nullptr, [&] { return patient.state == LinkState::Down; }));
+}
+
+TEST(SecureSessionTest, TheSessionSurvivesTwentyRebindingsOfTheOutsidePort) {
+  const test::KeysFolder keys{"rebind"};
+  const auto surgeon_keys = keys.credentials(Role::Surgeon);
+  const auto patient_keys = keys.credentials(Role::Patient);
+  Site patient{secure_config(Role::Patient, 0, *patient_keys)};
+  Relay relay{patient.server.local()};
+  Site surgeon{secure_config(Role::Surgeon, relay.port(), *surgeon_keys)};
+  ASSERT_TRUE(meet(surgeon, patient, &relay));
+  for (int i = 1; i <= 20; ++i) {
+    relay.rebind();
+    const std::uint64_t before = patient.accepted;
+    ASSERT_TRUE(run_until({&surgeon, &patient},
+                          &relay,
+                          [&] {
+                            return patient.accepted > before + 20 &&
+                                   patient.count(SessionNews::Kind::Moved) == i;
+                          }))
+        << "rebinding " << i;
+  }
+  EXPECT_TRUE(patient.live() && surgeon.live());
+  EXPECT_EQ(patient.count(SessionNews::Kind::Established), 1) << "no new session";
+}
+
+TEST(SecureSessionTest, APlainSurgeonIsNotHeard) {
+  const test::KeysFolder keys{"plain"};
+  const auto patient_keys = keys.credentials(Role::Patient);
+  Site patient{secure_config(Role::Patient, 0, *patient_keys)};
+  Site surgeon{Role::Surgeon, patient.server.local().port()};
+  ASSERT_TRUE(
+      run_until({&surgeon, &patient}, nullptr, [&] { return patient.server.noise().foreign > 3; }));
+  EXPECT_TRUE(patient.news.empty());
+  EXPECT_TRUE(surgeon.news.empty());
+}
+
+TEST(SecureSessionTest, ASecureSurgeonDoesNotStoopToAPlainPatient) {
+  const test::KeysFolder keys{"mixed"};
+  const auto surgeon_keys = keys.credentials(Role::Surgeon);
+  Site patient{Role::Patient, 0};
+  Site surgeon{secure_config(Role::Surgeon, patient.server.local().port(), *surgeon_keys)};
+  ASSERT_TRUE(run_until(
+      {&surgeon, &patient}, nullptr, [&] { return patient.server.noise().malformed > 3; }));
+  EXPECT_TRUE(patient.news.empty());
+  EXPECT_TRUE(surgeon.news.empty());
 }
 
 TEST(SessionServerTest, DifferentSettingsAreRefusedForGood) {

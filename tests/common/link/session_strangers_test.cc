@@ -33,6 +33,22 @@ TEST(SessionStrangersTest, ASecondSurgeonIsRefusedWhileTheLinkHolds) {
   }
 }
 
+TEST(SessionStrangersTest, EverNewIdsOfRefusedSurgeonsDoNotFillTheLog) {
+  Town town;
+  int told = 0;
+  for (std::uint64_t id = 1; id <= 30'000; ++id) {
+    Hello hello;
+    hello.role = Role::Surgeon;
+    hello.session_id = id;
+    hello.coupling = "another";
+    const Bytes bytes = datagram_of(PacketType::Control, encode(hello));
+    town.now += 1ms;
+    told += town.patient->session.on_datagram(bytes, town.now).event ? 1 : 0;
+  }
+  EXPECT_GE(told, 1);
+  EXPECT_LE(told, 4) << "in 30 s";
+}
+
 TEST(SessionStrangersTest, ByeOfAStrangerEndsNothing) {
   Town town;
   town.run(1s);
