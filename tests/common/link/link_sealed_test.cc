@@ -149,6 +149,26 @@ TEST(SealedLinkTest, SpoiledTelegramsCountAsForgedAndChangeNothing) {
   EXPECT_EQ(health.state, LinkState::Lost);
 }
 
+TEST(SealedLinkTest, KeysForASessionThatHasEndedComeBackUnused) {
+  SealedCouple couple;
+  couple.run(100ms);
+  couple.pipe.up->fate = kCut;
+  couple.pipe.down->fate = kCut;
+  couple.run(31s);
+  ASSERT_EQ(couple.patient_health().session_id, 0U);
+  const Handover retired = couple.patient.link.adopt(
+      {.transport = nullptr,
+       .protection = std::make_unique<AeadProtection>(some_keys(1, Role::Patient, 1).data),
+       .send_connection = 2,
+       .receive_connection = 3,
+       .session_id = 1,
+       .continues = true},
+      couple.now);
+  EXPECT_NE(retired.protection, nullptr) << "its numbers would begin at 0 again";
+  couple.run(5ms);
+  EXPECT_EQ(couple.patient_health().session_id, 0U);
+}
+
 TEST(SealedLinkTest, AForgedJumpAheadDoesNotMoveTheWindow) {
   SealedCouple couple;
   couple.run(100ms);

@@ -1,0 +1,336 @@
+// What security costs and stands, with numbers:
+//   security_bench cost               ns to seal and open a telegram; bytes it adds
+//   security_bench handshakes N L R   N handshakes, loss L (share), round trip R (ms)
+//   security_bench flood S            each kind of junk for S seconds at 100,000/s, from the peer's
+//                                     own address, beside a 1 kHz session of two sites
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "common/core/random.h"
+#include "common/io/associations.h"
+#include "common/io/handover_desk.h"
+#include "common/io/periodic_thread.h"
+#include "common/io/session_server.h"
+#include "common/io/steady_clock.h"
+#include "common/link/aead_protection.h"
+#include "common/link/codec_protobuf.h"
+#include "common/link/link.h"
+#include "tests/common/io/keys_folder.h"
+#include "tests/common/io/loopback.h"
+#include "tests/common/link/some_keys.h"
+
+namespace palp::bench {
+namespace {
+
+using io::Endpoint;
+using link::Role;
+using std::chrono::milliseconds;
+
+double ms(Duration span) { return seconds(span) * 1e3; }
+
+int cost() {
+  link::AeadProtection surgeon{link::some_keys(1, Role::Surgeon).data};
+  link::AeadProtection patient{link::some_keys(1, Role::Patient).data};
+  link::PlainProtection plain_protection;
+  const std::array<std::byte, 140> plain{};
+  std::array<std::byte, link::kDatagramSizeMax> datagram{};
+  std::array<std::byte, link::kDatagramSizeMax> room{};
+  const io::SteadyClock clock;
+  constexpr std::uint64_t kCount = 1'000'000;
+  const auto per_packet = [&](TimePoint began) {
+    return seconds(clock.now() - began) * 1e9 / static_cast<double>(kCount);
+  };
+  std::size_t size = 0;
+  TimePoint began = clock.now();
+  for (std::uint64_t n = 0; n < kCount; ++n) {
+    size = surgeon.seal({.connection = 1, .number = n}, plain, datagram);
+  }
+  const double sealing = per_packet(began);
+  began = clock.now();
+  for (std::uint64_t n = 0; n < kCount; ++n)
+    (void)patient.open(std::span{datagram}.first(size), room);
+  const double opening = per_packet(began);
+  datagram[30] ^= std::byte{1};
+  began = clock.now();
+  for (std::uint64_t n = 0; n < kCount; ++n)
+    (void)patient.open(std::span{datagram}.first(size), room);
+  const double refusing = per_packet(began);
+  std::printf("seal %.0f ns, open %.0f ns, refuse a forged one %.0f ns (140 B); %zu B added\n",
+              sealing,
+              opening,
+              refusing,
+              size - plain.size());
+  return 0;
+}
+
+/// One surgeon and one patient with a network of their own between them.
+struct Trial {
+  Trial(const io::Credentials& surgeon_keys, const io::Credentials& patient_keys, std::uint64_t id)
+      : surgeon{surgeon_keys}, patient{patient_keys}, seed{id} {}
+  io::Associations surgeon;
+  io::Associations patient;
+  std::uint64_t seed;
+  std::uint64_t sent{};
+  std::multimap<TimePoint, std::pair<bool, std::vector<std::byte>>> under_way;  ///< true: up
+  std::optional<Duration> took;
+  std::size_t bytes_up{};
+  std::size_t bytes_down{};
+};
+
+int handshakes(int count, double loss, Duration round_trip) {
+  const io::test::KeysFolder keys{"bench"};
+  const auto surgeon_keys = keys.credentials(Role::Surgeon);
+  const auto patient_keys = keys.credentials(Role::Patient);
+  const Endpoint surgeon_at = *io::resolve_endpoint("127.0.0.1:1000");
+  const Endpoint patient_at = *io::resolve_endpoint("127.0.0.1:2000");
+  const io::SteadyClock clock;
+  std::vector<double> all;
+  constexpr int kAtOnce = 20;
+  for (int done = 0; done < count; done += kAtOnce) {
+    std::vector<std::unique_ptr<Trial>> trials;
+    for (int i = done; i < std::min(count, done + kAtOnce); ++i) {
+      trials.push_back(
+          std::make_unique<Trial>(*surgeon_keys, *patient_keys, static_cast<std::uint64_t>(i) + 1));
+    }
+    const TimePoint began = clock.now();
+    int open = static_cast<int>(trials.size());
+    while (open > 0 && clock.now() - began < std::chrono::seconds{30}) {
+      for (auto& trial : trials) {
+        if (trial->took) continue;
+        const TimePoint now = clock.now();
+        trial->surgeon.call(patient_at, now);  // does nothing while one is running
+        trial->surgeon.tick(now);
+        trial->patient.tick(now);
+        const auto post = [&](std::vector<io::Letter> letters, bool up) {
+          for (io::Letter& letter : letters) {
+            (up ? trial->bytes_up : trial->bytes_down) += letter.bytes.size();
+            const double draw =
+                static_cast<double>(random_bits(trial->seed, 5, trial->sent++) >> 11U) * 0x1p-53;
+            if (draw < loss) continue;
+            trial->under_way.emplace(now + round_trip / 2, std::pair{up, std::move(letter.bytes)});
+          }
+        };
+        post(trial->surgeon.take_letters(), true);
+        post(trial->patient.take_letters(), false);
+        while (!trial->under_way.empty() && trial->under_way.begin()->first <= now) {
+          auto first = trial->under_way.extract(trial->under_way.begin());
+          const auto& [up, bytes] = first.mapped();
+          (up ? trial->patient : trial->surgeon).hear(bytes, up ? surgeon_at : patient_at, now);
+        }
+        if (!trial->surgeon.take_made().empty()) {
+          trial->took = now - began;
+          all.push_back(ms(*trial->took));
+          --open;
+        }
+      }
+      std::this_thread::sleep_for(std::chrono::microseconds{200});
+    }
+  }
+  std::sort(all.begin(), all.end());
+  if (all.empty()) return 1;
+  const auto at = [&](double share) {
+    return all[std::min(all.size() - 1,
+                        static_cast<std::size_t>(share * static_cast<double>(all.size())))];
+  };
+  std::printf(
+      "%zu of %d handshakes, loss %.0f %%, round trip %.0f ms: p50 %.0f ms, p90 %.0f ms, "
+      "worst %.0f ms\n",
+      all.size(),
+      count,
+      loss * 100,
+      ms(round_trip),
+      at(0.5),
+      at(0.9),
+      all.back());
+  return all.size() == static_cast<std::size_t>(count) ? 0 : 1;
+}
+
+long resident_kb() {
+  std::ifstream file{"/proc/self/statm"};
+  long total = 0;
+  long resident = 0;
+  file >> total >> resident;
+  return resident * (sysconf(_SC_PAGESIZE) / 1024);
+}
+
+/// A site in real time: what a program makes of it, without a node.
+struct Site {
+  Site(Role role, std::uint16_t port, const io::Credentials& credentials)
+      : server{config_of(role, port, credentials), desk} {}
+  static io::SessionServerConfig config_of(Role role,
+                                           std::uint16_t port,
+                                           const io::Credentials& credentials) {
+    io::SessionServerConfig config;
+    config.session = {.role = role, .settings_hash = 1, .coupling = "direct", .git = ""};
+    config.address = {.host = "127.0.0.1", .port = port};
+    config.priority = 70;
+    config.credentials = &credentials;
+    return config;
+  }
+  void start() {
+    rt = std::make_unique<io::PeriodicThread>("bench-rt", io::LoopConfig{}, [this](TimePoint now) {
+      desk.serve(link, now);
+      (void)link.receive(now);
+      link.send({}, now);
+      health.put(link.health(now));
+    });
+  }
+  io::HandoverDesk desk;
+  link::Link link{{}, std::make_unique<link::ProtobufCodec>()};
+  io::SessionServer server;
+  Mailbox<link::LinkHealth> health;  ///< writer: rt, reader: main
+  std::unique_ptr<io::PeriodicThread> rt;
+};
+
+/// The way between the sites: passes all, keeps the newest telegram, and sends junk from the
+/// address that the patient's socket is connected to.
+class Road {
+ public:
+  explicit Road(const Endpoint& patient)
+      : patient_{patient}, thread_{[this](const auto& stop) { run(stop); }} {}
+  [[nodiscard]] std::uint16_t port() const { return front_.local().port(); }
+  void flood(int kind) { kind_ = kind; }
+  [[nodiscard]] std::uint64_t junk() const { return junk_; }
+
+ private:
+  void run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      while (auto taken = front_.take()) {
+        surgeon_ = taken->from;
+        if (kind_ == 0 && !taken->bytes.empty()) {  // nobody reads them then
+          if (taken->bytes[0] == std::byte{0x80}) telegram_ = taken->bytes;
+          if (taken->bytes[0] == std::byte{22} && hello_.empty()) hello_ = taken->bytes;
+        }
+        back_.send_to(patient_, taken->bytes);
+      }
+      while (auto taken = back_.take()) {
+        if (surgeon_.valid()) front_.send_to(surgeon_, taken->bytes);
+      }
+      std::this_thread::sleep_for(std::chrono::microseconds{50});
+    }
+  }
+  /// A stranger with little priority, as one on another machine would be.
+  void make_junk(const std::stop_token& stop) {
+    (void)setpriority(PRIO_PROCESS, 0, 10);
+    const io::SteadyClock clock;
+    TimePoint next = clock.now();
+    while (!stop.stop_requested()) {
+      if (kind_ == 0) {
+        std::this_thread::sleep_for(milliseconds{1});
+        next = clock.now();
+      } else if (clock.now() >= next) {
+        next += std::chrono::microseconds{200};
+        for (int i = 0; i < 20; ++i) send_junk();
+      } else {
+        std::this_thread::sleep_until(std::chrono::steady_clock::now() +
+                                      std::chrono::microseconds{50});
+      }
+    }
+  }
+  void send_junk() {
+    std::vector<std::byte> bytes = kind_ == 5 ? hello_ : telegram_;
+    const std::uint64_t n = junk_++;
+    if (bytes.size() < 60) return;
+    if (kind_ == 1) {  // random
+      for (std::size_t i = 0; i < bytes.size(); ++i) {
+        bytes[i] = static_cast<std::byte>(random_bits(n, 1, i / 8) >> (i % 8 * 8));
+      }
+    } else if (kind_ == 2) {  // right header, far number, random content
+      bytes[12] = std::byte{1};
+      for (std::size_t i = 16; i < bytes.size(); ++i) {
+        bytes[i] = static_cast<std::byte>(random_bits(n, 1, i / 8) >> (i % 8 * 8));
+      }
+    } else if (kind_ == 4) {  // a bit flipped in a telegram of the future
+      bytes[12] = std::byte{1};
+      const std::size_t bit = random_bits(n, 2, 0) % (8 * (bytes.size() - 16));
+      bytes[16 + bit / 8] ^= static_cast<std::byte>(1U << bit % 8);
+    }  // 3: replayed, 5: ClientHello, as they are
+    back_.send_to(patient_, bytes);
+  }
+  io::test::PlainSocket front_;
+  io::test::PlainSocket back_;
+  Endpoint patient_;
+  Endpoint surgeon_;
+  std::vector<std::byte> telegram_;
+  std::vector<std::byte> hello_;
+  std::atomic<int> kind_{};
+  std::atomic<std::uint64_t> junk_{};
+  std::jthread thread_;
+  std::jthread stranger_;
+};
+
+int flood(int span_s) {
+  const io::test::KeysFolder keys{"flood"};
+  const auto surgeon_keys = keys.credentials(Role::Surgeon);
+  const auto patient_keys = keys.credentials(Role::Patient);
+  Site patient{Role::Patient, 0, *patient_keys};
+  Road road{patient.server.local()};
+  Site surgeon{Role::Surgeon, road.port(), *surgeon_keys};
+  const std::array<const char*, 6> names{
+      "none", "random", "right header", "replayed", "bit flipped", "ClientHello"};
+  patient.start();
+  surgeon.start();
+  while (patient.health.get().state != LinkState::Live) std::this_thread::yield();
+  int failures = 0;
+  std::printf("kind           junk/s   sent  accepted  share    missed/1000  p99.9 us   RSS +kB\n");
+  for (int kind = 0; kind <= 5; ++kind) {
+    const link::LinkHealth before = patient.health.get();
+    const link::LinkHealth sent_before = surgeon.health.get();
+    const io::LoopProgress loop_before = patient.rt->progress();
+    const long memory = resident_kb();
+    const std::uint64_t junk = road.junk();
+    road.flood(kind);
+    std::this_thread::sleep_for(std::chrono::seconds{span_s});
+    road.flood(0);
+    std::this_thread::sleep_for(milliseconds{200});
+    const link::LinkHealth after = patient.health.get();
+    const io::LoopProgress loop = patient.rt->progress();
+    const auto sent = static_cast<double>(surgeon.health.get().sent - sent_before.sent);
+    const auto taken =
+        static_cast<double>(after.accepted + after.late - before.accepted - before.late);
+    const double share = taken / sent;
+    const double missed = 1000.0 * static_cast<double>(loop.missed - loop_before.missed) /
+                          static_cast<double>(loop.ticks - loop_before.ticks);
+    std::printf("%-13s %7.0f %6.0f %9.0f  %.5f  %10.2f   %s  %7ld\n",
+                names[static_cast<std::size_t>(kind)],
+                static_cast<double>(road.junk() - junk) / span_s,
+                sent,
+                taken,
+                share,
+                missed,
+                "-",
+                resident_kb() - memory);
+    failures += share < 0.999 || after.state != LinkState::Live ? 1 : 0;
+  }
+  surgeon.server.close("done");
+  patient.server.close("done");
+  patient.rt->stop();
+  surgeon.rt->stop();
+  return failures == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace palp::bench
+
+int main(int argc, char** argv) {
+  const std::string_view what = argc > 1 ? argv[1] : "cost";
+  if (what == "handshakes" && argc == 5) {
+    return palp::bench::handshakes(
+        std::atoi(argv[2]), std::atof(argv[3]), std::chrono::milliseconds{std::atoi(argv[4])});
+  }
+  if (what == "flood" && argc == 3) return palp::bench::flood(std::atoi(argv[2]));
+  return palp::bench::cost();
+}
