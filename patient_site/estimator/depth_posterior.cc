@@ -5,382 +5,352 @@
 #include <cmath>
 #include <limits>
 
-#include "common/core/check.h"
-
 namespace palp::estimator {
 namespace {
 
-constexpr double kStep = 25e-6;   // [m], of the tables
-constexpr double kBin = 0.1e-3;   // [m], points closer than this are one
-constexpr double kNear = 0.3e-3;  // [m], how far off the surface may be
-constexpr std::size_t kDepthNodes = 40;
-constexpr std::size_t kRadiusNodes = 9;
-constexpr std::size_t kRatioNodes = 5;
-constexpr std::size_t kFine = 8;  // depths between two nodes, when summing
-constexpr std::size_t kFineRadius = 8;
-constexpr std::size_t kFineRatio = 3;
-constexpr double kDeepest = 4.05e-3;  // [m], of the points: the filters' share is known to there
-constexpr std::size_t kManyTables = 500;  // from here the surface is sought with
-constexpr std::size_t kStride = 7;        // one in so many
-constexpr double kNegligible = 40;        // [-], below the best log-likelihood
-constexpr double kForgotten = 2000;       // [-], the same between coarse nodes
-constexpr double kShowing = 5e-3;         // [m], radius of which "excluded" speaks
-constexpr double kExcluded = 3;           // [-], log of 20
+constexpr std::size_t kRadiusCells = 6;  // to begin with
+constexpr std::size_t kEffectCells = 4;
+constexpr std::size_t kLinesMax = 700;  // a bound on the time
+constexpr double kReach = 4.5;          // [-], standard deviations below the best: forgotten
+constexpr double kFine = 0.7;           // [-], standard deviations to a cell's edge: fine enough
+constexpr double kCaution = 1.4;        // [-], the information changes within a cell
+constexpr std::size_t kScan = 12;       // depths looked at first
+constexpr int kSearchSteps = 24;
+constexpr double kPeakExact = 0.01;   // [-], of the log-likelihood
+constexpr double kNegligible = 10;    // [-], log-likelihood below a line's best: its ends
+constexpr std::size_t kDepths = 21;   // of one line, summed
+constexpr double kShowing = 5e-3;     // [m], radius of which "excluded" speaks
+constexpr double kShowingRatio = 10;  // [-], and how much stiffer it is at least
+constexpr double kExcluded = 3;       // [-], log of 20
 
-/// n nodes of [low, high], evenly in the logarithm; one if the ends are equal.
-std::vector<double> log_nodes(double low, double high, std::size_t count) {
-  if (!(high > low * (1 + 1e-9))) return {low};
-  std::vector<double> out;
-  for (std::size_t i = 0; i < count; ++i) {
-    out.push_back(low *
-                  std::pow(high / low, static_cast<double>(i) / static_cast<double>(count - 1)));
-  }
-  return out;
-}
-
-/// Values on `count` even steps, made `fine` times denser by Catmull-Rom cubics.
-std::vector<double> denser(const std::vector<double>& values, std::size_t fine) {
-  if (values.size() == 1) return values;
-  std::vector<double> out;
-  const auto at = [&](std::ptrdiff_t i) {
-    const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
-    if (i < 0) return 2 * values[0] - values[1];
-    if (i > last) return 2 * values[values.size() - 1] - values[values.size() - 2];
-    return values[static_cast<std::size_t>(i)];
-  };
-  for (std::size_t cell = 0; cell + 1 < values.size(); ++cell) {
-    const auto i = static_cast<std::ptrdiff_t>(cell);
-    const double a = at(i - 1);
-    const double b = at(i);
-    const double c = at(i + 1);
-    const double d = at(i + 2);
-    for (std::size_t k = 0; k < fine; ++k) {
-      const double t = static_cast<double>(k) / static_cast<double>(fine);
-      out.push_back(b + 0.5 * t *
-                            (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a))));
+/// Maximum of `value` between the first and the last of three places, the middle one above both:
+/// parabolas, golden sections where they lead nowhere.
+struct Peak {
+  double at{};
+  double value{};
+};
+template <typename Value>
+Peak climb(std::array<Peak, 3> bracket, const Value& value) {
+  for (int i = 0; i < kSearchSteps; ++i) {
+    auto& [left, middle, right] = bracket;
+    const double a = middle.at - left.at;
+    const double b = right.at - middle.at;
+    const double rise = (middle.value - left.value) / a;
+    const double fall = (middle.value - right.value) / b;
+    const double curvature = (rise + fall) / (a + b);  // half of it, negative
+    // Vertex of the parabola.
+    double step = curvature > 0 ? 0.5 * (rise * b - fall * a) / (rise + fall) : 0;
+    const double gain = curvature * step * step;
+    const bool exact =
+        gain < kPeakExact && std::max(left.value, right.value) > middle.value - 1 / kPeakExact;
+    if (exact) return {middle.at, middle.value};
+    const bool slow = std::abs(step) < 0.02 * std::min(a, b);
+    if (slow) step = 0.3 * (a > b ? -a : b);
+    if (!(step > -a && step < b)) step = 0.4 * (a > b ? -a : b);
+    const Peak next{middle.at + step, value(middle.at + step)};
+    if (next.value > middle.value) {
+      (step > 0 ? left : right) = middle;
+      middle = next;
+    } else {
+      (step > 0 ? right : left) = next;
     }
   }
-  out.push_back(values.back());
-  return out;
-}
-
-/// n even nodes of [low, high]; one if the ends are equal.
-std::vector<double> even_nodes(double low, double high, std::size_t count) {
-  if (!(high > low * (1 + 1e-9))) return {low};
-  std::vector<double> out;
-  for (std::size_t i = 0; i < count; ++i) {
-    out.push_back(low + (high - low) * static_cast<double>(i) / static_cast<double>(count - 1));
-  }
-  return out;
-}
-
-/// What a ball of ratio k does to the field far from it: the excess force is nearly proportional to
-/// this, so a log-likelihood is nearly a parabola in it.
-double effect_of(double ratio) { return (ratio - 1) / (ratio + 1.5); }
-double ratio_of(double effect) { return (1 + 1.5 * effect) / (1 - effect); }
-
-std::vector<double> ratio_nodes(double low, double high, std::size_t count) {
-  std::vector<double> out;
-  for (const double effect : even_nodes(effect_of(low), effect_of(high), count)) {
-    out.push_back(ratio_of(effect));
-  }
-  return out;
-}
-
-/// Shares of a prior even in the logarithm of the ratio, on nodes even in the effect.
-std::vector<double> ratio_shares(double low, double high, std::size_t count) {
-  std::vector<double> out;
-  const double begin = effect_of(low);
-  const double step =
-      (effect_of(high) - begin) / static_cast<double>(std::max<std::size_t>(count, 2) - 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double at = begin + step * static_cast<double>(i);
-    const double from = ratio_of(std::max(begin, at - 0.5 * step));
-    const double to =
-        ratio_of(std::min(begin + step * static_cast<double>(count - 1), at + 0.5 * step));
-    out.push_back(count > 1 ? std::log(to / from) : 1);
-  }
-  return out;
-}
-
-using Matrix3 = std::array<std::array<double, 3>, 3>;
-
-/// Inverse of a symmetric positive matrix, and its determinant.
-double invert(const Matrix3& m, Matrix3& out) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const std::size_t a = (j + 1) % 3;
-      const std::size_t b = (j + 2) % 3;
-      const std::size_t c = (i + 1) % 3;
-      const std::size_t d = (i + 2) % 3;
-      out[i][j] = m[a][c] * m[b][d] - m[a][d] * m[b][c];
-    }
-  }
-  const double det = m[0][0] * out[0][0] + m[0][1] * out[1][0] + m[0][2] * out[2][0];
-  for (auto& row : out) {
-    for (double& value : row) value /= det;
-  }
-  return det;
+  return bracket[1];
 }
 
 }  // namespace
 
 DepthModel::DepthModel(const fem::DepthDatabase& database, const DepthPrior& prior)
     : prior_{prior},
-      depths_{log_nodes(prior.depth_min, prior.depth_max, kDepthNodes)},
-      radii_{even_nodes(prior.radius_min, prior.radius_max, kRadiusNodes)},
-      ratios_{ratio_nodes(prior.ratio_min, prior.ratio_max, kRatioNodes)},
-      plain_{tabulate(database, database.plain())} {
-  for (const double depth : depths_) {
-    for (const double radius : radii_) {
-      for (const double ratio : ratios_) {
-        tables_.push_back(tabulate(
-            database,
-            database.curve(
-                {.shape = prior.shape, .depth = depth, .radius = radius, .ratio = ratio})));
+      height_{database.grid().block.height},
+      lattice_{database, prior},
+      basis_{database} {}
+
+/// An inclusion does not reach below the block.
+double DepthModel::deepest(double radius) const noexcept {
+  const double lowest = std::log(prior_.depth_min);
+  const double room = std::max(height_ - 2 * radius, prior_.depth_min);
+  return std::clamp(std::log(room), lowest, lattice_.log_depths().high());
+}
+
+std::vector<DepthModel::Cell> DepthModel::first_cells() const {
+  const NodeAxis& radii = lattice_.radii();
+  const NodeAxis& effects = lattice_.effects();
+  const std::size_t wide = radii.count > 1 ? kRadiusCells : 1;
+  const std::size_t hard = effects.count > 1 ? kEffectCells : 1;
+  const double radius_width = (radii.high() - radii.low) / static_cast<double>(wide);
+  const double effect_width = (effects.high() - effects.low) / static_cast<double>(hard);
+  std::vector<Cell> cells;
+  for (std::size_t j = 0; j < wide; ++j) {
+    for (std::size_t k = 0; k < hard; ++k) {
+      cells.push_back({.radius = radii.low + (static_cast<double>(j) + 0.5) * radius_width,
+                       .radius_width = radius_width,
+                       .effect = effects.low + (static_cast<double>(k) + 0.5) * effect_width,
+                       .effect_width = effect_width,
+                       .best = {}});
+    }
+  }
+  return cells;
+}
+
+/// The best depth of the cell's middle, and how much its edges differ in what they would give.
+void DepthModel::look(const CurveMatcher& points, Cell& cell) const {
+  const CurveLine line = lattice_.line(cell.radius, cell.effect);
+  const double low = lattice_.log_depths().low;
+  const double high = deepest(cell.radius);
+  const auto value = [&](double log_depth) {
+    return points.match(line.at(log_depth)).log_likelihood;
+  };
+  const double step = (high - low) / static_cast<double>(kScan - 1);
+  std::array<Peak, kScan> scan;
+  for (std::size_t i = 0; i < kScan; ++i) {
+    const double at = low + step * static_cast<double>(i);
+    scan[i] = {at, value(at)};
+  }
+  const auto top = std::max_element(
+      scan.begin(), scan.end(), [](const Peak& a, const Peak& b) { return a.value < b.value; });
+  Peak peak = *top;
+  if (top == scan.begin() || top + 1 == scan.end()) {
+    // The peak may lie just inside the end.
+    const double inward = top == scan.begin() ? step : -step;
+    for (double part = 0.5; part > 1e-4; part *= 0.5) {
+      const Peak inside{top->at + part * inward, value(top->at + part * inward)};
+      if (inside.value <= top->value) continue;
+      const Peak beyond{top->at + 2 * part * inward, value(top->at + 2 * part * inward)};
+      peak =
+          inward > 0 ? climb({*top, inside, beyond}, value) : climb({beyond, inside, *top}, value);
+      break;
+    }
+  } else {
+    peak = climb({*(top - 1), *top, *(top + 1)}, value);
+  }
+  cell.log_depth = peak.at;
+  const CurveTerms best = line.at(peak.at);
+  cell.best = points.match(best);
+
+  const auto slope = [&](double depth, double radius, double effect) {
+    const CurveTerms up =
+        lattice_.at(cell.log_depth + depth, cell.radius + radius, cell.effect + effect);
+    const CurveTerms down =
+        lattice_.at(cell.log_depth - depth, cell.radius - radius, cell.effect - effect);
+    const double width = 2 * (depth + radius + effect);
+    CurveTerms out{};
+    for (std::size_t m = 0; m < kCurveTerms; ++m) out[m] = (up[m] - down[m]) / width;
+    return out;
+  };
+  const auto information =
+      points.information(best, {slope(0.01, 0, 0), slope(0, 5e-5, 0), slope(0, 0, 5e-3)});
+  const double along = information[0][0] + 12 / ((high - low) * (high - low) + 1e-12);
+  const bool pinned = peak.at == scan.front().at || peak.at == scan.back().at;
+  const auto reach = [&](std::size_t i, double width) {
+    // As far as the depth cannot make up for it.
+    const double followed = pinned ? 0 : information[0][i] * information[0][i] / along;
+    return 0.5 * width * std::sqrt(std::max(0.0, information[i][i] - followed));
+  };
+  cell.depth_stddev = 1 / std::sqrt(along);
+  cell.radius_reach = reach(1, cell.radius_width);
+  cell.effect_reach = reach(2, cell.effect_width);
+}
+
+/// Halves cells until each is fine enough, and drops those out of reach.
+std::vector<DepthModel::Cell> DepthModel::refine(const CurveMatcher& points,
+                                                 std::vector<Cell> cells,
+                                                 double& most) const {
+  std::vector<Cell> fine;
+  std::size_t lines = 0;
+  while (!cells.empty()) {
+    for (Cell& cell : cells) {
+      look(points, cell);
+      most = std::max(most, cell.best.log_likelihood);
+    }
+    lines += cells.size();
+    std::vector<Cell> next;
+    for (const Cell& cell : cells) {
+      const double away = std::sqrt(2 * std::max(0.0, most - cell.best.log_likelihood));
+      if (away - kCaution * (cell.radius_reach + cell.effect_reach) > kReach) continue;
+      const int radius_parts = cell.radius_reach > kFine ? 2 : 1;
+      const int effect_parts = cell.effect_reach > kFine ? 2 : 1;
+      if (radius_parts * effect_parts == 1 || lines + next.size() > kLinesMax) {
+        fine.push_back(cell);
+        continue;
+      }
+      for (int j = 0; j < radius_parts; ++j) {
+        for (int k = 0; k < effect_parts; ++k) {
+          Cell part = cell;
+          part.radius_width = cell.radius_width / radius_parts;
+          part.effect_width = cell.effect_width / effect_parts;
+          if (radius_parts > 1) part.radius += (j - 0.5) * part.radius_width;
+          if (effect_parts > 1) part.effect += (k - 0.5) * part.effect_width;
+          next.push_back(part);
+        }
       }
     }
+    cells = std::move(next);
   }
+  return fine;
 }
 
-DepthModel::Table DepthModel::tabulate(const fem::DepthDatabase& database,
-                                       const fem::DepthDatabase::Curve& curve) const {
-  // Also beyond what was solved: every curve must answer for the same points.
-  Table table;
-  const auto count = static_cast<std::size_t>((kDeepest + kNear) / kStep) + 3;
-  for (std::size_t i = 0; i < count; ++i) {
-    table.force.push_back(database.force(curve, static_cast<double>(i) * kStep));
-  }
-  return table;
-}
-
-std::vector<DepthModel::Place> DepthModel::locate(const Input& input, double surface) const {
-  std::vector<Place> places;
-  // Loading and unloading stay apart: points come branch by branch, in order of position.
-  double begin = -std::numeric_limits<double>::infinity();
-  ContactPoint sum;
-  const auto finish = [&] {
-    if (!(sum.count > 0)) return;
-    Place place;
-    place.indentation = sum.position / sum.count - surface;
-    place.force = sum.force / sum.count;
-    place.rate = sum.rate / sum.count;
-    place.weight = sum.count / (input.noise * input.noise);
-    sum = {};
-    if (place.indentation > kDeepest || place.indentation < -kNear) return;
-    const double entry = std::max(0.0, place.indentation / kStep);
-    place.entry = static_cast<std::size_t>(entry);
-    place.share = entry - static_cast<double>(place.entry);
-    places.push_back(place);
+/// The posterior along the depth at the cell's middle, times the cell's share of the prior.
+void DepthModel::integrate(const CurveMatcher& points,
+                           const Cell& cell,
+                           std::vector<Mass>& out) const {
+  const CurveLine line = lattice_.line(cell.radius, cell.effect);
+  const double low = lattice_.log_depths().low;
+  const double high = deepest(cell.radius);
+  const auto value = [&](double log_depth) {
+    return points.match(line.at(log_depth)).log_likelihood;
   };
-  for (const ContactPoint& point : input.points) {
-    if (point.position > begin + kBin || point.position < begin) {
-      finish();
-      begin = point.position;
+  const auto end = [&](double limit) {
+    const double side = limit > cell.log_depth ? 1 : -1;
+    double near = cell.log_depth;
+    double far = cell.log_depth;
+    double step = 3 * cell.depth_stddev;
+    for (;;) {
+      far = near + side * step;
+      if (side * (limit - far) <= 0) return limit;
+      if (value(far) < cell.best.log_likelihood - kNegligible) break;
+      near = far;
+      step *= 1.5;
     }
-    sum.position += point.count * point.position;
-    sum.force += point.count * point.force;
-    sum.rate += point.count * point.rate;
-    sum.count += point.count;
+    for (int i = 0; i < 2; ++i) {
+      const double middle = 0.5 * (near + far);
+      (value(middle) < cell.best.log_likelihood - kNegligible ? far : near) = middle;
+    }
+    return far;
+  };
+  const double from = end(low);
+  const double width = (end(high) - from) / static_cast<double>(kDepths);
+  if (!(width > 0)) return;
+  double share = 1;
+  if (cell.radius_width > 0) share *= cell.radius_width;
+  if (cell.effect_width > 0) {
+    share *= std::log(ratio_of(cell.effect + 0.5 * cell.effect_width) /
+                      ratio_of(cell.effect - 0.5 * cell.effect_width));
   }
-  finish();
-  return places;
+  for (std::size_t i = 0; i < kDepths; ++i) {
+    const double at = from + (static_cast<double>(i) + 0.5) * width;
+    // Uniform in the depth, not in its logarithm.
+    out.push_back({at, width, value(at) + at + std::log(width * share)});
+  }
 }
 
-/// Least squares for (e, e s, e v): force = e F(x) + e s (-F'(x)) + e v F(x) rate.
-DepthModel::Match DepthModel::match(const Table& table,
-                                    std::span<const Place> places,
-                                    const StiffnessPrior& stiffness) const {
-  Matrix3 normal{};
-  std::array<double, 3> right{};
-  double squares = 0;
-  const double scale_weight = 1 / (stiffness.scale_stddev * stiffness.scale_stddev);
-  const double rate_width = stiffness.scale * stiffness.rate_factor_stddev;
-  const double rate_weight = 1 / (rate_width * rate_width);
-  const double rate_mean = stiffness.scale * stiffness.rate_factor;
-  normal[0][0] = scale_weight;
-  normal[1][1] = 1 / (kNear * kNear);
-  normal[2][2] = rate_weight;
-  right[0] = scale_weight * stiffness.scale;
-  right[2] = rate_weight * rate_mean;
-  squares = scale_weight * stiffness.scale * stiffness.scale + rate_weight * rate_mean * rate_mean;
-  for (const Place& place : places) {
-    const double low = table.force[place.entry];
-    const double high = table.force[place.entry + 1];
-    const bool air = place.indentation <= 0;
-    const double force = air ? 0 : low + place.share * (high - low);
-    const double slope = air ? 0 : (high - low) / kStep;
-    const std::array<double, 3> x{force, -slope, force * place.rate};
-    const double w = place.weight;
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j <= i; ++j) normal[i][j] += w * x[i] * x[j];
-      right[i] += w * x[i] * place.force;
-    }
-    squares += w * place.force * place.force;
+/// Of the prior's measure as integrate() counts it.
+double DepthModel::log_prior_total() const {
+  const NodeAxis& radii = lattice_.radii();
+  const NodeAxis& effects = lattice_.effects();
+  constexpr int kParts = 64;
+  const double lowest = std::exp(lattice_.log_depths().low);
+  double total = 0;
+  for (int i = 0; i < kParts; ++i) {
+    const double radius = radii.low + (radii.high() - radii.low) * (i + 0.5) / kParts;
+    total += (std::exp(deepest(radius)) - lowest) / kParts;
   }
-  normal[0][1] = normal[1][0];
-  normal[0][2] = normal[2][0];
-  normal[1][2] = normal[2][1];
-  Matrix3 inverse{};
-  const double det = invert(normal, inverse);
-  std::array<double, 3> solution{};
-  double explained = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) solution[i] += inverse[i][j] * right[j];
-    explained += solution[i] * right[i];
-  }
-  Match out;
-  out.misfit = squares - explained;
-  out.log_likelihood = -0.5 * out.misfit - 0.5 * std::log(det);
-  out.scale = solution[0];
-  out.scale_stddev = std::sqrt(inverse[0][0]);
-  out.rate_factor = solution[2] / solution[0];
-  out.rate_factor_stddev = std::sqrt(inverse[2][2]) / solution[0];
-  out.shift = solution[1] / solution[0];
-  return out;
+  if (radii.count > 1) total *= radii.high() - radii.low;
+  if (effects.count > 1) total *= std::log(ratio_of(effects.high()) / ratio_of(effects.low));
+  return std::log(total);
 }
 
 DepthPosterior DepthModel::update(const Input& input) const {
   DepthPosterior posterior;
-  double surface = input.surface;
-  // The surface enters the model to first order: once more from where the best curve puts it.
-  std::vector<Place> places;
-  Match plain;
-  const std::size_t stride = tables_.size() > kManyTables ? kStride : 1;
-  for (int pass = 0; pass < 3; ++pass) {
-    places = locate(input, surface);
-    plain = match(plain_, places, input.stiffness);
-    Match best = plain;
-    for (std::size_t i = 0; i < tables_.size(); i += stride) {
-      const Match one = match(tables_[i], places, input.stiffness);
-      if (one.log_likelihood > best.log_likelihood) best = one;
+  Input here = input;
+  CurveMatcher points{basis_, here};
+  CurveMatch plain = points.match(kPlainTerms);
+  // The surface enters the model to first order: again from where the best curve puts it.
+  constexpr int kMoves = 2;
+  for (int move = 0; move < kMoves; ++move) {
+    CurveMatch best = plain;
+    for (Cell& cell : first_cells()) {
+      look(points, cell);
+      if (cell.best.log_likelihood > best.log_likelihood) best = cell.best;
     }
-    if (pass == 2) break;
-    surface += std::clamp(best.shift, -kNear, kNear);
+    here.surface += std::clamp(best.shift, -kSurfaceSpread, kSurfaceSpread);
+    points = CurveMatcher{basis_, here};
+    plain = points.match(kPlainTerms);
   }
-  std::vector<double> log_likelihood;
-  log_likelihood.reserve(tables_.size());
-  double least = plain.misfit;
   double most = -std::numeric_limits<double>::infinity();
-  for (const Table& table : tables_) {
-    const Match one = match(table, places, input.stiffness);
-    log_likelihood.push_back(one.log_likelihood);
-    most = std::max(most, one.log_likelihood);
-    least = std::min(least, one.misfit);
+  const std::vector<Cell> cells = refine(points, first_cells(), most);
+  double least = plain.misfit;
+  std::vector<Mass> masses;
+  masses.reserve(cells.size() * kDepths);
+  for (const Cell& cell : cells) {
+    least = std::min(least, cell.best.misfit);
+    integrate(points, cell, masses);
   }
-  double weights = 0;
-  for (const Place& place : places) weights += place.weight;
-  posterior.misfit = weights > 0 ? std::sqrt(std::max(0.0, least) / weights) : 0;
+  posterior.misfit = points.weights() > 0 ? std::sqrt(std::max(0.0, least) / points.weights()) : 0;
   posterior.gain = 2 * (most - plain.log_likelihood);
   posterior.plain = {.scale = plain.scale,
                      .scale_stddev = plain.scale_stddev,
                      .rate_factor = plain.rate_factor,
                      .rate_factor_stddev = plain.rate_factor_stddev};
-  summarise(log_likelihood, plain.log_likelihood, posterior);
+  summarise(masses, plain.log_likelihood, posterior);
+  posterior.excluded = excluded(points, plain.log_likelihood);
   return posterior;
 }
 
-void DepthModel::summarise(const std::vector<double>& log_likelihood,
+void DepthModel::summarise(std::vector<Mass>& masses,
                            double plain,
                            DepthPosterior& posterior) const {
-  const std::size_t radii = radii_.size();
-  const std::size_t ratios = ratios_.size();
-  const auto at = [&](std::size_t depth, std::size_t radius, std::size_t ratio) {
-    return log_likelihood[(depth * radii + radius) * ratios + ratio];
-  };
-  // Along the ratio and the radius first, then each of those lines along the depth.
-  std::vector<std::vector<std::vector<double>>> lines(depths_.size());  // depth, radius, ratio
-  for (std::size_t i = 0; i < depths_.size(); ++i) {
-    std::vector<std::vector<double>> by_radius;
-    for (std::size_t j = 0; j < radii; ++j) {
-      std::vector<double> values;
-      for (std::size_t k = 0; k < ratios; ++k) values.push_back(at(i, j, k));
-      by_radius.push_back(denser(values, kFineRatio));
-    }
-    const std::size_t fine_ratios = by_radius[0].size();
-    for (std::size_t k = 0; k < fine_ratios; ++k) {
-      std::vector<double> values;
-      for (std::size_t j = 0; j < radii; ++j) values.push_back(by_radius[j][k]);
-      lines[i].push_back(denser(values, kFineRadius));
-    }
-  }
-  const std::size_t fine_ratios = lines[0].size();
-  const std::size_t fine_radii = lines[0][0].size();
-  const std::size_t fine_depths = (depths_.size() - 1) * kFine + 1;
-  std::vector<double> mass(fine_depths);
-  std::vector<double> prior_of(fine_depths);  // uniform in depth, on nodes even in its logarithm
-  double prior_depth = 0;
-  for (std::size_t i = 0; i < fine_depths; ++i) {
-    prior_of[i] =
-        depths_[0] * std::pow(depths_.back() / depths_[0],
-                              static_cast<double>(i) / static_cast<double>(fine_depths - 1));
-    if (i == 0 || i + 1 == fine_depths) prior_of[i] *= 0.5;
-    prior_depth += prior_of[i];
-  }
-  double most = plain;
-  for (const double value : log_likelihood) most = std::max(most, value);
+  double most = -std::numeric_limits<double>::infinity();
+  for (const Mass& mass : masses) most = std::max(most, mass.log_mass);
+  std::erase_if(masses, [&](const Mass& mass) { return !(mass.log_mass > most - 20); });
+  std::sort(masses.begin(), masses.end(), [](const Mass& a, const Mass& b) {
+    return a.log_depth < b.log_depth;
+  });
   double total = 0;
-  double prior_total = 0;
-  const std::vector<double> shares = ratio_shares(ratios_.front(), ratios_.back(), fine_ratios);
-  std::vector<double> values(depths_.size());
-  for (std::size_t k = 0; k < fine_ratios; ++k) {
-    for (std::size_t j = 0; j < fine_radii; ++j) {
-      const bool radius_end = fine_radii > 1 && (j == 0 || j + 1 == fine_radii);
-      const double here = shares[k] * (radius_end ? 0.5 : 1);
-      double line_most = -std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < depths_.size(); ++i) {
-        values[i] = lines[i][k][j];
-        line_most = std::max(line_most, values[i]);
-      }
-      prior_total += here * prior_depth;
-      // Between nodes a line may rise above them, but not by this much.
-      if (line_most < most - kForgotten) continue;
-      const std::vector<double> fine = denser(values, kFine);
-      for (std::size_t i = 0; i < fine.size(); ++i) {
-        if (fine[i] < most - kNegligible) continue;
-        mass[i] += here * prior_of[i] * std::exp(fine[i] - most);
-      }
-    }
-  }
-  for (const double one : mass) total += one;
-  posterior.log_evidence = total > 0 ? std::log(total / prior_total) + most - plain
-                                     : -std::numeric_limits<double>::infinity();
   double mean = 0;
   double square = 0;
-  double sum = 0;
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    const double depth =
-        depths_[0] * std::pow(depths_.back() / depths_[0],
-                              static_cast<double>(i) / static_cast<double>(mass.size() - 1));
-    const double before = sum / total;
-    sum += mass[i];
-    mean += mass[i] * depth / total;
-    square += mass[i] * depth * depth / total;
-    // Each mass is spread to half the way to its neighbours.
-    const double step =
-        std::pow(depths_.back() / depths_[0], 1 / static_cast<double>(mass.size() - 1)) - 1;
-    const auto quantile = [&](double level, double& to) {
-      if (before < level && sum / total >= level) {
-        const double part = (level - before) / (sum / total - before);
-        to = depth * (1 + step * (part - 0.5));
+  for (const Mass& mass : masses) {
+    const double share = std::exp(mass.log_mass - most);
+    const double depth = std::exp(mass.log_depth);
+    total += share;
+    mean += share * depth;
+    square += share * depth * depth;
+  }
+  posterior.log_evidence = total > 0 ? std::log(total) + most - log_prior_total() - plain
+                                     : -std::numeric_limits<double>::infinity();
+  posterior.depth = mean / total;
+  posterior.depth_stddev =
+      std::sqrt(std::max(0.0, square / total - posterior.depth * posterior.depth));
+  // A mass counts half where it lies; between two, the share grows evenly.
+  const auto quantile = [&](double level) {
+    double sum = 0;
+    double before = 0;
+    double at = masses.empty() ? 0 : masses.front().log_depth - 0.5 * masses.front().width;
+    for (const Mass& mass : masses) {
+      const double share = std::exp(mass.log_mass - most) / total;
+      const double here = sum + 0.5 * share;
+      if (here >= level) {
+        return std::exp(at + (mass.log_depth - at) * (level - before) / (here - before));
       }
-    };
-    quantile(0.025, posterior.depth_low);
-    quantile(0.975, posterior.depth_high);
-  }
-  posterior.depth = mean;
-  posterior.depth_stddev = std::sqrt(std::max(0.0, square - mean * mean));
-  // Down to where every inclusion of kShowing or more, of a middling ratio, would have been seen.
-  posterior.excluded = 0;
-  for (std::size_t i = 0; i < depths_.size(); ++i) {
-    bool all = true;
-    for (std::size_t j = 0; j < radii; ++j) {
-      if (radii_[j] < kShowing * 0.99) continue;
-      all &= at(i, j, ratios / 2) < plain - kExcluded;
+      at = mass.log_depth;
+      before = here;
+      sum += share;
     }
-    if (!all) break;
-    posterior.excluded = depths_[i];
+    return std::exp(at + 0.5 * masses.back().width);
+  };
+  if (masses.empty()) return;
+  posterior.depth_low = quantile(0.025);
+  posterior.depth_high = quantile(0.975);
+}
+
+/// Down to where every inclusion of kShowing or more would have been seen.
+double DepthModel::excluded(const CurveMatcher& points, double plain) const {
+  const NodeAxis& radii = lattice_.radii();
+  const NodeAxis& effects = lattice_.effects();
+  const NodeAxis& depths = lattice_.log_depths();
+  const double effect = std::clamp(effect_of(kShowingRatio), effects.low, effects.high());
+  const double smallest = std::clamp(kShowing, radii.low, radii.high());
+  constexpr int kParts = 6;
+  std::size_t shown = depths.count;
+  for (int j = 0; j <= kParts && shown > 0; ++j) {
+    const double radius = smallest + (radii.high() - smallest) * j / kParts;
+    const CurveLine line = lattice_.line(radius, effect);
+    for (std::size_t i = 0; i < shown; ++i) {
+      if (points.match(line.at(depths.node(i))).log_likelihood < plain - kExcluded) continue;
+      shown = i;
+    }
   }
+  return shown > 0 ? std::exp(depths.node(shown - 1)) : 0;
 }
 
 }  // namespace palp::estimator
