@@ -32,13 +32,12 @@ NodeAxis log_axis(const DepthPrior& prior) {
 /// Least squares of the excess, as a linear map from samples to terms: weighed by the force.
 class Shortening {
  public:
-  explicit Shortening(const fem::DepthDatabase& database) {
-    const auto plain = database.plain();
+  explicit Shortening(const fem::DepthDatabase& database) : plain_curve_{database.plain()} {
     for (std::size_t i = 0; i < kSamples; ++i) {
       // Chebyshev's nodes hold the polynomial at both ends.
       const double angle = std::numbers::pi * (static_cast<double>(i) + 0.5) / kSamples;
       indentation_[i] = 0.5 * kCurveReach * (1 - std::cos(angle));
-      plain_[i] = database.force(plain, indentation_[i]);
+      plain_[i] = database.force(plain_curve_, indentation_[i]);
     }
     for (std::size_t i = 0; i < kSamples; ++i) {
       LeastSquares<kCurveTerms> fit;  // of a curve that is 1 at sample i and 0 elsewhere
@@ -53,14 +52,23 @@ class Shortening {
   [[nodiscard]] CurveTerms operator()(const fem::DepthDatabase& database,
                                       const fem::DepthDatabase::Curve& curve) const {
     CurveTerms out{};
+    const auto relative_at = [&](double indentation) {
+      return database.force(curve, indentation) / database.force(plain_curve_, indentation);
+    };
+    // Beyond what was solved no point will lie: a straight line keeps the polynomial quiet there.
+    const double solved = std::min(curve.indentation_max, kCurveReach);
+    const double end = relative_at(solved);
+    const double slope = (end - relative_at(0.95 * solved)) / (0.05 * solved);
     for (std::size_t i = 0; i < kSamples; ++i) {
-      const double relative = database.force(curve, indentation_[i]) / plain_[i];
+      const double beyond = indentation_[i] - solved;
+      const double relative = beyond > 0 ? end + slope * beyond : relative_at(indentation_[i]);
       for (std::size_t m = 0; m < kCurveTerms; ++m) out[m] += map_[i][m] * relative;
     }
     return out;
   }
 
  private:
+  fem::DepthDatabase::Curve plain_curve_;
   std::array<double, kSamples> indentation_{};  ///< [m]
   std::array<double, kSamples> plain_{};        ///< [N]
   std::array<CurveTerms, kSamples> map_{};
@@ -101,7 +109,10 @@ NodeAxis::Weights NodeAxis::at(double x) const noexcept {
 CurveTerms CurveLine::at(double log_depth) const noexcept {
   const NodeAxis::Weights depth = depth_.at(log_depth);
   CurveTerms out{};
-  for (std::size_t i = 0; i < 4; ++i) add(out, terms_[depth.first + i], depth.weight[i]);
+  // A depth outside the range is answered with the nearest nodes: finite, and no more.
+  const std::size_t last = first_ + count_ - 4;
+  const std::size_t from = std::clamp(depth.first, first_, last) - first_;
+  for (std::size_t i = 0; i < 4; ++i) add(out, terms_[from + i], depth.weight[i]);
   return out;
 }
 
@@ -140,16 +151,20 @@ CurveTerms CurveLattice::at(double log_depth, double radius, double effect) cons
   return out;
 }
 
-CurveLine CurveLattice::line(double radius, double effect) const noexcept {
+CurveLine CurveLattice::line(double radius, double effect, double low, double high) const noexcept {
   CurveLine out;
   out.depth_ = depth_;
+  out.first_ = depth_.at(low).first;
+  out.count_ = depth_.at(high).first + 4 - out.first_;
+  std::fill_n(out.terms_.begin(), out.count_, CurveTerms{});
   const NodeAxis::Weights wide = radius_.at(radius);
   const NodeAxis::Weights hard = effect_.at(effect);
   for (std::size_t j = 0; j < std::min<std::size_t>(4, radius_.count); ++j) {
     for (std::size_t k = 0; k < std::min<std::size_t>(4, effect_.count); ++k) {
-      const std::size_t from = ((wide.first + j) * effect_.count + hard.first + k) * depth_.count;
+      const std::size_t from =
+          ((wide.first + j) * effect_.count + hard.first + k) * depth_.count + out.first_;
       const double weight = wide.weight[j] * hard.weight[k];
-      for (std::size_t i = 0; i < depth_.count; ++i) add(out.terms_[i], terms_[from + i], weight);
+      for (std::size_t i = 0; i < out.count_; ++i) add(out.terms_[i], terms_[from + i], weight);
     }
   }
   return out;

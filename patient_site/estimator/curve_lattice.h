@@ -56,7 +56,7 @@ struct NodeAxis {
   return (1 + 1.5 * effect) / (1 - effect);
 }
 
-/// All curves of one radius and one effect, over the depth.
+/// All curves of one radius and one effect, over a range of depths.
 class CurveLine {
  public:
   static constexpr std::size_t kDepths = 56;
@@ -64,8 +64,10 @@ class CurveLine {
 
  private:
   friend class CurveLattice;
-  NodeAxis depth_;  ///< log of m
-  std::array<CurveTerms, kDepths> terms_{};
+  NodeAxis depth_;       ///< log of m
+  std::size_t first_{};  ///< node of the first terms
+  std::size_t count_{};
+  std::array<CurveTerms, kDepths> terms_;  ///< of which count_ mean something
 };
 
 /// The curves of a depth database within a prior, shortened to terms and so dense that a cubic
@@ -76,7 +78,11 @@ class CurveLattice {
   CurveLattice(const fem::DepthDatabase& database, const DepthPrior& prior);
 
   [[nodiscard]] CurveTerms at(double log_depth, double radius, double effect) const noexcept;
-  [[nodiscard]] CurveLine line(double radius, double effect) const noexcept;
+  /// Logarithms of depths from `low` to `high` are good.
+  [[nodiscard]] CurveLine line(double radius,
+                               double effect,
+                               double low,
+                               double high) const noexcept;
   [[nodiscard]] const NodeAxis& log_depths() const noexcept { return depth_; }
   [[nodiscard]] const NodeAxis& radii() const noexcept { return radius_; }    ///< [m]
   [[nodiscard]] const NodeAxis& effects() const noexcept { return effect_; }  ///< [-]

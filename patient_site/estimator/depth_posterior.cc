@@ -4,21 +4,31 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace palp::estimator {
 namespace {
 
 constexpr std::size_t kRadiusCells = 6;  // to begin with
-constexpr std::size_t kEffectCells = 4;
+constexpr std::size_t kRatioCells = 4;
 constexpr std::size_t kLinesMax = 700;  // a bound on the time
-constexpr double kReach = 4.5;          // [-], standard deviations below the best: forgotten
-constexpr double kFine = 0.7;           // [-], standard deviations to a cell's edge: fine enough
+constexpr double kReach = 4;            // [-], standard deviations below the best: forgotten
+constexpr double kFine = 0.9;           // [-], standard deviations to a cell's edge: fine enough
 constexpr double kCaution = 1.4;        // [-], the information changes within a cell
 constexpr std::size_t kScan = 12;       // depths looked at first
+constexpr int kGuesses = 4;             // of the way from a guess to the peak
 constexpr int kSearchSteps = 24;
 constexpr double kPeakExact = 0.01;   // [-], of the log-likelihood
 constexpr double kNegligible = 10;    // [-], log-likelihood below a line's best: its ends
+constexpr std::size_t kMany = 60;     // cells, of which those narrower in the depth than
+constexpr double kNarrow = 0.03;      // [-] need not be summed: the posterior is made of many
+constexpr double kNormalReach = 3.5;  // [-], standard deviations
+constexpr int kNormalParts = 7;
 constexpr std::size_t kDepths = 21;   // of one line, summed
+constexpr double kShift = 0.5;        // [-], of the posterior's width, within a cell
+constexpr double kAbove = 0.015;      // [-], of the posterior, less deep than the interval: the
+constexpr double kBelow = 0.035;      // end that is met first has the smaller share of the 5 %
+constexpr int kPasses = 2;            // from cells to the posterior's width and back
 constexpr double kShowing = 5e-3;     // [m], radius of which "excluded" speaks
 constexpr double kShowingRatio = 10;  // [-], and how much stiffer it is at least
 constexpr double kExcluded = 3;       // [-], log of 20
@@ -58,6 +68,53 @@ Peak climb(std::array<Peak, 3> bracket, const Value& value) {
   return bracket[1];
 }
 
+/// The place where `value` is largest between `low` and `high`: sought from evenly spread places,
+/// or round a guess.
+template <typename Value>
+Peak scan(double low, double high, const Value& value) {
+  const double step = (high - low) / static_cast<double>(kScan - 1);
+  std::array<Peak, kScan> places;
+  for (std::size_t i = 0; i < kScan; ++i) {
+    const double at = low + step * static_cast<double>(i);
+    places[i] = {at, value(at)};
+  }
+  const auto top = std::max_element(
+      places.begin(), places.end(), [](const Peak& a, const Peak& b) { return a.value < b.value; });
+  if (top != places.begin() && top + 1 != places.end()) {
+    return climb({*(top - 1), *top, *(top + 1)}, value);
+  }
+  // The peak may lie just inside the end.
+  const double inward = top == places.begin() ? step : -step;
+  for (double part = 0.5; part > 1e-4; part *= 0.5) {
+    const Peak inside{top->at + part * inward, value(top->at + part * inward)};
+    if (inside.value <= top->value) continue;
+    const Peak beyond{top->at + 2 * part * inward, value(top->at + 2 * part * inward)};
+    return inward > 0 ? climb({*top, inside, beyond}, value) : climb({beyond, inside, *top}, value);
+  }
+  return *top;
+}
+
+/// The same, near `guess`; nothing if it is not within a few `width`.
+template <typename Value>
+std::optional<Peak> search(double guess, double width, const Value& value) {
+  std::array<Peak, 3> places{
+      {{guess - width, value(guess - width)}, {guess, value(guess)}, {guess + width, 0}}};
+  places[2].value = value(guess + width);
+  for (int i = 0; i < kGuesses; ++i) {
+    auto& [left, middle, right] = places;
+    if (middle.value >= left.value && middle.value >= right.value) return climb(places, value);
+    width *= 2;
+    if (right.value > left.value) {
+      const double at = right.at + width;
+      places = {middle, right, {at, value(at)}};
+    } else {
+      const double at = left.at - width;
+      places = {Peak{at, value(at)}, left, middle};
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 DepthModel::DepthModel(const fem::DepthDatabase& database, const DepthPrior& prior)
@@ -77,16 +134,18 @@ std::vector<DepthModel::Cell> DepthModel::first_cells() const {
   const NodeAxis& radii = lattice_.radii();
   const NodeAxis& effects = lattice_.effects();
   const std::size_t wide = radii.count > 1 ? kRadiusCells : 1;
-  const std::size_t hard = effects.count > 1 ? kEffectCells : 1;
+  const std::size_t hard = effects.count > 1 ? kRatioCells : 1;
   const double radius_width = (radii.high() - radii.low) / static_cast<double>(wide);
-  const double effect_width = (effects.high() - effects.low) / static_cast<double>(hard);
+  const double lowest = std::log(ratio_of(effects.low));
+  const double ratio_width =
+      (std::log(ratio_of(effects.high())) - lowest) / static_cast<double>(hard);
   std::vector<Cell> cells;
   for (std::size_t j = 0; j < wide; ++j) {
     for (std::size_t k = 0; k < hard; ++k) {
       cells.push_back({.radius = radii.low + (static_cast<double>(j) + 0.5) * radius_width,
                        .radius_width = radius_width,
-                       .effect = effects.low + (static_cast<double>(k) + 0.5) * effect_width,
-                       .effect_width = effect_width,
+                       .log_ratio = lowest + (static_cast<double>(k) + 0.5) * ratio_width,
+                       .ratio_width = ratio_width,
                        .best = {}});
     }
   }
@@ -95,53 +154,56 @@ std::vector<DepthModel::Cell> DepthModel::first_cells() const {
 
 /// The best depth of the cell's middle, and how much its edges differ in what they would give.
 void DepthModel::look(const CurveMatcher& points, Cell& cell) const {
-  const CurveLine line = lattice_.line(cell.radius, cell.effect);
   const double low = lattice_.log_depths().low;
   const double high = deepest(cell.radius);
-  const auto value = [&](double log_depth) {
-    return points.match(line.at(log_depth)).log_likelihood;
-  };
-  const double step = (high - low) / static_cast<double>(kScan - 1);
-  std::array<Peak, kScan> scan;
-  for (std::size_t i = 0; i < kScan; ++i) {
-    const double at = low + step * static_cast<double>(i);
-    scan[i] = {at, value(at)};
+  const double effect = effect_of(std::exp(cell.log_ratio));
+  std::optional<Peak> peak;
+  if (cell.depth_stddev > 0) {
+    const double width = 2 * cell.depth_stddev;
+    const double reach = std::exp2(kGuesses) * width;
+    const CurveLine line =
+        lattice_.line(cell.radius, effect, cell.log_depth - reach, cell.log_depth + reach);
+    peak = search(cell.log_depth, width, [&](double log_depth) {
+      return points.match(line.at(log_depth)).log_likelihood;
+    });
   }
-  const auto top = std::max_element(
-      scan.begin(), scan.end(), [](const Peak& a, const Peak& b) { return a.value < b.value; });
-  Peak peak = *top;
-  if (top == scan.begin() || top + 1 == scan.end()) {
-    // The peak may lie just inside the end.
-    const double inward = top == scan.begin() ? step : -step;
-    for (double part = 0.5; part > 1e-4; part *= 0.5) {
-      const Peak inside{top->at + part * inward, value(top->at + part * inward)};
-      if (inside.value <= top->value) continue;
-      const Peak beyond{top->at + 2 * part * inward, value(top->at + 2 * part * inward)};
-      peak =
-          inward > 0 ? climb({*top, inside, beyond}, value) : climb({beyond, inside, *top}, value);
-      break;
-    }
-  } else {
-    peak = climb({*(top - 1), *top, *(top + 1)}, value);
+  if (!peak || peak->at <= low || peak->at >= high) {
+    const CurveLine line = lattice_.line(cell.radius, effect, low, high);
+    peak = scan(low, high, [&](double log_depth) {
+      return points.match(line.at(log_depth)).log_likelihood;
+    });
   }
-  cell.log_depth = peak.at;
-  const CurveTerms best = line.at(peak.at);
+  cell.log_depth = peak->at;
+  const CurveTerms best = lattice_.at(peak->at, cell.radius, effect);
   cell.best = points.match(best);
+  const bool pinned = peak->at <= low || peak->at >= high;
+  measure(points, best, pinned, cell);
+  cell.looked = true;
+}
 
-  const auto slope = [&](double depth, double radius, double effect) {
+/// How far signal and depth move from the cell's middle to its edges.
+void DepthModel::measure(const CurveMatcher& points,
+                         const CurveTerms& best,
+                         bool pinned,
+                         Cell& cell) const {
+  const double ratio = std::exp(cell.log_ratio);
+  const double effect = effect_of(ratio);
+  const auto slope = [&](double depth, double radius, double effects) {
     const CurveTerms up =
-        lattice_.at(cell.log_depth + depth, cell.radius + radius, cell.effect + effect);
+        lattice_.at(cell.log_depth + depth, cell.radius + radius, effect + effects);
     const CurveTerms down =
-        lattice_.at(cell.log_depth - depth, cell.radius - radius, cell.effect - effect);
-    const double width = 2 * (depth + radius + effect);
+        lattice_.at(cell.log_depth - depth, cell.radius - radius, effect - effects);
+    const double width = 2 * (depth + radius + effects);
     CurveTerms out{};
     for (std::size_t m = 0; m < kCurveTerms; ++m) out[m] = (up[m] - down[m]) / width;
     return out;
   };
-  const auto information =
-      points.information(best, {slope(0.01, 0, 0), slope(0, 5e-5, 0), slope(0, 0, 5e-3)});
-  const double along = information[0][0] + 12 / ((high - low) * (high - low) + 1e-12);
-  const bool pinned = peak.at == scan.front().at || peak.at == scan.back().at;
+  std::array<CurveTerms, 3> slopes{slope(0.01, 0, 0), slope(0, 5e-5, 0), slope(0, 0, 5e-3)};
+  const double effect_slope = 2.5 * ratio / ((ratio + 1.5) * (ratio + 1.5));
+  for (double& term : slopes[2]) term *= effect_slope;
+  const auto information = points.information(best, slopes);
+  const double range = lattice_.log_depths().high() - lattice_.log_depths().low;
+  const double along = information[0][0] + 12 / (range * range);
   const auto reach = [&](std::size_t i, double width) {
     // As far as the depth cannot make up for it.
     const double followed = pinned ? 0 : information[0][i] * information[0][i] / along;
@@ -149,54 +211,104 @@ void DepthModel::look(const CurveMatcher& points, Cell& cell) const {
   };
   cell.depth_stddev = 1 / std::sqrt(along);
   cell.radius_reach = reach(1, cell.radius_width);
-  cell.effect_reach = reach(2, cell.effect_width);
+  cell.ratio_reach = reach(2, cell.ratio_width);
+  const double moves = pinned ? 0 : -0.5 / along;
+  cell.radius_shift = moves * information[0][1] * cell.radius_width;
+  cell.ratio_shift = moves * information[0][2] * cell.ratio_width;
+}
+
+void DepthModel::split(const Cell& cell, bool wide, bool hard, std::vector<Cell>& out) {
+  const int radius_parts = wide ? 2 : 1;
+  const int ratio_parts = hard ? 2 : 1;
+  for (int j = 0; j < radius_parts; ++j) {
+    for (int k = 0; k < ratio_parts; ++k) {
+      Cell part{.radius = cell.radius,
+                .radius_width = cell.radius_width / radius_parts,
+                .log_ratio = cell.log_ratio,
+                .ratio_width = cell.ratio_width / ratio_parts,
+                .best = {}};
+      part.log_depth = cell.log_depth;
+      part.depth_stddev = cell.depth_stddev;
+      if (wide) {
+        part.radius += (j - 0.5) * part.radius_width;
+        part.log_depth += (j - 0.5) * cell.radius_shift;
+      }
+      if (hard) {
+        part.log_ratio += (k - 0.5) * part.ratio_width;
+        part.log_depth += (k - 0.5) * cell.ratio_shift;
+      }
+      out.push_back(part);
+    }
+  }
 }
 
 /// Halves cells until each is fine enough, and drops those out of reach.
 std::vector<DepthModel::Cell> DepthModel::refine(const CurveMatcher& points,
                                                  std::vector<Cell> cells,
-                                                 double& most) const {
+                                                 double shift_max) const {
   std::vector<Cell> fine;
   std::size_t lines = 0;
+  double most = -std::numeric_limits<double>::infinity();
   while (!cells.empty()) {
     for (Cell& cell : cells) {
-      look(points, cell);
+      if (!cell.looked) look(points, cell);
       most = std::max(most, cell.best.log_likelihood);
     }
     lines += cells.size();
     std::vector<Cell> next;
     for (const Cell& cell : cells) {
       const double away = std::sqrt(2 * std::max(0.0, most - cell.best.log_likelihood));
-      if (away - kCaution * (cell.radius_reach + cell.effect_reach) > kReach) continue;
-      const int radius_parts = cell.radius_reach > kFine ? 2 : 1;
-      const int effect_parts = cell.effect_reach > kFine ? 2 : 1;
-      if (radius_parts * effect_parts == 1 || lines + next.size() > kLinesMax) {
+      if (away - kCaution * (cell.radius_reach + cell.ratio_reach) > kReach) continue;
+      const bool wide = cell.radius_reach > kFine || std::abs(cell.radius_shift) > shift_max;
+      const bool hard = cell.ratio_reach > kFine || std::abs(cell.ratio_shift) > shift_max;
+      if ((!wide && !hard) || lines + next.size() > kLinesMax) {
         fine.push_back(cell);
         continue;
       }
-      for (int j = 0; j < radius_parts; ++j) {
-        for (int k = 0; k < effect_parts; ++k) {
-          Cell part = cell;
-          part.radius_width = cell.radius_width / radius_parts;
-          part.effect_width = cell.effect_width / effect_parts;
-          if (radius_parts > 1) part.radius += (j - 0.5) * part.radius_width;
-          if (effect_parts > 1) part.effect += (k - 0.5) * part.effect_width;
-          next.push_back(part);
-        }
-      }
+      split(cell, wide, hard, next);
     }
     cells = std::move(next);
   }
   return fine;
 }
 
+/// Of the best depth's logarithm, within the cell.
+double DepthModel::blur(const Cell& cell) noexcept {
+  return 2 * (std::abs(cell.radius_shift) + std::abs(cell.ratio_shift));
+}
+
+/// Of the prior, in radius and ratio.
+double DepthModel::share(const Cell& cell) noexcept {
+  double share = 1;
+  if (cell.radius_width > 0) share *= cell.radius_width;
+  if (cell.ratio_width > 0) share *= cell.ratio_width;
+  return share;
+}
+
+/// The same for a cell that is one of many: a normal distribution.
+void DepthModel::spread(const Cell& cell, std::vector<DepthMass>& out) const {
+  const double low = lattice_.log_depths().low;
+  const double high = deepest(cell.radius);
+  const double width = 2 * kNormalReach / kNormalParts * cell.depth_stddev;
+  for (int i = 0; i < kNormalParts; ++i) {
+    const double off = (i - 0.5 * (kNormalParts - 1)) * width;
+    const double at = cell.log_depth + off;
+    if (at < low || at > high) continue;
+    const double away = off / cell.depth_stddev;
+    out.push_back(
+        {at,
+         width + blur(cell),
+         cell.best.log_likelihood - 0.5 * away * away + at + std::log(width * share(cell))});
+  }
+}
+
 /// The posterior along the depth at the cell's middle, times the cell's share of the prior.
 void DepthModel::integrate(const CurveMatcher& points,
                            const Cell& cell,
-                           std::vector<Mass>& out) const {
-  const CurveLine line = lattice_.line(cell.radius, cell.effect);
+                           std::vector<DepthMass>& out) const {
   const double low = lattice_.log_depths().low;
   const double high = deepest(cell.radius);
+  const CurveLine line = lattice_.line(cell.radius, effect_of(std::exp(cell.log_ratio)), low, high);
   const auto value = [&](double log_depth) {
     return points.match(line.at(log_depth)).log_likelihood;
   };
@@ -221,17 +333,29 @@ void DepthModel::integrate(const CurveMatcher& points,
   const double from = end(low);
   const double width = (end(high) - from) / static_cast<double>(kDepths);
   if (!(width > 0)) return;
-  double share = 1;
-  if (cell.radius_width > 0) share *= cell.radius_width;
-  if (cell.effect_width > 0) {
-    share *= std::log(ratio_of(cell.effect + 0.5 * cell.effect_width) /
-                      ratio_of(cell.effect - 0.5 * cell.effect_width));
-  }
   for (std::size_t i = 0; i < kDepths; ++i) {
     const double at = from + (static_cast<double>(i) + 0.5) * width;
     // Uniform in the depth, not in its logarithm.
-    out.push_back({at, width, value(at) + at + std::log(width * share)});
+    out.push_back({at, width + blur(cell), value(at) + at + std::log(width * share(cell))});
   }
+}
+
+/// Coarsely first; then cells within which the depth moves little against what is known of it.
+std::vector<DepthModel::Cell> DepthModel::cells_of(const CurveMatcher& points) const {
+  std::vector<Cell> cells = refine(points, first_cells(), std::numeric_limits<double>::infinity());
+  for (int pass = 0; pass < kPasses; ++pass) {
+    std::vector<DepthMass> masses;
+    for (const Cell& cell : cells) {
+      masses.push_back(
+          {cell.log_depth,
+           std::sqrt(12.0) * cell.depth_stddev +
+               2 * (std::abs(cell.radius_shift) + std::abs(cell.ratio_shift)),
+           cell.best.log_likelihood + cell.log_depth + std::log(cell.depth_stddev * share(cell))});
+    }
+    const DepthDistribution rough{masses, prior_.depth_min, prior_.depth_max};
+    cells = refine(points, std::move(cells), kShift * rough.stddev() / rough.mean());
+  }
+  return cells;
 }
 
 /// Of the prior's measure as integrate() counts it.
@@ -267,14 +391,15 @@ DepthPosterior DepthModel::update(const Input& input) const {
     points = CurveMatcher{basis_, here};
     plain = points.match(kPlainTerms);
   }
+  const std::vector<Cell> cells = cells_of(points);
+  std::vector<DepthMass> masses;
   double most = -std::numeric_limits<double>::infinity();
-  const std::vector<Cell> cells = refine(points, first_cells(), most);
   double least = plain.misfit;
-  std::vector<Mass> masses;
-  masses.reserve(cells.size() * kDepths);
   for (const Cell& cell : cells) {
+    most = std::max(most, cell.best.log_likelihood);
     least = std::min(least, cell.best.misfit);
-    integrate(points, cell, masses);
+    const bool narrow = cells.size() > kMany && cell.depth_stddev < kNarrow;
+    narrow ? spread(cell, masses) : integrate(points, cell, masses);
   }
   posterior.misfit = points.weights() > 0 ? std::sqrt(std::max(0.0, least) / points.weights()) : 0;
   posterior.gain = 2 * (most - plain.log_likelihood);
@@ -282,55 +407,14 @@ DepthPosterior DepthModel::update(const Input& input) const {
                      .scale_stddev = plain.scale_stddev,
                      .rate_factor = plain.rate_factor,
                      .rate_factor_stddev = plain.rate_factor_stddev};
-  summarise(masses, plain.log_likelihood, posterior);
+  const DepthDistribution depth{masses, prior_.depth_min, prior_.depth_max};
+  posterior.log_evidence = depth.log_total() - log_prior_total() - plain.log_likelihood;
+  posterior.depth = depth.mean();
+  posterior.depth_stddev = depth.stddev();
+  posterior.depth_low = depth.quantile(kAbove);
+  posterior.depth_high = depth.quantile(1 - kBelow);
   posterior.excluded = excluded(points, plain.log_likelihood);
   return posterior;
-}
-
-void DepthModel::summarise(std::vector<Mass>& masses,
-                           double plain,
-                           DepthPosterior& posterior) const {
-  double most = -std::numeric_limits<double>::infinity();
-  for (const Mass& mass : masses) most = std::max(most, mass.log_mass);
-  std::erase_if(masses, [&](const Mass& mass) { return !(mass.log_mass > most - 20); });
-  std::sort(masses.begin(), masses.end(), [](const Mass& a, const Mass& b) {
-    return a.log_depth < b.log_depth;
-  });
-  double total = 0;
-  double mean = 0;
-  double square = 0;
-  for (const Mass& mass : masses) {
-    const double share = std::exp(mass.log_mass - most);
-    const double depth = std::exp(mass.log_depth);
-    total += share;
-    mean += share * depth;
-    square += share * depth * depth;
-  }
-  posterior.log_evidence = total > 0 ? std::log(total) + most - log_prior_total() - plain
-                                     : -std::numeric_limits<double>::infinity();
-  posterior.depth = mean / total;
-  posterior.depth_stddev =
-      std::sqrt(std::max(0.0, square / total - posterior.depth * posterior.depth));
-  // A mass counts half where it lies; between two, the share grows evenly.
-  const auto quantile = [&](double level) {
-    double sum = 0;
-    double before = 0;
-    double at = masses.empty() ? 0 : masses.front().log_depth - 0.5 * masses.front().width;
-    for (const Mass& mass : masses) {
-      const double share = std::exp(mass.log_mass - most) / total;
-      const double here = sum + 0.5 * share;
-      if (here >= level) {
-        return std::exp(at + (mass.log_depth - at) * (level - before) / (here - before));
-      }
-      at = mass.log_depth;
-      before = here;
-      sum += share;
-    }
-    return std::exp(at + 0.5 * masses.back().width);
-  };
-  if (masses.empty()) return;
-  posterior.depth_low = quantile(0.025);
-  posterior.depth_high = quantile(0.975);
 }
 
 /// Down to where every inclusion of kShowing or more would have been seen.
@@ -344,7 +428,7 @@ double DepthModel::excluded(const CurveMatcher& points, double plain) const {
   std::size_t shown = depths.count;
   for (int j = 0; j <= kParts && shown > 0; ++j) {
     const double radius = smallest + (radii.high() - smallest) * j / kParts;
-    const CurveLine line = lattice_.line(radius, effect);
+    const CurveLine line = lattice_.line(radius, effect, depths.low, depths.high());
     for (std::size_t i = 0; i < shown; ++i) {
       if (points.match(line.at(depths.node(i))).log_likelihood < plain - kExcluded) continue;
       shown = i;

@@ -7,6 +7,7 @@
 #include "fem/depth_database.h"
 #include "patient_site/estimator/curve_lattice.h"
 #include "patient_site/estimator/curve_match.h"
+#include "patient_site/estimator/depth_distribution.h"
 
 namespace palp::estimator {
 
@@ -40,33 +41,35 @@ class DepthModel {
   [[nodiscard]] DepthPosterior update(const Input& input) const;
 
  private:
-  /// A range of radius and effect, and the best depth at its middle.
+  /// A range of radius and ratio, and the best depth at its middle.
   struct Cell {
     double radius{};        ///< [m]
     double radius_width{};  ///< [m]
-    double effect{};        ///< [-]
-    double effect_width{};  ///< [-]
-    double log_depth{};     ///< [-], of m
-    double depth_stddev{};  ///< [-], of the logarithm, other things equal
+    double log_ratio{};     ///< [-]
+    double ratio_width{};   ///< [-], of the logarithm
+    double log_depth{};     ///< [-], of m, the best; a guess before look()
+    double depth_stddev{};  ///< [-], of the logarithm, other things equal; 0: there is no guess
     CurveMatch best;
     double radius_reach{};  ///< [-], how far the signal moves to the cell's edge, in stddevs
-    double effect_reach{};  ///< [-]
-  };
-  /// Part of the posterior.
-  struct Mass {
-    double log_depth{};  ///< [-], of m
-    double width{};      ///< [-]
-    double log_mass{};   ///< [-]
+    double ratio_reach{};   ///< [-]
+    double radius_shift{};  ///< [-], how far log_depth moves to the cell's edge
+    double ratio_shift{};   ///< [-]
+    bool looked{};
   };
   [[nodiscard]] std::vector<Cell> first_cells() const;
   [[nodiscard]] double deepest(double radius) const noexcept;
   void look(const CurveMatcher& points, Cell& cell) const;
+  static void split(const Cell& cell, bool wide, bool hard, std::vector<Cell>& out);
   [[nodiscard]] std::vector<Cell> refine(const CurveMatcher& points,
                                          std::vector<Cell> cells,
-                                         double& most) const;
-  void integrate(const CurveMatcher& points, const Cell& cell, std::vector<Mass>& out) const;
+                                         double shift_max) const;
+  [[nodiscard]] std::vector<Cell> cells_of(const CurveMatcher& points) const;
+  void measure(const CurveMatcher& points, const CurveTerms& best, bool pinned, Cell& cell) const;
+  [[nodiscard]] static double blur(const Cell& cell) noexcept;
+  [[nodiscard]] static double share(const Cell& cell) noexcept;  ///< [m], if there is a range
+  void spread(const Cell& cell, std::vector<DepthMass>& out) const;
+  void integrate(const CurveMatcher& points, const Cell& cell, std::vector<DepthMass>& out) const;
   [[nodiscard]] double log_prior_total() const;
-  void summarise(std::vector<Mass>& masses, double plain, DepthPosterior& posterior) const;
   [[nodiscard]] double excluded(const CurveMatcher& points, double plain) const;
 
   DepthPrior prior_;
