@@ -17,8 +17,7 @@ constexpr std::size_t kUnknowns = 7;
 using Vector = std::array<double, kUnknowns>;
 using Matrix = std::array<Vector, kUnknowns>;
 
-constexpr double kSurfaceSpread = 0.3e-3;  // [m], how well the surface is known beforehand
-constexpr double kExact = 1e-6;            // of a value known exactly, relative
+constexpr double kExact = 1e-6;  // of a value known exactly, relative
 
 /// Solves m x = v for a symmetric positive matrix by elimination.
 Vector solve(Matrix m, Vector v) {
@@ -45,20 +44,71 @@ double uniform_information(double low, double high, double value) {
 struct Motion {
   double indentation{};  ///< [m], behind the sensor's pole
   double rate{};         ///< [m/s]
+  bool loading{};
 };
 
-/// Loading branch of one tap.
-std::vector<Motion> loading(const TapPlan& plan) {
+/// The curves at the truth and round it.
+class Curves {
+ public:
+  Curves(const fem::DepthDatabase& database, const fem::DepthDatabase::Query& truth)
+      : database_{database}, plain_{database.plain()}, here_{database.curve(truth)} {
+    const std::array<double, 3> off{0.01 * truth.depth, 0.01 * truth.radius, 0.02};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto shifted = [&](double by) {
+        fem::DepthDatabase::Query query = truth;
+        if (i == 0) query.depth += by;
+        if (i == 1) query.radius += by;
+        if (i == 2) query.ratio *= std::exp(by);
+        return database.curve(query);
+      };
+      low_[i] = shifted(-off[i]);
+      high_[i] = shifted(off[i]);
+      step_[i] = 2 * off[i];
+    }
+  }
+  [[nodiscard]] double deepest() const { return here_.indentation_max; }  ///< [m]
+  [[nodiscard]] double with(double d) const { return database_.force(here_, d); }
+  [[nodiscard]] double without(double d) const { return database_.force(plain_, d); }
+  [[nodiscard]] double slope_with(double d) const { return slope(here_, d); }
+  [[nodiscard]] double slope_without(double d) const { return slope(plain_, d); }
+  /// By depth, radius, log ratio.
+  [[nodiscard]] double along(std::size_t i, double d) const {
+    return (database_.force(high_[i], d) - database_.force(low_[i], d)) / step_[i];
+  }
+
+ private:
+  [[nodiscard]] double slope(const fem::DepthDatabase::Curve& curve, double d) const {
+    constexpr double kStep = 1e-6;  // [m]
+    const double low = std::max(0.0, d - kStep);
+    return (database_.force(curve, d + kStep) - database_.force(curve, low)) / (d + kStep - low);
+  }
+
+  const fem::DepthDatabase& database_;
+  fem::DepthDatabase::Curve plain_;
+  fem::DepthDatabase::Curve here_;
+  std::array<fem::DepthDatabase::Curve, 3> low_;
+  std::array<fem::DepthDatabase::Curve, 3> high_;
+  std::array<double, 3> step_{};
+};
+
+void add(Matrix& to, const Vector& x, double weight) {
+  for (std::size_t i = 0; i < kUnknowns; ++i) {
+    for (std::size_t j = 0; j < kUnknowns; ++j) to[i][j] += weight * x[i] * x[j];
+  }
+}
+
+/// One tap, in the tissue.
+std::vector<Motion> motion_of(const TapPlan& plan) {
   std::vector<Motion> out;
   LowPass pole{plan.sensor_cut_off, plan.period};
   pole.reset(-plan.clearance);
   const double swing = (plan.indentation + plan.clearance) / 2;
   double before = -plan.clearance;
-  for (double t = 0; t < plan.tap_time / 2; t += plan.period) {
+  for (double t = 0; t < plan.tap_time; t += plan.period) {
     const double tip =
         -plan.clearance + swing * (1 - std::cos(2 * std::numbers::pi * t / plan.tap_time));
     const double at = pole.step(tip);
-    if (at > 0) out.push_back({at, (at - before) / plan.period});
+    if (at > 0) out.push_back({at, (at - before) / plan.period, t < plan.tap_time / 2});
     before = at;
   }
   return out;
@@ -90,84 +140,46 @@ DepthBound depth_bound(const fem::DepthDatabase& database,
                        const estimator::DepthPrior& prior,
                        const estimator::StiffnessPrior& stiffness,
                        const TapPlan& plan) {
-  using Query = fem::DepthDatabase::Query;
-  const auto curve = [&](const Query& query) { return database.curve(query); };
-  const double dz = 0.01 * truth.depth;
-  const double da = 0.01 * truth.radius;
-  const double dk = 0.02;
-  const auto shifted = [&](double depth, double radius, double log_ratio) {
-    Query query = truth;
-    query.depth += depth;
-    query.radius += radius;
-    query.ratio *= std::exp(log_ratio);
-    return curve(query);
-  };
-  const auto here = curve(truth);
-  const std::array low{shifted(-dz, 0, 0), shifted(0, -da, 0), shifted(0, 0, -dk)};
-  const std::array high{shifted(dz, 0, 0), shifted(0, da, 0), shifted(0, 0, dk)};
-  const std::array<double, 3> step{2 * dz, 2 * da, 2 * dk};
-  const auto plain = database.plain();
+  const Curves curves{database, truth};
   const double scale = stiffness.scale;
   Matrix information{};
+  Matrix plain_information{};
   Vector signal_right{};
   double signal_squares = 0;
-  const auto add = [&](const Vector& x, double weight, double off) {
-    for (std::size_t i = 0; i < kUnknowns; ++i) {
-      for (std::size_t j = 0; j < kUnknowns; ++j) information[i][j] += weight * x[i] * x[j];
-      signal_right[i] += weight * x[i] * off;
-    }
-    signal_squares += weight * off * off;
-  };
-  const double ds = 1e-6;  // [m]
-  const std::vector<Motion> motion = loading(plan);
-  Matrix plain_information{};
-  for (const Motion& at : motion) {
-    if (at.indentation > std::min(here.indentation_max, 4.05e-3)) continue;
-    const auto force = [&](const auto& of, double d) { return database.force(of, d); };
-    const double with = force(here, at.indentation);
-    const double without = force(plain, at.indentation);
+  for (const Motion& at : motion_of(plan)) {
+    const double d = at.indentation;
+    if (d > std::min(curves.deepest(), estimator::kDeepestPoint)) continue;
+    const double with = curves.with(d);
+    const double without = curves.without(d);
     const double rate = 1 + stiffness.rate_factor * at.rate;
-    const auto slope = [&](const auto& of) {
-      return (force(of, at.indentation + ds) - force(of, std::max(0.0, at.indentation - ds))) /
-             (2 * ds);
+    const auto weight = [&](int strokes, double force) {
+      return strokes * sample_information(force, plan.force_noise, plan.force_quantum);
     };
-    Vector over{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      over[i] =
-          scale * rate * (force(high[i], at.indentation) - force(low[i], at.indentation)) / step[i];
-    }
-    over[3] = rate * with;
-    over[4] = scale * with * at.rate;
-    over[5] = -scale * rate * slope(here);
-    const double weight =
-        plan.taps * sample_information(scale * rate * with, plan.force_noise, plan.force_quantum);
-    add(over, weight, 0);
-    const Vector beside{
-        0, 0, 0, rate * without, scale * without * at.rate, 0, -scale * rate * slope(plain)};
-    const double beside_weight =
-        plan.reference_taps *
-        sample_information(scale * rate * without, plan.force_noise, plan.force_quantum);
-    add(beside, beside_weight, 0);
+    // The answer is there at the last reversal: of that tap the way back is still to come.
+    const int strokes = at.loading ? plan.taps : plan.taps - 1;
+    const double weight_over = weight(strokes, scale * rate * with);
+    const double weight_beside = weight(plan.reference_taps, scale * rate * without);
+    Vector over{0, 0, 0, rate * with, scale * with * at.rate, -scale * rate * curves.slope_with(d)};
+    for (std::size_t i = 0; i < 3; ++i) over[i] = scale * rate * curves.along(i, d);
+    const double slope = -scale * rate * curves.slope_without(d);
+    const Vector beside{0, 0, 0, rate * without, scale * without * at.rate, 0, slope};
     // As if there were no inclusion: what stiffness, rate and surface cannot explain.
-    const Vector blank{
-        0, 0, 0, rate * without, scale * without * at.rate, -scale * rate * slope(plain), 0};
+    const Vector blank{0, 0, 0, rate * without, scale * without * at.rate, slope, 0};
+    add(information, over, weight_over);
+    add(information, beside, weight_beside);
+    add(plain_information, blank, weight_over);
+    add(plain_information, beside, weight_beside);
     const double off = scale * rate * (with - without);
-    for (std::size_t i = 0; i < kUnknowns; ++i) {
-      for (std::size_t j = 0; j < kUnknowns; ++j) {
-        plain_information[i][j] +=
-            weight * blank[i] * blank[j] + beside_weight * beside[i] * beside[j];
-      }
-      signal_right[i] += weight * blank[i] * off;
-    }
-    signal_squares += weight * off * off;
+    for (std::size_t i = 0; i < kUnknowns; ++i) signal_right[i] += weight_over * blank[i] * off;
+    signal_squares += weight_over * off * off;
   }
   const Vector known{uniform_information(prior.depth_min, prior.depth_max, truth.depth),
                      uniform_information(prior.radius_min, prior.radius_max, truth.radius),
                      uniform_information(std::log(prior.ratio_min), std::log(prior.ratio_max), 1),
                      1 / (stiffness.scale_stddev * stiffness.scale_stddev),
                      1 / (stiffness.rate_factor_stddev * stiffness.rate_factor_stddev),
-                     1 / (kSurfaceSpread * kSurfaceSpread),
-                     1 / (kSurfaceSpread * kSurfaceSpread)};
+                     1 / (estimator::kSurfaceSpread * estimator::kSurfaceSpread),
+                     1 / (estimator::kSurfaceSpread * estimator::kSurfaceSpread)};
   for (std::size_t i = 0; i < kUnknowns; ++i) {
     information[i][i] += known[i];
     plain_information[i][i] += known[i];

@@ -24,8 +24,9 @@ struct DepthBound {
   double signal{};        ///< [-], standard deviations by which the inclusion differs from none
 };
 
-/// Fisher information of quantised samples about depth, radius, ratio, stiffness, rate factor and
-/// both surfaces, from derivatives of the database's curves.
+/// Fisher information of quantised samples, loading and unloading as the estimator hears them,
+/// about depth, radius, ratio, stiffness, rate factor and both surfaces, from derivatives of the
+/// database's curves.
 [[nodiscard]] DepthBound depth_bound(const fem::DepthDatabase& database,
                                      const fem::DepthDatabase::Query& truth,
                                      const estimator::DepthPrior& prior,

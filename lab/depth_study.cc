@@ -173,7 +173,7 @@ Result<DepthCase> run_case(const DepthStudy& study, std::uint32_t index) {
   out.depth = truth.query.depth;
   out.radius = truth.query.radius;
   out.ratio = truth.query.ratio;
-  estimator::StiffnessPrior stiffness;
+  const estimator::StiffnessPrior stiffness{.scale = truth.scale};
   const DepthBound bound =
       depth_bound(*database,
                   truth.query,

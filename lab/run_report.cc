@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/core/depth_text.h"
 #include "lab/metric_table.h"
 #include "patient_site/estimator/depth_summary.h"
 #include "patient_site/phantom.h"
@@ -42,6 +43,9 @@ Json depth_json(const DepthEstimate& estimate, estimator::EstimatorKind kind) {
   json["low_mm"] = spread ? number(estimate.depth_low * 1e3) : Json(nullptr);
   json["high_mm"] = spread ? number(estimate.depth_high * 1e3) : Json(nullptr);
   json["stddev_mm"] = spread ? number(estimate.depth_stddev * 1e3) : Json(nullptr);
+  const bool excludes = estimate.verdict == DepthVerdict::None && estimate.depth_low > 0;
+  json["excluded_above_mm"] = excludes ? number(estimate.depth_low * 1e3) : Json(nullptr);
+  json["says"] = depth_text_of(estimate);
   json["h_n"] = number(estimate.hash);
   json["reason"] = to_string(estimate.reason);
   json["estimator"] = to_string(kind);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "common/core/conventions.h"
+#include "common/core/depth_text.h"
 #include "common/record/notes.h"
 
 namespace palp::patient {
@@ -29,27 +30,12 @@ std::string link_text(const link::LinkHealth& link) {
   return text;
 }
 
-std::string interval_text(const DepthEstimate& depth) {
-  if (!(depth.depth_high > depth.depth_low)) return {};
-  return number(" (", depth.depth_low / kMillimetre, 1, " to ") +
-         number("", depth.depth_high / kMillimetre, 1, ")");
-}
-
-std::string depth_text(const DepthEstimate& depth) {
+std::string shown_depth(const DepthEstimate& depth) {
   if (depth.number == 0) return "depth -";
   const std::string hash = number(" (h ", depth.hash, 4, " N)");
-  switch (depth.verdict) {
-    case DepthVerdict::Found:
-      return number("depth ", depth.depth / kMillimetre, 1, " mm") + interval_text(depth) + hash;
-    case DepthVerdict::None:
-      if (depth.depth_low > 0) {
-        return number("no inclusion above ", depth.depth_low / kMillimetre, 0, " mm") + hash;
-      }
-      return "no inclusion" + hash;
-    case DepthVerdict::Invalid:
-      break;
-  }
-  return "depth ? (" + std::string{to_string(depth.reason)} + ")";
+  const std::string text = depth_text_of(depth);
+  if (depth.verdict == DepthVerdict::None) return text + hash;
+  return "depth " + text + (depth.verdict == DepthVerdict::Found ? hash : "");
 }
 
 /// What people should know about the state, where it is not the usual one.
@@ -74,7 +60,7 @@ std::string cue(const PatientStatus& status) {
 std::string status_line(const PatientStatus& status) {
   return std::string{to_string(status.state)} + cue(status) + "  " + link_text(status.link) +
          number("  tip ", status.position / kMillimetre, 2, " mm") +
-         number("  contact ", status.contact_force, 2, " N  ") + depth_text(status.depth);
+         number("  contact ", status.contact_force, 2, " N  ") + shown_depth(status.depth);
 }
 
 }  // namespace palp::patient

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/core/depth_text.h"
 #include "common/core/median.h"
 #include "common/record/notes.h"
 #include "common/record/session_encoder.h"
@@ -115,6 +116,9 @@ Json tap_json(const Tap& tap, const SiteData& patient) {
   depth["low_mm"] = when(interval, estimate.depth_low);
   depth["high_mm"] = when(interval, estimate.depth_high);
   depth["stddev_mm"] = when(found && estimate.depth_stddev > 0, estimate.depth_stddev);
+  const bool excludes = estimate.verdict == DepthVerdict::None && estimate.depth_low > 0;
+  depth["excluded_above_mm"] = when(excludes, estimate.depth_low);
+  depth["says"] = depth_text_of(estimate);
   depth["h_n"] = value(estimate.hash);
   depth["reason"] = to_string(estimate.reason);
   depth["estimator"] = value(patient.entry("estimator"));
@@ -127,6 +131,8 @@ Json depth_json(const OverallDepth& depth) {
   json["depth_mm"] = millimetres(depth.depth);
   json["low_mm"] = millimetres(depth.low);
   json["high_mm"] = millimetres(depth.high);
+  json["excluded_above_mm"] = millimetres(depth.excluded);
+  json["says"] = depth.verdict ? Json(depth.says) : Json(nullptr);
   return json;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "common/core/depth_text.h"
 #include "common/core/median.h"
 #include "patient_site/estimator/depth_summary.h"
 #include "review/text.h"
@@ -122,7 +123,9 @@ OverallDepth judge_depth(const std::vector<Tap>& taps) {
     return {};
   }
   const DepthEstimate summary = estimator::summarise_depths(over);
-  OverallDepth overall{.verdict = summary.verdict, .depth = {}, .low = {}, .high = {}};
+  OverallDepth overall;
+  overall.verdict = summary.verdict;
+  overall.says = depth_text_of(summary);
   if (summary.verdict == DepthVerdict::Found) {
     overall.depth = summary.depth;
   }
@@ -130,13 +133,16 @@ OverallDepth judge_depth(const std::vector<Tap>& taps) {
     overall.low = summary.depth_low;
     overall.high = summary.depth_high;
   }
+  if (summary.verdict == DepthVerdict::None && summary.depth_low > 0) {
+    overall.excluded = summary.depth_low;
+  }
   return overall;
 }
 
 std::string tap_table(const std::vector<Tap>& taps, const OverallDepth& depth) {
   std::string text{
       "site  stroke    indentation  force max  stiffness felt    true   error      h  "
-      "verdict  depth\n"
+      "verdict  depth  95 % interval\n"
       "                         mm          N             N/m     N/m       %      N"
       "              mm\n"};
   for (const Tap& tap : taps) {
@@ -153,6 +159,10 @@ std::string tap_table(const std::vector<Tap>& taps, const OverallDepth& depth) {
             cell(stiffness.felt, 1, 16) + cell(stiffness.truth, 1, 8) + cell(error, 1, 8) +
             cell(estimate.hash, 4, 8) + "  " + left(std::string{to_string(estimate.verdict)}, 7) +
             cell(found ? std::optional{estimate.depth * 1e3} : std::nullopt, 2, 7);
+    if (has_interval(estimate)) {
+      text +=
+          "  " + fixed(estimate.depth_low * 1e3, 1) + " to " + fixed(estimate.depth_high * 1e3, 1);
+    }
     const std::string reason{to_string(estimate.reason)};
     text += (reason.empty() ? "" : "  (" + reason + ')') + '\n';
   }
@@ -160,10 +170,10 @@ std::string tap_table(const std::vector<Tap>& taps, const OverallDepth& depth) {
     text += "no stroke\n";
   }
   text += "over the inclusion: ";
-  text += depth.verdict ? std::string{to_string(*depth.verdict)} : "no tap";
-  if (depth.depth) {
-    text += ", top of the inclusion " + fixed(*depth.depth * 1e3, 2) + " mm below the surface";
-  }
+  if (!depth.verdict) return text + "no tap\n";
+  if (depth.depth)
+    return text + "found, top of the inclusion " + depth.says + " below the surface\n";
+  text += depth.says;
   return text + '\n';
 }
 

@@ -36,9 +36,11 @@ struct Tap {
 /// All taps over the inclusion together.
 struct OverallDepth {
   std::optional<DepthVerdict> verdict;  ///< nullopt: no tap there
-  std::optional<double> depth;          ///< [m], median of those that found one
+  std::optional<double> depth;          ///< [m]
   std::optional<double> low;            ///< [m]
   std::optional<double> high;           ///< [m]
+  std::optional<double> excluded;       ///< [m], as DepthEstimate::depth_low of verdict None
+  std::string says;                     ///< for people
 };
 /// By estimator::summarise_depths() of the taps at B.
 [[nodiscard]] OverallDepth judge_depth(const std::vector<Tap>& taps);

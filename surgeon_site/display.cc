@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "common/core/conventions.h"
+#include "common/core/depth_text.h"
 #include "common/record/notes.h"
 
 namespace palp::surgeon {
@@ -32,18 +33,12 @@ std::string link_text(const link::LinkHealth& link) {
   return text;
 }
 
-std::string depth_text(const link::DepthReport& depth) {
+std::string shown_depth(const link::DepthReport& depth) {
   if (depth.number == 0) return "depth -";
-  switch (depth.verdict) {
-    case DepthVerdict::Found:
-      return number("depth ", depth.depth / kMillimetre, 1, " mm") +
-             number(" (h ", depth.hash, 4, " N)");
-    case DepthVerdict::None:
-      return "no inclusion" + number(" (h ", depth.hash, 4, " N)");
-    case DepthVerdict::Invalid:
-      break;
-  }
-  return "depth ? (" + std::string{to_string(depth.reason)} + ")";
+  const std::string hash = number(" (h ", depth.hash, 4, " N)");
+  const std::string text = depth_text_of(depth);
+  if (depth.verdict == DepthVerdict::None) return text + hash;
+  return "depth " + text + (depth.verdict == DepthVerdict::Found ? hash : "");
 }
 
 std::string progress_text(const ScriptProgress& script) {
@@ -78,7 +73,7 @@ std::string cue(const SurgeonStatus& status) {
 
 std::string status_line(const SurgeonStatus& status) {
   return std::string{to_string(status.state)} + cue(status) + "  " + link_text(status.link) +
-         number("  force ", status.force, 2, " N  ") + depth_text(status.depth) +
+         number("  force ", status.force, 2, " N  ") + shown_depth(status.depth) +
          progress_text(status.script);
 }
 

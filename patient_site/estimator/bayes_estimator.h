@@ -14,8 +14,8 @@ struct BayesEstimatorConfig {
   double indentation_min{1.5e-3};  ///< [m]
   DepthPrior prior;
   StiffnessPrior stiffness;       ///< before anything was touched
-  double evidence_min{3};         ///< [-], log of the odds from which an inclusion is found
-  double gain_min{12};            ///< [-], and what the best one must gain: 3.5 sigma
+  double evidence_min{2};         ///< [-], log of the odds from which an inclusion is found
+  double gain_min{9};             ///< [-], and what the best one must gain: 3 sigma
   double reference_spread{1e-3};  ///< [-], of the block's stiffness from place to place
 };
 

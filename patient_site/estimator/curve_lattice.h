@@ -8,14 +8,15 @@
 
 namespace palp::estimator {
 
-/// What is known of an inclusion before it was touched. Equal ends: known exactly.
+/// What is known of an inclusion before it was touched: by default no more than that the database
+/// has it. Equal ends: known exactly.
 struct DepthPrior {
   double depth_min{3e-3};    ///< [m], uniform between
   double depth_max{27e-3};   ///< [m]
-  double radius_min{15e-3};  ///< [m], uniform between
-  double radius_max{15e-3};  ///< [m]
-  double ratio_min{856.2};   ///< [-], uniform in the logarithm
-  double ratio_max{856.2};   ///< [-]
+  double radius_min{3e-3};   ///< [m], uniform between
+  double radius_max{16e-3};  ///< [m]
+  double ratio_min{3};       ///< [-], uniform in the logarithm
+  double ratio_max{900};     ///< [-]
   fem::InclusionShape shape{fem::InclusionShape::Ball};
 };
 

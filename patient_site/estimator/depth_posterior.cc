@@ -24,14 +24,13 @@ constexpr std::size_t kMany = 60;     // cells, of which those narrower in the d
 constexpr double kNarrow = 0.03;      // [-] need not be summed: the posterior is made of many
 constexpr double kNormalReach = 3.5;  // [-], standard deviations
 constexpr int kNormalParts = 7;
-constexpr std::size_t kDepths = 21;   // of one line, summed
-constexpr double kShift = 0.5;        // [-], of the posterior's width, within a cell
-constexpr double kAbove = 0.015;      // [-], of the posterior, less deep than the interval: the
-constexpr double kBelow = 0.035;      // end that is met first has the smaller share of the 5 %
-constexpr int kPasses = 2;            // from cells to the posterior's width and back
-constexpr double kShowing = 5e-3;     // [m], radius of which "excluded" speaks
-constexpr double kShowingRatio = 10;  // [-], and how much stiffer it is at least
-constexpr double kExcluded = 3;       // [-], log of 20
+constexpr std::size_t kDepths = 21;  // of one line, summed
+constexpr double kShift = 0.5;       // [-], of the posterior's width, within a cell
+constexpr double kAbove = 0.015;     // [-], of the posterior, less deep than the interval: the
+constexpr double kBelow = 0.035;     // end that is met first has the smaller share of the 5 %
+constexpr int kPasses = 2;           // from cells to the posterior's width and back
+constexpr std::size_t kShowingStride = 4;  // of the radii
+constexpr double kExcluded = 3;            // [-], log of 20
 
 /// Maximum of `value` between the first and the last of three places, the middle one above both:
 /// parabolas, golden sections where they lead nowhere.
@@ -115,12 +114,23 @@ std::optional<Peak> search(double guess, double width, const Value& value) {
   return std::nullopt;
 }
 
+DepthPrior showing(const fem::DepthDatabase& database, const DepthPrior& prior) {
+  return {.depth_min = database.grid().depths.front(),
+          .depth_max = database.grid().depths.back(),
+          .radius_min = kShowingRadius,
+          .radius_max = database.grid().radii.back(),
+          .ratio_min = kShowingRatio,
+          .ratio_max = kShowingRatio,
+          .shape = prior.shape};
+}
+
 }  // namespace
 
 DepthModel::DepthModel(const fem::DepthDatabase& database, const DepthPrior& prior)
     : prior_{prior},
       height_{database.grid().block.height},
       lattice_{database, prior},
+      showing_{database, showing(database, prior)},
       basis_{database} {}
 
 /// An inclusion does not reach below the block.
@@ -417,18 +427,15 @@ DepthPosterior DepthModel::update(const Input& input) const {
   return posterior;
 }
 
-/// Down to where every inclusion of kShowing or more would have been seen.
+/// Down to where every inclusion of kShowingRadius or more would have been seen. A stiffer one
+/// shows more, so one ratio speaks for those above it.
 double DepthModel::excluded(const CurveMatcher& points, double plain) const {
-  const NodeAxis& radii = lattice_.radii();
-  const NodeAxis& effects = lattice_.effects();
-  const NodeAxis& depths = lattice_.log_depths();
-  const double effect = std::clamp(effect_of(kShowingRatio), effects.low, effects.high());
-  const double smallest = std::clamp(kShowing, radii.low, radii.high());
-  constexpr int kParts = 6;
+  const NodeAxis& radii = showing_.radii();
+  const NodeAxis& depths = showing_.log_depths();
   std::size_t shown = depths.count;
-  for (int j = 0; j <= kParts && shown > 0; ++j) {
-    const double radius = smallest + (radii.high() - smallest) * j / kParts;
-    const CurveLine line = lattice_.line(radius, effect, depths.low, depths.high());
+  for (std::size_t j = 0; j < radii.count && shown > 0; j += kShowingStride) {
+    const CurveLine line =
+        showing_.line(radii.node(j), showing_.effects().low, depths.low, depths.high());
     for (std::size_t i = 0; i < shown; ++i) {
       if (points.match(line.at(depths.node(i))).log_likelihood < plain - kExcluded) continue;
       shown = i;

@@ -11,6 +11,10 @@
 
 namespace palp::estimator {
 
+/// "Excluded" speaks of inclusions at least so large and so much stiffer than the tissue.
+inline constexpr double kShowingRadius = 5e-3;  // [m]
+inline constexpr double kShowingRatio = 10;
+
 /// What the points of one place say.
 struct DepthPosterior {
   double depth{};         ///< [m], mean, given that there is an inclusion
@@ -20,7 +24,7 @@ struct DepthPosterior {
   double log_evidence{};  ///< [-], of an inclusion over none
   double gain{};          ///< [-], twice the log-likelihood the best inclusion gains over none
   double misfit{};        ///< [N], rms of the points, each weighted by its samples
-  double excluded{};      ///< [m]: an inclusion of 5 mm or more above this depth would have shown
+  double excluded{};      ///< [m]: an inclusion of kShowingRadius or more above would have shown
   StiffnessPrior plain;   ///< what the points say of the block if there is no inclusion
 };
 
@@ -75,6 +79,7 @@ class DepthModel {
   DepthPrior prior_;
   double height_;  ///< [m], of the block
   CurveLattice lattice_;
+  CurveLattice showing_;  ///< what `excluded` speaks of
   CurveBasis basis_;
 };
 

@@ -7,10 +7,25 @@
 #include "common/core/median.h"
 
 namespace palp::estimator {
+namespace {
+
+/// An estimator with error bars adds up the strokes of a place itself.
+bool adds_up(const DepthEstimate& stroke) {
+  return (stroke.verdict == DepthVerdict::Found && stroke.depth_stddev > 0) ||
+         (stroke.verdict == DepthVerdict::None && stroke.depth_low > 0);
+}
+
+}  // namespace
 
 DepthEstimate summarise_depths(std::span<const DepthEstimate> strokes) {
   if (strokes.empty()) return {};
   DepthEstimate summary = strokes.back();
+  const bool added_up = std::any_of(strokes.begin(), strokes.end(), adds_up);
+  if (added_up) {
+    summary = *std::find_if(strokes.rbegin(), strokes.rend(), [](const DepthEstimate& stroke) {
+      return stroke.verdict != DepthVerdict::Invalid;
+    });
+  }
   std::vector<double> depths;
   std::vector<double> hashes;
   std::size_t none = 0;
@@ -22,6 +37,7 @@ DepthEstimate summarise_depths(std::span<const DepthEstimate> strokes) {
     summary.force_max = std::max(summary.force_max, stroke.force_max);
   }
   if (!hashes.empty()) summary.hash = median(hashes).value();
+  if (added_up) return summary;
   if (depths.empty() && none == 0) {
     summary.verdict = DepthVerdict::Invalid;
     return summary;

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "common/core/stroke.h"
+
+namespace palp {
+
+/// What an estimate says, for people.
+struct DepthStatement {
+  DepthVerdict verdict{DepthVerdict::Invalid};
+  DepthReason reason{DepthReason::Ok};
+  double depth{};  ///< [m]
+  double low{};    ///< [m], as DepthEstimate::depth_low
+  double high{};   ///< [m]
+};
+
+/// "11.8 mm, between 11.1 and 12.6", "no inclusion of radius >= 5 mm above 12 mm", or why nothing
+/// can be said.
+[[nodiscard]] std::string depth_text(const DepthStatement& statement);
+
+/// Of a DepthEstimate or what a telegram carries of it.
+template <typename Estimate>
+[[nodiscard]] std::string depth_text_of(const Estimate& estimate) {
+  return depth_text({.verdict = estimate.verdict,
+                     .reason = estimate.reason,
+                     .depth = estimate.depth,
+                     .low = estimate.depth_low,
+                     .high = estimate.depth_high});
+}
+
+}  // namespace palp
