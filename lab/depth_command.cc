@@ -20,6 +20,8 @@ namespace {
 using config::Ending;
 using config::ExitCode;
 
+constexpr std::uint32_t kWideShare = 5;  // so many random phantoms for a wide one
+
 Ending bad_input(const std::string& sentence) {
   return {ExitCode::BadInput, "palp-lab: " + sentence};
 }
@@ -54,8 +56,8 @@ Result<DepthStudy> study_of(const DepthFlags& flags) {
                    .reference_taps = static_cast<int>(flags.reference_taps),
                    .round_trip = flags.rtt_ms * 1e-3,
                    .loss = flags.loss,
-                   .coupling = flags.coupling,
-                   .wide = flags.wide};
+                   .coupling = flags.coupling};
+  study.wide_count = flags.wide ? study.count : study.count / kWideShare;
   if (flags.depths_mm.empty()) return study;
   auto depths = parse_depths(flags.depths_mm);
   if (!depths) return tl::unexpected(depths.error());
@@ -140,7 +142,8 @@ void declare_depth(config::CommandLine& line, DepthFlags& flags) {
   line.number("--rtt-ms", flags.rtt_ms, {.min = 0, .max = 5000, .unit = "ms"}, "round trip");
   line.number("--loss", flags.loss, {.min = 0, .max = 1}, "share of datagrams lost each way");
   line.text("--coupling", flags.coupling, "NAME", "instead of the standard scenario's");
-  line.toggle("--wide", flags.wide, "random phantoms from a range wider than the prior's");
+  line.toggle(
+      "--wide", flags.wide, "as many phantoms from a range wider than the prior's, not a fifth");
   line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "processes at a time");
   line.text("--report", flags.report, "FILE", "JSON report");
   line.text("--csv", flags.csv, "FILE", "a line per case");

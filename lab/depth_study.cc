@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "common/core/conventions.h"
 #include "common/core/random.h"
@@ -27,37 +28,60 @@ double uniform(const DepthStudy& study, Draw what, std::uint32_t index, double l
   return low + (high - low) * random_uniform(study.seed, static_cast<std::uint64_t>(what), index);
 }
 
+/// What case `index` of a study is.
+struct CasePlan {
+  bool inclusion{};
+  bool wide{};
+  Knowledge knowledge{Knowledge::Range};
+  std::uint32_t drawn{};        ///< index of its draws: palpations with the same are the same
+  std::optional<double> depth;  ///< [m], of the paper's ball
+};
+
+CasePlan plan_of(const DepthStudy& study, std::uint32_t index) {
+  if (study.depths.empty()) {
+    return {.inclusion = index < study.count || index >= 2 * study.count,
+            .wide = index >= 2 * study.count,
+            .drawn = index,
+            .depth = {}};
+  }
+  const auto all = static_cast<std::uint32_t>(study.depths.size()) * study.repeats;
+  return {.inclusion = true,
+          .knowledge = index < all ? Knowledge::Ball : Knowledge::Range,
+          .drawn = index % all,
+          .depth = study.depths[index % all / study.repeats]};
+}
+
 struct Truth {
   fem::DepthDatabase::Query query;
-  bool inclusion{};
   double scale{1};     ///< [-]
   double tap_time{1};  ///< [s]
   double reach{4e-3};  ///< [m], aimed at
 };
 
 /// Depth 4 to 25 mm, radius 3 to 15 mm, ratio 3 to 900, stiffness +-10 %, hands of all speeds.
-Truth draw(const DepthStudy& study, std::uint32_t index, const fem::DepthDatabase& database) {
+/// Wide: all that the database has, stiffness +-20 %.
+Truth draw(const DepthStudy& study, const CasePlan& plan, const fem::DepthDatabase& database) {
   Truth truth;
+  const std::uint32_t index = plan.drawn;
   truth.tap_time = uniform(study, Draw::Time, index, 0.7, 1.4);
   truth.reach = uniform(study, Draw::Reach, index, 3.6e-3, 4.2e-3);
-  if (!study.depths.empty()) {
-    truth.inclusion = true;
+  if (plan.depth) {
     truth.query = {.shape = fem::InclusionShape::Ball,
-                   .depth = study.depths[index / study.repeats],
+                   .depth = *plan.depth,
                    .radius = kPaperRadius,
                    .ratio = kPaperRatio};
     return truth;
   }
-  truth.inclusion = index < study.count;
-  truth.scale = uniform(study, Draw::Scale, index, 0.9, 1.1);
-  const double thin = study.wide ? 3e-3 : 4e-3;
-  const double deep = study.wide ? 27e-3 : 25e-3;
+  const double spread = plan.wide ? 0.2 : 0.1;
+  truth.scale = uniform(study, Draw::Scale, index, 1 - spread, 1 + spread);
+  const double thin = plan.wide ? 3e-3 : 4e-3;
+  const double deep = plan.wide ? 27e-3 : 25e-3;
   // What does not fit into the block is drawn again, on the next index of the same stream.
   for (std::uint32_t attempt = 0; attempt < 50; ++attempt) {
     const std::uint32_t at = index + 1'000'003U * attempt;
     truth.query = {.shape = fem::InclusionShape::Ball,
                    .depth = uniform(study, Draw::Depth, at, thin, deep),
-                   .radius = uniform(study, Draw::Radius, at, 3e-3, study.wide ? 16e-3 : 15e-3),
+                   .radius = uniform(study, Draw::Radius, at, 3e-3, plan.wide ? 16e-3 : 15e-3),
                    .ratio = 3 * std::pow(300, uniform(study, Draw::Ratio, at, 0, 1))};
     if (database.contains(truth.query)) break;
   }
@@ -76,29 +100,31 @@ patient::ForceTable table_of(const fem::DepthDatabase& database,
   return *patient::ForceTable::make(std::move(rows));
 }
 
-estimator::DepthPrior prior_of(const DepthStudy& study) {
-  estimator::DepthPrior prior;
-  if (!study.depths.empty()) {
-    prior.radius_min = prior.radius_max = kPaperRadius;
-    prior.ratio_min = prior.ratio_max = kPaperRatio;
-  } else {
-    prior.depth_min = 4e-3;
-    prior.depth_max = 25e-3;
-    prior.radius_min = 3e-3;
-    prior.radius_max = 15e-3;
-    prior.ratio_min = 3;
-    prior.ratio_max = 900;
+/// Random phantoms are drawn from the prior; of the paper's ball the estimator knows all, or what
+/// it assumes unless told.
+estimator::DepthPrior prior_of(const CasePlan& plan) {
+  if (plan.knowledge == Knowledge::Ball) {
+    return {.radius_min = kPaperRadius,
+            .radius_max = kPaperRadius,
+            .ratio_min = kPaperRatio,
+            .ratio_max = kPaperRatio};
   }
-  return prior;
+  if (plan.depth) return {};
+  return {.depth_min = 4e-3,
+          .depth_max = 25e-3,
+          .radius_min = 3e-3,
+          .radius_max = 15e-3,
+          .ratio_min = 3,
+          .ratio_max = 900};
 }
 
 Result<Scenario> scenario_of(const DepthStudy& study,
-                             std::uint32_t index,
+                             const CasePlan& plan,
                              const Truth& truth,
                              const fem::DepthDatabase& database) {
   auto document = load_scenario("standard");
   if (!document) return tl::unexpected(document.error());
-  const double grips = uniform(study, Draw::Grip, index, 0, 3);
+  const double grips = uniform(study, Draw::Grip, plan.drawn, 0, 3);
   const char* grip = grips < 1 ? "light" : grips < 2 ? "mid" : "firm";
   const std::string delay = std::to_string(500 * study.round_trip);
   for (const auto& [path, value] : std::vector<std::pair<std::string, std::string>>{
@@ -115,10 +141,10 @@ Result<Scenario> scenario_of(const DepthStudy& study,
   auto scenario = make_scenario("standard", *document);
   if (!scenario) return scenario;
   scenario->bare = true;
-  scenario->seed = random_bits(study.seed, 9000, index) >> 16;
+  scenario->seed = random_bits(study.seed, 9000, plan.drawn) >> 16;
   scenario->phantom.name = "database";
   scenario->phantom.plain = table_of(database, database.plain(), truth.scale);
-  scenario->phantom.over = truth.inclusion
+  scenario->phantom.over = plan.inclusion
                                ? table_of(database, database.curve(truth.query), truth.scale)
                                : scenario->phantom.plain;
   scenario->patient.gate =
@@ -136,27 +162,32 @@ Result<Scenario> scenario_of(const DepthStudy& study,
   scenario->script = script.build();
   scenario->duration = {};
   scenario->estimator.kind = study.estimator;
-  scenario->estimator.bayes.prior = prior_of(study);
+  scenario->estimator.bayes.prior = prior_of(plan);
   return scenario;
 }
 
 }  // namespace
 
 std::uint32_t case_count(const DepthStudy& study) {
-  if (study.depths.empty()) return 2 * study.count;
-  return static_cast<std::uint32_t>(study.depths.size()) * study.repeats;
+  if (study.depths.empty()) return 2 * study.count + study.wide_count;
+  // The paper's estimator knows nothing beforehand.
+  const std::uint32_t kinds = study.estimator == estimator::EstimatorKind::Bayes ? 2 : 1;
+  return static_cast<std::uint32_t>(study.depths.size()) * study.repeats * kinds;
 }
 
 Result<DepthCase> run_case(const DepthStudy& study, std::uint32_t index) {
   const auto database = fem::default_database();
   if (!database) return tl::unexpected(database.error());
-  const Truth truth = draw(study, index, *database);
-  const auto scenario = scenario_of(study, index, truth, *database);
+  const CasePlan plan = plan_of(study, index);
+  const Truth truth = draw(study, plan, *database);
+  const auto scenario = scenario_of(study, plan, truth, *database);
   if (!scenario) return tl::unexpected(scenario.error());
   const TrialResult result = run_trial(*scenario);
   DepthCase out;
   out.index = index;
-  out.inclusion = truth.inclusion;
+  out.inclusion = plan.inclusion;
+  out.wide = plan.wide;
+  out.knowledge = plan.knowledge;
   out.scale = truth.scale;
   for (const DepthEstimate& estimate : result.depths) {
     if (estimate.lateral < kStage) continue;
@@ -166,10 +197,12 @@ Result<DepthCase> run_case(const DepthStudy& study, std::uint32_t index) {
     out.estimate = estimate.depth;
     out.low = estimate.depth_low;
     out.high = estimate.depth_high;
+    out.stddev = estimate.depth_stddev;
+    out.excluded = estimate.verdict == DepthVerdict::None ? estimate.depth_low : 0;
     out.hash = estimate.hash;
     out.indentation = std::max(out.indentation, estimate.indentation_max);
   }
-  if (!truth.inclusion) return out;
+  if (!plan.inclusion) return out;
   out.depth = truth.query.depth;
   out.radius = truth.query.radius;
   out.ratio = truth.query.ratio;
@@ -177,7 +210,7 @@ Result<DepthCase> run_case(const DepthStudy& study, std::uint32_t index) {
   const DepthBound bound =
       depth_bound(*database,
                   truth.query,
-                  prior_of(study),
+                  prior_of(plan),
                   stiffness,
                   {.taps = study.taps,
                    .reference_taps = study.reference_taps,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/core/result.h"
@@ -10,12 +11,22 @@
 
 namespace palp::lab {
 
+/// What the estimator knows of the inclusion beforehand: the paper's ball exactly, or a range (of
+/// random phantoms the one they are drawn from).
+enum class Knowledge : std::uint8_t { Ball, Range };
+[[nodiscard]] constexpr std::string_view to_string(Knowledge knowledge) noexcept {
+  return knowledge == Knowledge::Ball ? "ball" : "range";
+}
+
 /// Monte Carlo of whole palpations: reference taps beside, then taps over an inclusion, through
 /// hand, coupling, network, servo and sensor, in virtual time.
 struct DepthStudy {
-  std::vector<double> depths{};  ///< [m], the paper's phantom at these; empty: random phantoms
-  std::uint32_t count{100};      ///< random phantoms with, and as many without an inclusion
-  std::uint32_t repeats{1};      ///< of each depth
+  /// [m], the paper's phantom at these, each palpation judged with both kinds of knowledge; empty:
+  /// random phantoms
+  std::vector<double> depths{};
+  std::uint32_t count{100};    ///< random phantoms with, and as many without an inclusion
+  std::uint32_t wide_count{};  ///< and beside them so many from a range wider than the prior's
+  std::uint32_t repeats{1};    ///< of each depth
   std::uint64_t seed{1};
   estimator::EstimatorKind estimator{estimator::EstimatorKind::Bayes};
   int taps{4};
@@ -23,13 +34,14 @@ struct DepthStudy {
   double round_trip{};     ///< [s]
   double loss{};           ///< [-], each way
   std::string coupling{};  ///< empty: the scenario's
-  bool wide{};             ///< phantoms from a range wider than the prior's
 };
 
 /// One palpation and what was said of it. Plain memory: it crosses a pipe between processes.
 struct DepthCase {
   std::uint32_t index{};
   bool inclusion{};
+  bool wide{};  ///< from the wider range
+  Knowledge knowledge{Knowledge::Range};
   DepthVerdict verdict{DepthVerdict::Invalid};
   double depth{};        ///< [m], true
   double radius{};       ///< [m]
@@ -38,6 +50,8 @@ struct DepthCase {
   double estimate{};     ///< [m]
   double low{};          ///< [m]
   double high{};         ///< [m]
+  double stddev{};       ///< [m], as claimed
+  double excluded{};     ///< [m], verdict None
   double hash{};         ///< [N]
   double bound{};        ///< [m], Cramer-Rao
   double signal{};       ///< [-], standard deviations

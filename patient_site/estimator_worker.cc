@@ -16,7 +16,10 @@ std::size_t EstimatorWorker::drain() {
   ContactSample sample;
   while (parts_.contact.try_dequeue(sample)) {
     ++count;
-    if (const auto estimate = estimator_.add(sample)) publish(*estimate);
+    if (const auto estimate = estimator_.add(sample)) {
+      reversal_at_ = sample.at;
+      publish(*estimate);
+    }
   }
   return count;
 }

@@ -28,6 +28,8 @@ class EstimatorWorker {
   std::size_t drain();
 
   [[nodiscard]] std::uint64_t strokes() const noexcept { return strokes_; }
+  /// Of the sample that showed the last stroke's reversal.
+  [[nodiscard]] TimePoint reversal_at() const noexcept { return reversal_at_; }
   [[nodiscard]] std::uint64_t records() const noexcept { return records_; }
   [[nodiscard]] std::uint64_t records_lost() const noexcept { return records_lost_; }
 
@@ -38,6 +40,7 @@ class EstimatorWorker {
   estimator::DepthEstimator estimator_;
   Parts parts_;
   std::uint64_t strokes_{};
+  TimePoint reversal_at_{};
   std::uint64_t records_{};
   std::uint64_t records_lost_{};
 };

@@ -102,7 +102,11 @@ std::string to_json(const SiteReport& report) {
   json["round_trip_min_ms"] = milliseconds(report.round_trips.least());
   json["clock"] = clock_json(link);
   json["sessions"] = report.sessions;
-  if (report.estimates) json["estimates"] = *report.estimates;
+  if (report.estimates) {
+    json["estimates"] = *report.estimates;
+    json["estimate_latency_p50_ms"] = microseconds(report.estimate_p50) / 1e3;
+    json["estimate_latency_max_ms"] = microseconds(report.estimate_max) / 1e3;
+  }
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -39,6 +39,8 @@ struct SiteReport {
   RoundTrips round_trips;
   std::uint64_t sessions{};
   std::optional<std::uint64_t> estimates;  ///< the patient's
+  Duration estimate_p50{};  ///< from the sample that showed a reversal to the estimate
+  Duration estimate_max{};
 };
 
 [[nodiscard]] std::string to_json(const SiteReport& report);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kRadiusCells = 6;  // to begin with
 constexpr std::size_t kRatioCells = 4;
-constexpr std::size_t kLinesMax = 700;  // a bound on the time
+constexpr std::size_t kLinesMax = 300;  // a bound on the time
 constexpr double kReach = 4;            // [-], standard deviations below the best: forgotten
 constexpr double kFine = 0.9;           // [-], standard deviations to a cell's edge: fine enough
 constexpr double kCaution = 1.4;        // [-], the information changes within a cell
