@@ -157,7 +157,7 @@ Ending run_depth(const DepthFlags& flags) {
   if (!cases) return bad_input(cases.error().text);
   for (const auto& [path, text] : {std::pair{flags.report, depth_report(*study, *cases)},
                                    std::pair{flags.csv, depth_csv(*cases)},
-                                   std::pair{flags.svg, depth_svg(*cases)}}) {
+                                   std::pair{flags.svg, depth_svg(*study, *cases)}}) {
     if (path.empty()) continue;
     if (const auto written = config::write_whole_file(path, text); !written) {
       return {ExitCode::CannotOpen, "palp-lab: " + written.error().text};

@@ -61,7 +61,7 @@ TEST(DepthStudyTest, ReportsNameTheirSchemaAndCountCases) {
   const std::string report = depth_report(study, {*with, *without});
   EXPECT_NE(report.find("palp.depth/1"), std::string::npos);
   EXPECT_NE(report.find("\"plain_count\": 1"), std::string::npos);
-  EXPECT_NE(depth_svg({*with}).find("</svg>"), std::string::npos);
+  EXPECT_NE(depth_svg(study, {*with}).find("</svg>"), std::string::npos);
 }
 
 TEST(DepthCommandTest, RefusesDepthsThatAreNone) {
