@@ -46,6 +46,7 @@ LinearContact::LinearContact(const Mesh& mesh, const Specimen& specimen, double 
     const int row = assembler_.equation(z_of(contact_[static_cast<std::size_t>(i)].node));
     compliance_.row(i) = response_.row(row);
   }
+  asymmetry_ = (compliance_ - compliance_.transpose()).norm() / compliance_.norm();
   compliance_ = 0.5 * (compliance_ + compliance_.transpose()).eval();
   force_ = Eigen::VectorXd::Zero(count);
   active_.assign(contact_.size(), false);

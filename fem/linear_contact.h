@@ -30,6 +30,8 @@ class LinearContact {
   [[nodiscard]] double energy() const;
   /// Displacement of contact node i under a unit force on node j. [m/N]
   [[nodiscard]] const Eigen::MatrixXd& compliance() const noexcept { return compliance_; }
+  /// Of the compliance as it came out of the factors, relative; compliance() is symmetric by force.
+  [[nodiscard]] double asymmetry() const noexcept { return asymmetry_; }
   [[nodiscard]] int equations() const noexcept { return assembler_.equations(); }
 
  private:
@@ -50,6 +52,7 @@ class LinearContact {
   std::vector<ContactNode> contact_;
   Eigen::MatrixXd response_;    ///< [m/N], all equations, one column per contact node
   Eigen::MatrixXd compliance_;  ///< [m/N], downward, between contact nodes
+  double asymmetry_{};          ///< [-]
   std::vector<bool> active_;
   Eigen::VectorXd force_;  ///< [N], downward, on contact nodes
 };

@@ -4,6 +4,7 @@
 #include "common/config/command_line.h"
 #include "fem/curve_command.h"
 #include "fem/database_command.h"
+#include "fem/verify_command.h"
 
 namespace palp::fem {
 namespace {
@@ -16,11 +17,14 @@ int run(int argc, char** argv) {
   declare_database(line.verb("database", "solve the depth database"), database);
   declare_merge(line.verb("merge", "put databases of one grid together"), database);
   declare_info(line.verb("info", "what a database holds"), database);
+  VerifyFlags verify;
+  declare_verify(line.verb("verify", "the solver against closed solutions"), verify);
   if (const auto ending = line.parse(argc, argv)) return leave(*ending);
   const std::string verb = line.chosen_verb();
   if (verb == "database") return leave(run_database(database));
   if (verb == "merge") return leave(run_merge(database));
   if (verb == "info") return leave(run_info(database));
+  if (verb == "verify") return leave(run_verify(verify));
   return leave(run_curve(curve));
 }
 

@@ -12,8 +12,7 @@ TEST(LinearContactTest, ComplianceIsSymmetricAndForceIsTheSlopeOfTheEnergy) {
   Specimen specimen;
   specimen.inclusion = {.shape = InclusionShape::Ball, .depth = 6e-3, .radius = 8e-3};
   LinearContact contact{make_mesh(specimen, Accuracy::Coarse), specimen, 3e-3};
-  const Eigen::MatrixXd& c = contact.compliance();
-  EXPECT_LT((c - c.transpose()).norm(), 1e-14 * c.norm());
+  EXPECT_LT(contact.asymmetry(), 1e-10);
   const double step = 1e-6;
   ASSERT_TRUE(contact.press(2e-3 + step));
   const double above = contact.energy();
