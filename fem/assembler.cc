@@ -36,28 +36,58 @@ Assembler::Assembler(const Mesh& mesh,
 }
 
 void Assembler::number(const std::vector<bool>& free, const std::vector<int>& last) {
-  std::vector<bool> at_end(free.size());
-  for (const int node : last) {
-    at_end[static_cast<std::size_t>(r_of(node))] = true;
-    at_end[static_cast<std::size_t>(z_of(node))] = true;
-  }
   for (std::size_t i = 0; i < free.size(); ++i) {
-    if (free[i] && !at_end[i]) equation_[i] = equations_++;
+    if (free[i]) equation_[i] = equations_++;
   }
   lay_pattern();
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
   Eigen::AMDOrdering<int> minimum_degree;
-  minimum_degree(pattern_.selfadjointView<Eigen::Lower>(), order);
+  minimum_degree(with_clique(last).selfadjointView<Eigen::Lower>(), order);
   const auto inverse = order.inverse().eval();
-  for (int& equation : equation_) {
-    if (equation >= 0) equation = inverse.indices()[equation];
+  std::vector<int> component_at(static_cast<std::size_t>(equations_));
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (free[i]) component_at[static_cast<std::size_t>(inverse.indices()[equation_[i]])] = int(i);
   }
+  std::vector<bool> at_end(free.size());
+  std::vector<int> end;
   for (const int node : last) {
     for (const int component : {r_of(node), z_of(node)}) {
       const auto i = static_cast<std::size_t>(component);
-      if (free[i]) equation_[i] = equations_++;
+      if (free[i]) end.push_back(component);
+      at_end[i] = true;
     }
   }
+  int next = 0;
+  for (const int component : component_at) {
+    const auto i = static_cast<std::size_t>(component);
+    if (!at_end[i]) equation_[i] = next++;
+  }
+  for (const int component : end) equation_[static_cast<std::size_t>(component)] = next++;
+}
+
+/// The pattern, and every component of the nodes `last` beside every other: what is left of the
+/// graph when all else has been eliminated. Ordered so, the rest does not fill the way to them.
+SparseMatrix Assembler::with_clique(const std::vector<int>& last) const {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int column = 0; column < equations_; ++column) {
+    for (SparseMatrix::InnerIterator it{pattern_, column}; it; ++it) {
+      entries.emplace_back(static_cast<int>(it.row()), column, 1);
+    }
+  }
+  std::vector<int> members;
+  for (const int node : last) {
+    for (const int component : {r_of(node), z_of(node)}) {
+      if (equation(component) >= 0) members.push_back(equation(component));
+    }
+  }
+  for (const int i : members) {
+    for (const int j : members) {
+      if (i > j) entries.emplace_back(i, j, 1);
+    }
+  }
+  SparseMatrix graph{equations_, equations_};
+  graph.setFromTriplets(entries.begin(), entries.end());
+  return graph;
 }
 
 void Assembler::lay_pattern() {
@@ -107,16 +137,15 @@ ElementVector Assembler::gather(std::size_t element, const Eigen::VectorXd& from
   return out;
 }
 
-Assembler::Result Assembler::assemble(Strain strain,
-                                      const Eigen::VectorXd& displacement,
-                                      SparseMatrix& tangent,
-                                      Eigen::VectorXd& force) const {
+template <typename Respond>
+Assembler::Result Assembler::add_up(const Respond& respond_of,
+                                    SparseMatrix& tangent,
+                                    Eigen::VectorXd& force) const {
   Result result;
   std::fill(tangent.valuePtr(), tangent.valuePtr() + tangent.nonZeros(), 0.0);
   force.setZero(components());
   for (std::size_t e = 0; e < components_.size(); ++e) {
-    const ElementResponse response =
-        respond(geometry_[e], material_[e], strain, gather(e, displacement));
+    const ElementResponse response = respond_of(e);
     result.volume_ratio_min = std::min(result.volume_ratio_min, response.volume_ratio_min);
     if (!(response.volume_ratio_min > 0)) return result;
     result.energy += response.energy;
@@ -133,6 +162,41 @@ Assembler::Result Assembler::assemble(Strain strain,
     }
   }
   return result;
+}
+
+Assembler::Result Assembler::assemble(Strain strain,
+                                      const Eigen::VectorXd& displacement,
+                                      SparseMatrix& tangent,
+                                      Eigen::VectorXd& force) const {
+  return add_up(
+      [&](std::size_t e) {
+        return respond(geometry_[e], material_[e], strain, gather(e, displacement));
+      },
+      tangent,
+      force);
+}
+
+Assembler::Result Assembler::assemble(const Eigen::VectorXd& displacement,
+                                      const std::vector<Pressure>& pressures,
+                                      SparseMatrix& tangent,
+                                      Eigen::VectorXd& force) const {
+  return add_up(
+      [&](std::size_t e) {
+        return respond(geometry_[e], material_[e], gather(e, displacement), pressures[e]);
+      },
+      tangent,
+      force);
+}
+
+std::vector<Pressure> Assembler::pressures_after(const Eigen::VectorXd& displacement,
+                                                 const Eigen::VectorXd& step) const {
+  std::vector<Pressure> out;
+  out.reserve(geometry_.size());
+  for (std::size_t e = 0; e < geometry_.size(); ++e) {
+    out.push_back(
+        pressure_after(geometry_[e], material_[e], gather(e, displacement), gather(e, step)));
+  }
+  return out;
 }
 
 Assembler::Result Assembler::balance(const Eigen::VectorXd& displacement,

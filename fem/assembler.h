@@ -48,6 +48,14 @@ class Assembler {
                   const Eigen::VectorXd& displacement,
                   SparseMatrix& tangent,
                   Eigen::VectorXd& force) const;
+  /// Finite strain, with a tangent of independent pressures, one per element (see element.h).
+  Result assemble(const Eigen::VectorXd& displacement,
+                  const std::vector<Pressure>& pressures,
+                  SparseMatrix& tangent,
+                  Eigen::VectorXd& force) const;
+  /// The pressures after a step, to first order.
+  [[nodiscard]] std::vector<Pressure> pressures_after(const Eigen::VectorXd& displacement,
+                                                      const Eigen::VectorXd& step) const;
   /// Energy and its first derivative alone, finite strain.
   Result balance(const Eigen::VectorXd& displacement, Eigen::VectorXd& force) const;
   /// Energy alone; infinite where the state is impossible. [J]
@@ -59,7 +67,10 @@ class Assembler {
 
  private:
   [[nodiscard]] ElementVector gather(std::size_t element, const Eigen::VectorXd& from) const;
+  template <typename Respond>
+  Result add_up(const Respond& respond_of, SparseMatrix& tangent, Eigen::VectorXd& force) const;
   void number(const std::vector<bool>& free, const std::vector<int>& last);
+  [[nodiscard]] SparseMatrix with_clique(const std::vector<int>& last) const;
   void lay_pattern();
   void lay_places();
 

@@ -221,10 +221,14 @@ ElementForces internal_forces(const ElementGeometry& geometry,
   return out;
 }
 
-ElementResponse respond(const ElementGeometry& geometry,
-                        const Material& material,
-                        Strain strain,
-                        const ElementVector& displacement) {
+namespace {
+
+/// `given`: the pressure of the tangent, if not the displacements' own.
+ElementResponse response(const ElementGeometry& geometry,
+                         const Material& material,
+                         Strain strain,
+                         const ElementVector& displacement,
+                         const Pressure* given) {
   ElementResponse out;
   const bool finite = strain == Strain::Finite;
   const State state = state_of(geometry, finite ? displacement : ElementVector{});
@@ -242,15 +246,18 @@ ElementResponse respond(const ElementGeometry& geometry,
     Isochoric part = isochoric(f, material.shear());
     const Gradient c = cofactor(f);
     double pressure = 0;
+    double bending = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       pressure += bulk * state.dilation[k] * point.pressure[k];
+      if (given != nullptr) bending += (*given)[k] * point.pressure[k];
     }
+    if (given == nullptr) bending = pressure;
     out.energy += point.volume * part.energy;
     if (finite) {
       const GradientMatrix h = volume_curvature(f);
       for (std::size_t i = 0; i < 5; ++i) {
         part.stress[i] += pressure * c[i];
-        for (std::size_t j = 0; j < 5; ++j) part.tangent[i][j] += pressure * h[i][j];
+        for (std::size_t j = 0; j < 5; ++j) part.tangent[i][j] += bending * h[i][j];
       }
     }
     add_tangent(point, part.tangent, rr, zr, zz);
@@ -287,6 +294,40 @@ ElementResponse respond(const ElementGeometry& geometry,
     }
   }
   return out;
+}
+
+}  // namespace
+
+ElementResponse respond(const ElementGeometry& geometry,
+                        const Material& material,
+                        Strain strain,
+                        const ElementVector& displacement) {
+  return response(geometry, material, strain, displacement, nullptr);
+}
+
+ElementResponse respond(const ElementGeometry& geometry,
+                        const Material& material,
+                        const ElementVector& displacement,
+                        const Pressure& pressure) {
+  return response(geometry, material, Strain::Finite, displacement, &pressure);
+}
+
+Pressure pressure_after(const ElementGeometry& geometry,
+                        const Material& material,
+                        const ElementVector& displacement,
+                        const ElementVector& step) {
+  Vector3 moments{};
+  for (const ElementGeometry::Point& point : geometry.points) {
+    const Gradient f = gradient_at(point, displacement);
+    const Gradient c = cofactor(f);
+    const Gradient df = gradient_at(point, step);
+    double change = volume_ratio(f) - 1;
+    for (std::size_t i = 0; i < 5; ++i) change += c[i] * (df[i] - kUndeformed[i]);
+    for (std::size_t k = 0; k < 3; ++k) moments[k] += point.volume * point.pressure[k] * change;
+  }
+  Pressure pressure = times(geometry.mass_inverse, moments);
+  for (double& value : pressure) value *= material.bulk();
+  return pressure;
 }
 
 }  // namespace palp::fem

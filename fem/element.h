@@ -46,6 +46,9 @@ struct ElementGeometry {
 using ElementVector = std::array<double, 18>;
 using ElementMatrix = std::array<std::array<double, 18>, 18>;
 
+/// Coefficients of an element's pressure on 1, xi, eta; tension is positive. [Pa]
+using Pressure = std::array<double, 3>;
+
 struct ElementResponse {
   ElementVector force{};       ///< [N], derivative of the energy
   ElementMatrix tangent{};     ///< [N/m]; lower triangle and diagonal blocks are filled whole
@@ -60,6 +63,21 @@ struct ElementResponse {
                                       const Material& material,
                                       Strain strain,
                                       const ElementVector& displacement);
+
+/// As respond() at finite strain, but the tangent is that of a pressure that is an unknown of its
+/// own: Newton's method in both converges from much farther away, because a guess of the
+/// displacements that changes the volume a little does not stiffen or soften the element. Force and
+/// energy are those of the displacements alone.
+[[nodiscard]] ElementResponse respond(const ElementGeometry& geometry,
+                                      const Material& material,
+                                      const ElementVector& displacement,
+                                      const Pressure& pressure);
+
+/// What the pressure becomes when `displacement` goes on by `step`, to first order.
+[[nodiscard]] Pressure pressure_after(const ElementGeometry& geometry,
+                                      const Material& material,
+                                      const ElementVector& displacement,
+                                      const ElementVector& step);
 
 struct ElementForces {
   ElementVector force{};       ///< [N], derivative of the energy

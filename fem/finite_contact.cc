@@ -20,12 +20,13 @@ constexpr int kPassesMax = 12;         // of one step; 2 to 4 are usual
 constexpr int kContactPassesMax = 60;  // on the dense surface; about 10 are usual
 constexpr double kTolerance = 1e-5;    // of the residual, relative to the contact's force
 constexpr double kSlow = 0.3;          // of the residual before: new factors are worth it
-constexpr double kNear = 0.05;         // residual from which the guess's own tangent is sound
+constexpr double kNear = 0.3;          // residual from which a state's own tangent is sound
+constexpr double kSound = 1e-2;        // residual after one pass above which new factors pay
 constexpr double kShift = 1e-6;        // of the surface's tangent where it is indefinite
 constexpr double kSettled = 1e-12;     // of the penalty's energy: the contact has settled
 constexpr double kShareMin = 1e-4;     // of a contact step: rounding is all that is left
-constexpr double kEnergyJump = 10;     // a step that raises the energy so much went astray
-constexpr std::size_t kHistory = 3;    // states behind a prediction
+constexpr int kCutsMax = 6;            // of a pass's step
+constexpr double kOvershoot = 0.5;     // of the slope at the beginning of a pass's step
 
 }  // namespace
 
@@ -33,12 +34,13 @@ FiniteContact::FiniteContact(const Mesh& mesh, const Specimen& specimen)
     : contact_{mesh, specimen},
       assembler_{mesh, materials_of(specimen), bonded_base(mesh), contact_.nodes()},
       tangent_{assembler_.pattern()},
-      residual_(assembler_.equations()),
-      solved_{State{0, Eigen::VectorXd::Zero(assembler_.components())}},
       step_max_{kStepMax * specimen.indenter.radius},
       step_{0.4 * step_max_} {
   PALP_CHECK(specimen.indenter.shape == IndenterShape::Sphere, "model N knows the sphere");
   factor_.analyzePattern(tangent_);
+  solved_.displacement = Eigen::VectorXd::Zero(assembler_.components());
+  solved_.residual = Eigen::VectorXd::Zero(assembler_.equations());
+  solved_.pressures.resize(mesh.elements.size());
   for (std::size_t i = 0; i < contact_.nodes().size(); ++i) {
     for (const int axis : {0, 1}) {
       if (assembler_.equation(r_of(contact_.nodes()[i]) + axis) < 0) continue;
@@ -49,15 +51,15 @@ FiniteContact::FiniteContact(const Mesh& mesh, const Specimen& specimen)
 
 Result<CurveRow> FiniteContact::press(double indentation) {
   const double step_min = step_max_ * kStepMin / kStepMax;
-  while (solved_.back().indentation < indentation) {
-    const double left = indentation - solved_.back().indentation;
+  while (solved_.indentation < indentation) {
+    const double left = indentation - solved_.indentation;
     // Equal steps up to the next row that was asked for.
     const double step = left / std::ceil(left / step_ - 1e-9);
     const bool last = step > left * (1 - 1e-9);
-    State next = predict(last ? indentation : solved_.back().indentation + step);
+    State next = solved_;
+    next.indentation = last ? indentation : solved_.indentation + step;
     if (solve(next)) {
-      solved_.push_back(std::move(next));
-      if (solved_.size() > kHistory) solved_.erase(solved_.begin());
+      solved_ = std::move(next);
       step_ = std::min(step_max_, 1.5 * step_);
       continue;
     }
@@ -68,117 +70,136 @@ Result<CurveRow> FiniteContact::press(double indentation) {
                     sizeof text,
                     "no equilibrium found beyond an indentation of %.4g mm (asked for %.4g mm): "
                     "the tissue is squeezed too hard for the mesh",
-                    solved_.back().indentation / kMillimetre,
+                    solved_.indentation / kMillimetre,
                     indentation / kMillimetre);
       return fail(text);
     }
   }
-  const SphereContact::Load load =
-      contact_.measure(surface_of(solved_.back().displacement), indentation);
+  const SphereContact::Load load = contact_.measure(surface_of(solved_.displacement), indentation);
   return CurveRow{.indentation = indentation,
                   .force = load.force,
                   .contact_radius = load.contact_radius,
                   .error = 0};
 }
 
-/// Polynomial through the last states (Lagrange).
-FiniteContact::State FiniteContact::predict(double indentation) const {
-  State guess{indentation, Eigen::VectorXd::Zero(assembler_.components())};
-  // The first steps start from the undeformed state, where the contact is a point: no polynomial.
-  const std::size_t from = solved_.size() > 2 && solved_[0].indentation == 0 ? 1 : 0;
-  for (std::size_t i = from; i < solved_.size(); ++i) {
-    double weight = 1;
-    for (std::size_t j = from; j < solved_.size(); ++j) {
-      if (j == i) continue;
-      weight *= (indentation - solved_[j].indentation) /
-                (solved_[i].indentation - solved_[j].indentation);
-    }
-    guess.displacement += weight * solved_[i].displacement;
+bool FiniteContact::measure(State& state) const {
+  Eigen::VectorXd force;
+  const Assembler::Result elastic = assembler_.balance(state.displacement, force);
+  if (!(elastic.volume_ratio_min > 0)) return false;
+  state.elastic = elastic.energy;
+  state.residual.resize(assembler_.equations());
+  for (int i = 0; i < assembler_.components(); ++i) {
+    if (assembler_.equation(i) >= 0) state.residual[assembler_.equation(i)] = force[i];
   }
-  return guess;
+  return std::isfinite(elastic.energy);
 }
 
 bool FiniteContact::solve(State& state) {
   residuals_.clear();
-  if (!std::isfinite(assembler_.energy(state.displacement))) {
-    state.displacement = solved_.back().displacement;
-  }
-  double before = std::numeric_limits<double>::infinity();
+  cut_ = false;
   for (int pass = 0; pass < kPassesMax; ++pass) {
-    Eigen::VectorXd force;
-    const Assembler::Result elastic = assembler_.balance(state.displacement, force);
-    if (!(elastic.volume_ratio_min > 0)) return false;
-    for (int i = 0; i < assembler_.components(); ++i) {
-      if (assembler_.equation(i) >= 0) residual_[assembler_.equation(i)] = force[i];
-    }
     const Eigen::VectorXd surface = surface_of(state.displacement);
-    Eigen::VectorXd balance = residual_;
-    add_contact(surface, state.indentation, balance);
     const SphereContact::Load load = contact_.measure(surface, state.indentation);
+    const Eigen::VectorXd balance = balance_of(state);
     residuals_.push_back(balance.norm() / std::max(load.force, 1e-300));
     if (!std::isfinite(residuals_.back())) return false;
     if (load.touching > 0 && residuals_.back() < kTolerance) return true;
-    if (!choose_factors(state, before)) return false;
-    before = residuals_.back();
-    if (!improve(state, elastic.energy + load.energy)) return false;
+    if (!choose_factors(state)) return false;
+    if (!improve(state)) return false;
   }
   return false;
 }
 
-/// Factors serve as long as they bring the residual down fast. Far from equilibrium those of the
-/// last equilibrium are better than those of the guess, whose stresses are its own: a stiff
-/// inclusion, bent a little by the prediction, would make the tangent indefinite.
-bool FiniteContact::choose_factors(const State& state, double before) {
+/// One pass by the factors there are, of a step ago, brings the last state near the new
+/// equilibrium; then the state's own tangent is worth its price, and serves to the end of the step.
+/// New ones again where the residual falls slowly, or where a step had to be shortened.
+bool FiniteContact::choose_factors(const State& state) {
+  const std::size_t passes = residuals_.size();
   const double now = residuals_.back();
-  const bool slow = now > kSlow * before;
-  const State& last = solved_.back();
-  if (factorizations_ > 0 && !slow) return true;
-  if (now < kNear && residuals_.size() > 1) return factorize(state);
-  return factorized_at_ == last.indentation && factorizations_ > 0 ? true : factorize(last);
+  if (factorizations_ == 0) return factorize(solved_);
+  if (passes == 1) return true;
+  const bool slow = now > kSlow * residuals_[passes - 2];
+  if (!slow && !cut_ && !(passes == 2 && now > kSound)) return true;
+  if (now < kNear && factorize(state)) return true;
+  return factorize(solved_);
 }
 
 bool FiniteContact::factorize(const State& state) {
-  factorized_at_ = state.indentation;
   Eigen::VectorXd force;
-  assembler_.assemble(Strain::Finite, state.displacement, tangent_, force);
+  assembler_.assemble(state.displacement, state.pressures, tangent_, force);
   factor_.factorize(tangent_);
   ++factorizations_;
-  return factor_.info() == Eigen::Success;
+  if (factor_.info() != Eigen::Success) return false;
+  condense();
+  return true;
 }
 
-bool FiniteContact::improve(State& state, double energy_before) {
+void FiniteContact::condense() {
+  const int size = surface_count();
+  const int first = assembler_.equations() - size;
+  surface_lower_ = Eigen::MatrixXd::Identity(size, size);
+  const SparseMatrix& factors = factor_.matrixL().nestedExpression();
+  for (int column = 0; column < size; ++column) {
+    for (SparseMatrix::InnerIterator it{factors, first + column}; it; ++it) {
+      if (it.row() > it.col()) surface_lower_(it.row() - first, column) = it.value();
+    }
+  }
+  surface_stiffness_ =
+      surface_lower_ * factor_.vectorD().tail(size).asDiagonal() * surface_lower_.transpose();
+}
+
+bool FiniteContact::improve(State& state) {
+  const int size = surface_count();
+  Eigen::VectorXd step = factor_.matrixL().solve(-state.residual);
   Eigen::VectorXd increment = Eigen::VectorXd::Zero(2 * static_cast<int>(contact_.nodes().size()));
-  if (!settle_contact(state, increment)) return false;
-  Eigen::VectorXd right = residual_;
-  add_contact(surface_of(state.displacement) + increment, state.indentation, right);
-  const Eigen::VectorXd step = factor_.solve(-right);
-  // Shorter only where the full step would turn an element inside out.
+  if (!settle_contact(state, surface_lower_ * step.tail(size), increment)) return false;
+  // The contact loads the last equations alone: the rest of the forward solve stands.
+  const Eigen::VectorXd surface = surface_of(state.displacement);
+  step.tail(size) -= surface_lower_.triangularView<Eigen::UnitLower>().solve(
+      contact_force(surface + increment, state.indentation));
+  step.array() /= factor_.vectorD().array();
+  step = factor_.matrixU().solve(step);
+  // Along the step the slope of the potential energy rises from below zero to about zero at its
+  // end; where it ends far above, the step went too far. (The energy itself is too coarse a
+  // measure: next to a stiff inclusion it is the small difference of large numbers.)
+  const double slope = step.dot(balance_of(state));
   State trial = state;
   double share = 1;
-  const double limit =
-      solved_.size() > 1 ? kEnergyJump * energy_before : std::numeric_limits<double>::infinity();
-  for (int pass = 0; pass < 5; ++pass, share *= 0.5) {
+  for (int pass = 0; pass < kCutsMax; ++pass) {
     for (int i = 0; i < assembler_.components(); ++i) {
       const int equation = assembler_.equation(i);
       if (equation >= 0) trial.displacement[i] = state.displacement[i] + share * step[equation];
     }
-    const double energy = total_energy(trial);
-    if (!std::isfinite(energy) || energy > limit) continue;
+    const bool possible = measure(trial);
+    const double end = possible ? step.dot(balance_of(trial)) : 0;
+    cut_ = !possible || end > kOvershoot * std::abs(slope);
+    if (cut_ && pass + 1 < kCutsMax) {
+      share *= possible ? std::clamp(slope / (slope - end), 0.1, 0.7) : 0.5;
+      continue;
+    }
+    if (!possible) return false;
+    cut_ = share < 1;
+    trial.pressures =
+        assembler_.pressures_after(state.displacement, trial.displacement - state.displacement);
     state = std::move(trial);
     return true;
   }
   return false;
 }
 
-/// S x + contact force(x) = b by Newton's method with a line search on its energy: S is the block's
-/// stiffness condensed to the surface, b what the inside adds to the surface's own residual.
-bool FiniteContact::settle_contact(const State& state, Eigen::VectorXd& increment) const {
+Eigen::VectorXd FiniteContact::balance_of(const State& state) const {
+  Eigen::VectorXd balance = state.residual;
+  balance.tail(surface_count()) += contact_force(surface_of(state.displacement), state.indentation);
+  return balance;
+}
+
+/// S x + contact force(x) = push by Newton's method with a line search on its energy.
+bool FiniteContact::settle_contact(const State& state,
+                                   const Eigen::VectorXd& push,
+                                   Eigen::VectorXd& increment) const {
   const Eigen::VectorXd base = surface_of(state.displacement);
-  const auto size = static_cast<Eigen::Index>(surface_place_.size());
-  const Eigen::MatrixXd lower = surface_factor();
-  const Eigen::MatrixXd stiffness =
-      lower * factor_.vectorD().tail(size).asDiagonal() * lower.transpose();
-  const Eigen::VectorXd push = lower * factor_.matrixL().solve(-residual_).tail(size);
+  const Eigen::Index size = surface_count();
+  const Eigen::MatrixXd& stiffness = surface_stiffness_;
   const auto energy = [&](const Eigen::VectorXd& x) {
     const Eigen::VectorXd free = x(surface_place_);
     return free.dot(0.5 * (stiffness * free) - push) +
@@ -219,19 +240,6 @@ bool FiniteContact::settle_contact(const State& state, Eigen::VectorXd& incremen
   return true;  // the outer pass sees what is left
 }
 
-Eigen::MatrixXd FiniteContact::surface_factor() const {
-  const auto size = static_cast<int>(surface_place_.size());
-  const int first = assembler_.equations() - size;
-  Eigen::MatrixXd lower = Eigen::MatrixXd::Identity(size, size);
-  const SparseMatrix& factors = factor_.matrixL().nestedExpression();
-  for (int column = 0; column < size; ++column) {
-    for (SparseMatrix::InnerIterator it{factors, first + column}; it; ++it) {
-      if (it.row() > it.col()) lower(it.row() - first, column) = it.value();
-    }
-  }
-  return lower;
-}
-
 Eigen::VectorXd FiniteContact::surface_of(const Eigen::VectorXd& displacement) const {
   Eigen::VectorXd out(2 * static_cast<int>(contact_.nodes().size()));
   for (std::size_t i = 0; i < contact_.nodes().size(); ++i) {
@@ -240,29 +248,22 @@ Eigen::VectorXd FiniteContact::surface_of(const Eigen::VectorXd& displacement) c
   return out;
 }
 
-void FiniteContact::add_contact(const Eigen::VectorXd& surface,
-                                double indentation,
-                                Eigen::VectorXd& to) const {
-  Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(surface.size(), surface.size());
+Eigen::VectorXd FiniteContact::contact_force(const Eigen::VectorXd& surface,
+                                             double indentation) const {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(surface.size());
-  contact_.add(surface, indentation, tangent, force);
-  const int first = assembler_.equations() - static_cast<int>(surface_place_.size());
-  for (std::size_t i = 0; i < surface_place_.size(); ++i) {
-    to[first + static_cast<int>(i)] += force[surface_place_[i]];
-  }
+  contact_.add(surface, indentation, force);
+  return force(surface_place_);
 }
 
 double FiniteContact::total_energy(const State& state) const {
-  const double elastic = assembler_.energy(state.displacement);
-  if (!std::isfinite(elastic)) return elastic;
-  return elastic + contact_.measure(surface_of(state.displacement), state.indentation).energy;
+  return state.elastic + contact_.measure(surface_of(state.displacement), state.indentation).energy;
 }
 
 Field FiniteContact::field() const {
-  const Eigen::VectorXd& at = solved_.back().displacement;
+  const Eigen::VectorXd& at = solved_.displacement;
   return {at.data(), at.data() + at.size()};
 }
 
-double FiniteContact::energy() const { return total_energy(solved_.back()); }
+double FiniteContact::energy() const { return total_energy(solved_); }
 
 }  // namespace palp::fem

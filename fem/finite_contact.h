@@ -16,12 +16,13 @@ namespace palp::fem {
 /// Model N: compressible neo-Hookean, finite strain, contact of the deformed surface with the true
 /// sphere.
 ///
-/// Newton's method along the indentation. Each pass factorizes the elastic tangent alone, with the
-/// nodes that may touch the sphere last: the trailing block of the factors is then the block's
-/// stiffness as its surface feels it, and the contact, whose status flips from pass to pass, is
-/// settled on that small dense system. What is left for the outer passes is smooth: two or three,
-/// from a polynomial through the states before.
-/// Owns its mesh's system. Thread: its owner's.
+/// Newton's method along the indentation, from the last state: polynomials through the states
+/// before are no better, because the contact's edge moves. The elements' pressures are unknowns of
+/// their own (see element.h). Each pass uses factors of the elastic tangent alone, with the nodes
+/// that may touch the sphere last: the trailing block of the factors is then the block's stiffness
+/// as its surface feels it, and the contact, whose status flips from pass to pass, is settled on
+/// that small dense system. What is left for the outer passes is smooth: one factorization and five
+/// passes a step are usual. Owns its mesh's system. Thread: its owner's.
 class FiniteContact {
  public:
   FiniteContact(const Mesh& mesh, const Specimen& specimen);
@@ -42,36 +43,50 @@ class FiniteContact {
   using Factor = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::NaturalOrdering<int>>;
 
   struct State {
-    double indentation{};          ///< [m]
-    Eigen::VectorXd displacement;  ///< [m], all components
+    double indentation{};             ///< [m]
+    Eigen::VectorXd displacement;     ///< [m], all components
+    Eigen::VectorXd residual;         ///< [N], elastic, all equations; empty: not known
+    double elastic{};                 ///< [J]
+    std::vector<Pressure> pressures;  ///< [Pa], of the elements: unknowns of their own
   };
-  [[nodiscard]] State predict(double indentation) const;
+  /// Fills in residual and elastic energy; false where the state is impossible.
+  [[nodiscard]] bool measure(State& state) const;
   /// True if `state`, which holds a first guess, now solves its indentation.
   [[nodiscard]] bool solve(State& state);
-  [[nodiscard]] bool choose_factors(const State& state, double before);
+  [[nodiscard]] bool choose_factors(const State& state);
   [[nodiscard]] bool factorize(const State& state);
   /// By the present factors; false if the state cannot be improved.
-  [[nodiscard]] bool improve(State& state, double energy_before);
+  [[nodiscard]] bool improve(State& state);
   /// Displacement increment of the contact nodes: block's surface stiffness against the sphere.
-  [[nodiscard]] bool settle_contact(const State& state, Eigen::VectorXd& increment) const;
-  /// The trailing block of the factor L: the contact's equations.
-  [[nodiscard]] Eigen::MatrixXd surface_factor() const;
+  /// `push`: what the inside's residual adds to the surface's own. [N]
+  [[nodiscard]] bool settle_contact(const State& state,
+                                    const Eigen::VectorXd& push,
+                                    Eigen::VectorXd& increment) const;
+  /// Takes the contact's trailing block out of the factors.
+  void condense();
   [[nodiscard]] Eigen::VectorXd surface_of(const Eigen::VectorXd& displacement) const;
-  /// Contact forces as a right-hand side, and to all equations. [N]
-  void add_contact(const Eigen::VectorXd& surface, double indentation, Eigen::VectorXd& to) const;
-  [[nodiscard]] double total_energy(const State& state) const;
+  /// On the contact's equations. [N]
+  [[nodiscard]] Eigen::VectorXd contact_force(const Eigen::VectorXd& surface,
+                                              double indentation) const;
+  /// Elastic and contact, all equations. [N]
+  [[nodiscard]] Eigen::VectorXd balance_of(const State& state) const;
+  [[nodiscard]] double total_energy(const State& state) const;  ///< [J]
+  [[nodiscard]] int surface_count() const noexcept {
+    return static_cast<int>(surface_place_.size());
+  }
 
   SphereContact contact_;
   Assembler assembler_;
   SparseMatrix tangent_;
   Factor factor_;
-  Eigen::VectorXd residual_;        ///< [N], elastic, all equations
-  std::vector<int> surface_place_;  ///< of the contact's free components, in equation order
-  std::vector<State> solved_;       ///< the last ones, oldest first
-  double step_max_;                 ///< [m], of the indentation
-  double step_;                     ///< [m], that worked last
+  Eigen::MatrixXd surface_lower_;      ///< [-], trailing block of L
+  Eigen::MatrixXd surface_stiffness_;  ///< [N/m], of the block as its surface feels it
+  std::vector<int> surface_place_;     ///< of the contact's free components, in equation order
+  State solved_;                       ///< at the last indentation
+  double step_max_;                    ///< [m], of the indentation
+  double step_;                        ///< [m], that worked last
   int factorizations_{};
-  double factorized_at_{};         ///< [m], indentation of the present factors
+  bool cut_{};                     ///< the last pass's step was shortened
   std::vector<double> residuals_;  ///< [-]
 };
 

@@ -107,4 +107,18 @@ void SphereContact::add(const Eigen::VectorXd& displacement,
   }
 }
 
+void SphereContact::add(const Eigen::VectorXd& displacement,
+                        double indentation,
+                        Eigen::VectorXd& force) const {
+  for (const Point& point : points_) {
+    const Overlap at = overlap(point, displacement, indentation);
+    if (!(at.depth > 0)) continue;
+    const double push = penalty_ * point.area * at.depth;
+    for (std::size_t i = 0; i < 3; ++i) {
+      force[2 * point.nodes[i]] -= push * point.shape[i] * at.normal_r;
+      force[2 * point.nodes[i] + 1] -= push * point.shape[i] * at.normal_z;
+    }
+  }
+}
+
 }  // namespace palp::fem

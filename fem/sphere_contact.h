@@ -33,6 +33,7 @@ class SphereContact {
            double indentation,
            Eigen::MatrixXd& tangent,
            Eigen::VectorXd& force) const;
+  void add(const Eigen::VectorXd& displacement, double indentation, Eigen::VectorXd& force) const;
 
  private:
   struct Point {

@@ -1,6 +1,7 @@
 #include "fem/element.h"
 
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -51,6 +52,46 @@ TEST(ElementTest, ForceAndTangentAreDerivativesOfTheEnergy) {
     for (std::size_t j = 0; j < 18; ++j) {
       EXPECT_NEAR((above[j] - below[j]) / (2 * step), at.tangent[j][i], 2e-4);
     }
+  }
+}
+
+// With the displacements' own pressure the two tangents are one; the force never knows of it.
+TEST(ElementTest, APressureOfItsOwnChangesTheTangentAlone) {
+  const Mesh mesh = distorted();
+  const ElementGeometry geometry = make_geometry(mesh, mesh.elements[0]);
+  const Material material{2, 0.49};
+  const ElementVector u = some_displacement(0.05);
+  Pressure pressure = pressure_after(geometry, material, u, {});
+  const ElementResponse condensed = respond(geometry, material, Strain::Finite, u);
+  const ElementResponse same = respond(geometry, material, u, pressure);
+  pressure[0] += 1;
+  const ElementResponse other = respond(geometry, material, u, pressure);
+  double changed = 0;
+  for (std::size_t i = 0; i < 18; ++i) {
+    EXPECT_EQ(other.force[i], condensed.force[i]);
+    for (std::size_t j = 0; j <= i; ++j) {
+      EXPECT_NEAR(same.tangent[i][j], condensed.tangent[i][j], 1e-9);
+      changed += std::abs(other.tangent[i][j] - condensed.tangent[i][j]);
+    }
+  }
+  EXPECT_GT(changed, 0.1);
+}
+
+TEST(ElementTest, ThePressureAfterAStepIsItsFirstOrder) {
+  const Mesh mesh = distorted();
+  const ElementGeometry geometry = make_geometry(mesh, mesh.elements[0]);
+  const Material material{2, 0.49};
+  const ElementVector u = some_displacement(0.05);
+  const double size = 1e-5;
+  ElementVector step = some_displacement(size);
+  std::swap(step[3], step[11]);
+  ElementVector end = u;
+  for (std::size_t i = 0; i < 18; ++i) end[i] += step[i];
+  const Pressure before = pressure_after(geometry, material, u, {});
+  const Pressure wanted = pressure_after(geometry, material, end, {});
+  const Pressure found = pressure_after(geometry, material, u, step);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(found[k], wanted[k], 1e-3 * std::abs(wanted[k] - before[k]) + 1e-9);
   }
 }
 
