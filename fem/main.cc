@@ -4,6 +4,7 @@
 #include "common/config/command_line.h"
 #include "fem/curve_command.h"
 #include "fem/database_command.h"
+#include "fem/paper_command.h"
 #include "fem/verify_command.h"
 
 namespace palp::fem {
@@ -19,11 +20,14 @@ int run(int argc, char** argv) {
   declare_info(line.verb("info", "what a database holds"), database);
   VerifyFlags verify;
   declare_verify(line.verb("verify", "the solver against closed solutions"), verify);
+  PaperFlags paper;
+  declare_paper(line.verb("paper", "the paper's phantoms, hash and formula, beside ours"), paper);
   if (const auto ending = line.parse(argc, argv)) return leave(*ending);
   const std::string verb = line.chosen_verb();
   if (verb == "database") return leave(run_database(database));
   if (verb == "merge") return leave(run_merge(database));
   if (verb == "info") return leave(run_info(database));
+  if (verb == "paper") return leave(run_paper(paper));
   if (verb == "verify") return leave(run_verify(verify));
   return leave(run_curve(curve));
 }

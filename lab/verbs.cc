@@ -12,9 +12,10 @@
 #include "common/config/report.h"
 #include "common/config/settings_text.h"
 #include "common/coupling/any_coupling.h"
+#include "common/plot/line_plot.h"
 #include "lab/batch_report.h"
 #include "lab/metric_table.h"
-#include "lab/svg_plot.h"
+#include "lab/stability_map.h"
 
 namespace palp::lab {
 namespace {
@@ -91,7 +92,7 @@ std::string plot(const Run& done, const std::string& metric, const std::string& 
       table.begin(), table.end(), [&](const Metric& one) { return one.name == metric; });
   if (found == table.end() || done.plan.label_names.empty()) return {};
   const auto at = static_cast<std::size_t>(found - table.begin());
-  std::map<std::string, Curve> curves;
+  std::map<std::string, plot::Curve> curves;
   for (const CaseResult& result : done.results) {
     std::string name;
     for (std::size_t i = 1; i < result.labels.size(); ++i) {
@@ -101,7 +102,7 @@ std::string plot(const Run& done, const std::string& metric, const std::string& 
         name += (name.empty() ? "" : " ") + result.labels[i];
       }
     }
-    Curve& curve = curves[name];
+    plot::Curve& curve = curves[name];
     curve.name = name;
     double x = 0;
     const std::string& label = result.labels.front();
@@ -109,14 +110,14 @@ std::string plot(const Run& done, const std::string& metric, const std::string& 
     curve.x.push_back(x);
     curve.y.push_back(result.values[at]);
   }
-  std::vector<Curve> list;
+  std::vector<plot::Curve> list;
   for (auto& [name, curve] : curves) list.push_back(std::move(curve));
-  Axes axes;
+  plot::Axes axes;
   axes.title = title;
   axes.x_name = done.plan.label_names.front();
   axes.y_name = metric;
   axes.x_logarithmic = axes.x_name == "rtt_ms";
-  return curves_svg(axes, list);
+  return plot::curves_svg(axes, list);
 }
 
 Ending finish(const Run& done, const BatchArguments& arguments, const std::string& svg) {

@@ -14,7 +14,7 @@
 #include "lab/batch_report.h"
 #include "lab/metric_table.h"
 #include "lab/plan.h"
-#include "lab/svg_plot.h"
+#include "lab/stability_map.h"
 #include "lab/valve.h"
 #include "lab/verbs.h"
 
@@ -129,15 +129,6 @@ TEST(LyingCodecTest, TellsAnotherModelEveryFiftyMilliseconds) {
     surfaces.insert(std::get<ModelPayload>(told->telegram.port.payload).surface);
   }
   EXPECT_EQ(surfaces.size(), 4U);
-}
-
-TEST(SvgTest, DrawsEveryCurve) {
-  const std::string svg = curves_svg({.title = "t", .x_name = "x", .y_name = "y"},
-                                     {{.name = "one", .x = {1, 2}, .y = {1, kUndefined}},
-                                      {.name = "two", .x = {1, 2}, .y = {0, 3}}});
-  EXPECT_NE(svg.find(">one<"), std::string::npos);
-  EXPECT_NE(svg.find(">two<"), std::string::npos);
-  EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 
 }  // namespace
