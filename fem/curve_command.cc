@@ -150,6 +150,7 @@ Ending run_curve(const CurveFlags& flags) {
   }
   if (flags.csv.empty()) return {ExitCode::Done, text};
   if (const auto written = config::write_whole_file(flags.csv, text); !written) {
+    if (!flags.vtu.empty()) static_cast<void>(std::remove(flags.vtu.c_str()));
     return {ExitCode::CannotOpen, "palp-fem: " + written.error().text};
   }
   return {ExitCode::Done, ""};

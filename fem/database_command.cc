@@ -38,6 +38,9 @@ Ending bad_input(const std::string& sentence) {
 Ending cannot_open(const std::string& sentence) {
   return {ExitCode::CannotOpen, "palp-fem: " + sentence};
 }
+Ending refused(const Error& error) {
+  return error.unreachable ? cannot_open(error.text) : bad_input(error.text);
+}
 
 Result<Shard> parse_shard(const std::string& text) {
   if (text.empty()) return Shard{};
@@ -53,7 +56,7 @@ Result<Shard> parse_shard(const std::string& text) {
 
 Result<DepthTable> load(const std::string& path) {
   const auto bytes = config::read_whole_file(path);
-  if (!bytes) return tl::unexpected<Error>(bytes.error());
+  if (!bytes) return fail_to_reach(bytes.error().text);
   auto table = parse_table(*bytes);
   if (!table) return fail(path + ": " + table.error().text);
   return table;
@@ -207,7 +210,7 @@ Ending run_database(const DatabaseFlags& flags) {
   const auto shard = parse_shard(flags.shard);
   if (!shard) return bad_input(shard.error().text);
   auto table = start_table(flags);
-  if (!table) return bad_input(table.error().text);
+  if (!table) return refused(table.error());
   if (const auto done = solve_on_all_cores(*table, *shard, flags); !done) {
     return cannot_open(done.error().text);
   }
@@ -215,7 +218,7 @@ Ending run_database(const DatabaseFlags& flags) {
     const std::string name = part_name(flags.out, core);
     if (::access(name.c_str(), F_OK) != 0) continue;
     const auto part = load(name);
-    if (!part) return bad_input(part.error().text);
+    if (!part) return refused(part.error());
     if (auto merged = merge_table(*table, *part); !merged) return bad_input(merged.error().text);
   }
   const Ending ending = save(*table, flags);
@@ -229,7 +232,7 @@ Ending run_merge(const DatabaseFlags& flags) {
   std::optional<DepthTable> table;
   for (const std::string& name : flags.files) {
     auto found = load(name);
-    if (!found) return bad_input(found.error().text);
+    if (!found) return refused(found.error());
     if (!table) {
       table = std::move(*found);
       continue;
@@ -243,7 +246,7 @@ Ending run_merge(const DatabaseFlags& flags) {
 
 Ending run_info(const DatabaseFlags& flags) {
   const auto table = load(flags.file);
-  if (!table) return bad_input(table.error().text);
+  if (!table) return refused(table.error());
   return tell(*table, flags.report);
 }
 

@@ -179,7 +179,9 @@ plot::Panel force_panel(const PaperStudy& study) {
   plot::Panel panel;
   panel.axes = {.title = "Fig. 8: force over indentation (points) and its cubic, eq. (2)",
                 .x_name = "indentation [mm]",
-                .y_name = "force [N]"};
+                .y_name = "force [N]",
+                .y_from = 0,
+                .y_to = study.phantoms.front().forces_n.back()};
   std::vector<const PaperPhantom*> shown;
   for (const double depth : {5.0, 10.0, 15.0, 20.0, 25.0}) shown.push_back(study.at(depth));
   shown.push_back(&study.plain);

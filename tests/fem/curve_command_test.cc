@@ -1,5 +1,9 @@
 #include "fem/curve_command.h"
 
+#include <fstream>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace palp::fem {
@@ -36,6 +40,45 @@ TEST(CurveCommandTest, RefusesWhatCannotBeSolvedAndNamesTheLimit) {
   const auto reach = solve({.shape = "ball", .depth_mm = 4, .indentations_mm = "4"});
   ASSERT_FALSE(reach);
   EXPECT_NE(reach.error().text.find("below 4 mm"), std::string::npos);
+}
+
+struct Refusal {
+  CurveFlags flags;
+  const char* sentence;  ///< part of it: what and the limit
+};
+
+// Each in one sentence that names the value and the limit, in millimetre.
+TEST(CurveCommandTest, EveryRefusalNamesValueAndLimit) {
+  const std::vector<Refusal> refusals{
+      {{.shape = "ball", .depth_mm = 30}, "60 mm below the surface, expected at most 56.772 mm"},
+      {{.shape = "ball", .radius_mm = 0}, "radius is 0 mm, expected above 0"},
+      {{.shape = "ball", .depth_mm = -1}, "-1 mm, expected at least 0.228 mm"},
+      {{.poisson = 0.5}, "Poisson's ratio is 0.5, expected 0 to 0.49999"},
+      {{.shape = "ball", .inclusion_poisson = 0.6}, "is 0.6, expected 0 to 0.49999"},
+      {{.shape = "ball", .depth_mm = 4, .indentations_mm = "4"}, "4 mm, expected below 4 mm"},
+      {{.indentations_mm = "-1"}, "-1 mm, expected 0 or more"},
+      {{.indentations_mm = "9"}, "9 mm, expected at most 6 mm"}};
+  for (const Refusal& refusal : refusals) {
+    const auto curve = solve(refusal.flags);
+    ASSERT_FALSE(curve) << refusal.sentence;
+    EXPECT_NE(curve.error().text.find(refusal.sentence), std::string::npos) << curve.error().text;
+    EXPECT_EQ(curve.error().text.find('\n'), std::string::npos);
+  }
+}
+
+TEST(CurveCommandTest, AStepThatDoesNotConvergeNamesHowFarItWent) {
+  const auto curve =
+      solve({.shape = "ball", .depth_mm = 4.2, .radius_mm = 16, .indentations_mm = "4.15"});
+  ASSERT_FALSE(curve);
+  EXPECT_NE(curve.error().text.find("asked for 4.15 mm"), std::string::npos) << curve.error().text;
+}
+
+TEST(CurveCommandTest, NoFileIsLeftWhereOneCannotBeWritten) {
+  const std::string vtu = testing::TempDir() + "curve_command_test.vtu";
+  const auto ending = run_curve(
+      {.model = "l1", .indentations_mm = "1", .csv = "/nonexistent/curve.csv", .vtu = vtu});
+  EXPECT_EQ(ending.code, config::ExitCode::CannotOpen);
+  EXPECT_FALSE(std::ifstream{vtu});
 }
 
 TEST(CurveCommandTest, RowsComeInTheOrderAskedWithAHeader) {

@@ -1,5 +1,7 @@
 #include "fem/depth_table.h"
 
+#include <fstream>
+
 #include <gtest/gtest.h>
 
 #include "fem/database_builder.h"
@@ -18,6 +20,16 @@ DepthTable small_table() {
   table.members = {{InclusionShape::Ball, 0, 1, 0, {0.1F, 0.2F}},
                    {InclusionShape::Cylinder, 1, 0, 1, {0.3F}}};
   return table;
+}
+
+TEST(DatabaseCommandTest, AMissingFileCannotBeOpenedAForeignOneIsBadInput) {
+  EXPECT_EQ(run_info({.file = "/nonexistent/file.bin"}).code, config::ExitCode::CannotOpen);
+  const auto merged = run_merge({.files = {"/nonexistent/file.bin"}});
+  EXPECT_EQ(merged.code, config::ExitCode::CannotOpen);
+  EXPECT_NE(merged.text.find("/nonexistent/file.bin"), std::string::npos);
+  const std::string foreign = testing::TempDir() + "depth_table_test.bin";
+  std::ofstream{foreign} << "no database";
+  EXPECT_EQ(run_info({.file = foreign}).code, config::ExitCode::BadInput);
 }
 
 TEST(DepthTableTest, ComesBackFromItsBytes) {
