@@ -20,8 +20,8 @@ namespace {
 using link::Role;
 using link::SessionKeys;
 
-constexpr unsigned kRepeatFirst = 250'000;  // [us]; RFC 6347 allows less than its second
-constexpr unsigned kRepeatMax = 500'000;    // [us]
+constexpr unsigned kRepeatFirst = 200'000;  // [us]; RFC 6347 allows less than its second
+constexpr unsigned kRepeatMax = 400'000;    // [us]
 constexpr Duration kCookieLife = std::chrono::minutes{1};
 constexpr std::size_t kCookieSize = 16;  // [bytes]; short, so that no answer outgrows its question
 constexpr std::size_t kRecordHeader = 13;

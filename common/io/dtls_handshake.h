@@ -35,7 +35,7 @@ using ClientRandom = std::array<std::byte, 32>;
     std::span<const std::byte> datagram) noexcept;
 
 /// One DTLS 1.2 handshake; nothing but keys is taken from it, no record ever carries our data.
-/// Repeats what got lost 250 ms after, x 1.5 each time, up to 0.5 s. Datagrams in and out; knows no
+/// Repeats what got lost 200 ms after, x 1.5 each time, up to 0.4 s. Datagrams in and out; knows no
 /// socket. Uses OpenSSL's own clock for its timer. Thread: io.
 class DtlsHandshake {
  public:

@@ -200,7 +200,9 @@ struct Site {
 class Road {
  public:
   explicit Road(const Endpoint& patient)
-      : patient_{patient}, thread_{[this](const auto& stop) { run(stop); }} {}
+      : patient_{patient},
+        thread_{[this](const auto& stop) { run(stop); }},
+        stranger_{[this](const auto& stop) { make_junk(stop); }} {}
   [[nodiscard]] std::uint16_t port() const { return front_.local().port(); }
   void flood(int kind) { kind_ = kind; }
   [[nodiscard]] std::uint64_t junk() const { return junk_; }
