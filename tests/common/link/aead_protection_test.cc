@@ -125,8 +125,9 @@ TEST(AeadProtectionTest, TheSamePlainTextNeverLooksTheSame) {
   const Bytes plain(40, std::byte{0x31});
   Bytes first = sealed(ends.surgeon, {.number = 5}, plain);
   Bytes second = sealed(ends.surgeon, {.number = 6}, plain);
-  EXPECT_FALSE(std::ranges::equal(std::span{first}.subspan(kHeaderSize),
-                                  std::span{second}.subspan(kHeaderSize)));
+  // Without the tags, which differ anyway because the headers do.
+  EXPECT_FALSE(std::ranges::equal(std::span{first}.subspan(kHeaderSize, plain.size()),
+                                  std::span{second}.subspan(kHeaderSize, plain.size())));
   for (const Bytes& one : {first, second}) {
     EXPECT_FALSE(std::ranges::search(one, std::span{plain}.first(4)).begin() != one.end());
   }
