@@ -72,10 +72,9 @@ void write_key(const path& file, EVP_PKEY* key) {
   OPENSSL_cleanse(text.data(), text.size());
 }
 
-void extend(X509* certificate, const X509* issuer, int what, const std::string& value) {
+void extend(X509* certificate, X509* issuer, int what, const std::string& value) {
   X509V3_CTX context{};
-  // The call wants what it only reads without const.
-  X509V3_set_ctx(&context, const_cast<X509*>(issuer), certificate, nullptr, nullptr, 0);
+  X509V3_set_ctx(&context, issuer, certificate, nullptr, nullptr, 0);
   const Openssl<X509_EXTENSION> extension{
       X509V3_EXT_conf_nid(nullptr, &context, what, value.c_str())};
   demand(extension != nullptr && X509_add_ext(certificate, extension.get(), -1) == 1);
@@ -145,7 +144,7 @@ void make_site(const CertificatesConfig& config, const Holder& authority, link::
   const std::string site = surgeon ? "surgeon" : "patient";
   const Holder made = holder_named(config.name + " " + site + " site", config.days);
   X509* certificate = made.certificate.get();
-  const X509* issuer = authority.certificate.get();
+  X509* issuer = authority.certificate.get();
   extend(certificate, issuer, NID_basic_constraints, "critical,CA:FALSE");
   extend(certificate, issuer, NID_key_usage, "critical,digitalSignature");
   extend(certificate, issuer, NID_ext_key_usage, surgeon ? "clientAuth" : "serverAuth");
