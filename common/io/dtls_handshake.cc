@@ -1,7 +1,6 @@
 #include "common/io/dtls_handshake.h"
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 
@@ -38,7 +37,7 @@ int read_datagram(BIO* bio, char* out, int size) {
     return -1;
   }
   const std::size_t taken = std::min(box.in.front().size(), static_cast<std::size_t>(size));
-  std::memcpy(out, box.in.front().data(), taken);
+  std::copy_n(reinterpret_cast<const char*>(box.in.front().data()), taken, out);
   box.in.pop_front();
   return static_cast<int>(taken);
 }
