@@ -26,6 +26,7 @@ using config::Ending;
 using config::ExitCode;
 
 constexpr int kSaveEvery = 4;  // cells
+constexpr std::uint64_t kCheckSeed = 1;
 
 struct Shard {
   std::size_t index{};  ///< from 0
@@ -145,6 +146,10 @@ Result<void> solve_on_all_cores(const DepthTable& table,
   return {};
 }
 
+std::size_t wanted_members(const DepthGrid& grid) {
+  return cells_of(grid).size() * grid.ratios.size();
+}
+
 nlohmann::ordered_json describe(const DepthTable& table) {
   const DepthGrid& grid = table.grid;
   nlohmann::ordered_json out;
@@ -161,7 +166,7 @@ nlohmann::ordered_json describe(const DepthTable& table) {
   out["ratio"] = {grid.ratios.front(), grid.ratios.back()};
   out["indentation_max_mm"] = grid.indentations.back() / kMillimetre;
   out["members"] = table.members.size();
-  out["members_wanted"] = cells_of(grid).size() * grid.ratios.size();
+  out["members_wanted"] = wanted_members(grid);
   out["checked_count"] = table.checked_count;
   out["checked_rms_share"] = table.checked_rms;
   out["checked_max_share"] = table.checked_max;
@@ -191,6 +196,10 @@ void declare_database(config::CommandLine& line, DatabaseFlags& flags) {
   line.text("--out", flags.out, "FILE", "the database; an unfinished one is completed");
   line.text("--shard", flags.shard, "i/n", "one share of the grid; merge puts them together");
   line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "processes at a time");
+  line.whole("--check",
+             flags.check,
+             {.min = 0, .max = 10'000},
+             "phantoms between the grid's points, solved to state the interpolation's error");
   line.text("--report", flags.report, "FILE", "JSON report");
 }
 
@@ -220,6 +229,11 @@ Ending run_database(const DatabaseFlags& flags) {
     const auto part = load(name);
     if (!part) return refused(part.error());
     if (auto merged = merge_table(*table, *part); !merged) return bad_input(merged.error().text);
+  }
+  if (flags.check > 0 && table->members.size() == wanted_members(table->grid)) {
+    const auto checked =
+        check_interpolation(*table, static_cast<std::uint32_t>(flags.check), kCheckSeed);
+    if (!checked) return bad_input(checked.error().text);
   }
   const Ending ending = save(*table, flags);
   for (std::size_t core = 0; core < flags.cores; ++core) {

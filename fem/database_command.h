@@ -13,6 +13,7 @@ struct DatabaseFlags {
   std::string out{"depth_database.bin"};
   std::string shard{};  ///< "i/n"; empty: all of it
   std::uint64_t cores{2};
+  std::uint64_t check{};  ///< phantoms between the grid's points, solved after the grid is whole
   std::string report{};
   std::vector<std::string> files{};  ///< of merge
   std::string file{};                ///< of info

@@ -17,6 +17,7 @@
 #include "lab/scenario_file.h"
 #include "lab/trial.h"
 #include "lab/verbs.h"
+#include "lab/visibility.h"
 
 namespace palp::lab {
 namespace {
@@ -134,6 +135,8 @@ int main(int argc, char** argv) {
   line.verb("scenarios", "lists the scenarios that come with the lab");
   palp::lab::DepthFlags depth;
   declare_depth(line.verb("depth", "how well a depth is estimated, over many phantoms"), depth);
+  palp::lab::VisibilityFlags visible;
+  declare_visible(line.verb("visible", "the smallest inclusion the sensor sees"), visible);
   if (const auto ending = line.parse(argc, argv)) return leave(*ending);
   try {
     if (const auto ending =
@@ -145,6 +148,7 @@ int main(int argc, char** argv) {
                     palp::lab::describe_scenarios() + palp::lab::describe_sets()});
     }
     if (line.chosen_verb() == "depth") return leave(palp::lab::run_depth(depth));
+    if (line.chosen_verb() == "visible") return leave(palp::lab::run_visible(visible));
     return leave(palp::lab::run(arguments));
   } catch (const std::exception& failure) {
     return leave({palp::config::ExitCode::CannotOpen, std::string{"palp-lab: "} + failure.what()});

@@ -57,6 +57,16 @@ TEST(DepthDatabaseTest, TenRandomMembersComeOutAgainWhenSolved) {
   }
 }
 
+TEST(DepthDatabaseTest, BetweenTheGridsPointsItIsWithinThreeThousandths) {
+  auto table = parse_table(embedded_database());
+  ASSERT_TRUE(table);
+  ASSERT_TRUE(check_interpolation(*table, 3, 11));
+  EXPECT_EQ(table->checked_count, 3U);
+  EXPECT_GT(table->checked_max, 0);
+  EXPECT_LE(table->checked_rms, table->checked_max);
+  EXPECT_LT(table->checked_max, 0.003);
+}
+
 TEST(DepthDatabaseTest, AnInclusionStiffensAndADeeperOneLess) {
   const auto plain = database().plain();
   const auto near = database().curve({.depth = 6e-3, .radius = 8e-3, .ratio = 100});
