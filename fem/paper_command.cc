@@ -240,7 +240,9 @@ Result<PaperStudy> study_paper(const PaperFlags& flags) {
   study.plain = std::move(*plain);
   std::vector<double> hashes;
   std::vector<double> depths;
-  for (double depth = 5; depth <= 25 + 1e-9; depth += flags.step_mm) {
+  const int steps = static_cast<int>(std::lround(20 / flags.step_mm));
+  for (int i = 0; i <= steps; ++i) {
+    const double depth = 5 + 20.0 * i / steps;
     auto phantom = solve_phantom(flags, depth);
     if (!phantom) return tl::unexpected<Error>(phantom.error());
     hashes.push_back(phantom->cubic.hash());

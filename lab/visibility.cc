@@ -18,7 +18,9 @@ constexpr double kSeen = 5;  // standard deviations
 /// The largest ball at `depth` that the database holds, or 0.
 double largest(const fem::DepthDatabase& database, double depth, double ratio) {
   const std::vector<double>& radii = database.grid().radii;
-  for (double radius = radii.back(); radius >= radii.front(); radius -= 0.1e-3) {
+  constexpr int kSteps = 130;
+  for (int i = 0; i < kSteps; ++i) {
+    const double radius = radii.back() - (radii.back() - radii.front()) * i / kSteps;
     if (database.contains({.depth = depth, .radius = radius, .ratio = ratio})) return radius;
   }
   return 0;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "common/plot/svg_text.h"
 
@@ -28,8 +29,8 @@ std::string short_number(double value) {
 }
 
 struct Range {
-  double from{INFINITY};  ///< [as the axis]
-  double to{-INFINITY};   ///< [as the axis]
+  double from{std::numeric_limits<double>::infinity()};  ///< [as the axis]
+  double to{-std::numeric_limits<double>::infinity()};   ///< [as the axis]
   void add(double value) {
     if (!std::isfinite(value)) return;
     from = std::min(from, value);
@@ -185,11 +186,12 @@ std::vector<double> round_ticks(double from, double to, int count) {
   for (const double factor : {5.0, 2.0, 1.0}) {
     if (factor * power >= 0.8 * rough) step = factor * power;
   }
-  std::vector<double> ticks;
-  for (double i = std::floor(from / step + 1e-9);; i += 1) {
-    ticks.push_back(i * step);
-    if (ticks.back() >= to - 1e-9 * step) return ticks;
+  const double first = std::floor(from / step + 1e-9);
+  std::vector<double> ticks{first * step};
+  while (ticks.back() < to - 1e-9 * step) {
+    ticks.push_back((first + static_cast<double>(ticks.size())) * step);
   }
+  return ticks;
 }
 
 std::string curves_svg(const Axes& axes, const std::vector<Curve>& curves) {
