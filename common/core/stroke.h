@@ -42,8 +42,9 @@ enum class DepthReason : std::uint8_t {
   NoContact,  ///< the surface could not be found
   ForceSaturated,
   HashOutOfRange,  ///< outside the range in which eq. (3) holds
+  TooNoisy,        ///< the force's noise hides what an inclusion adds
 };
-inline constexpr int kDepthReasonCount = 7;
+inline constexpr int kDepthReasonCount = 8;
 
 [[nodiscard]] constexpr std::string_view to_string(DepthReason reason) noexcept {
   switch (reason) {
@@ -61,6 +62,8 @@ inline constexpr int kDepthReasonCount = 7;
       return "force saturated";
     case DepthReason::HashOutOfRange:
       return "hash outside the range of eq. (3)";
+    case DepthReason::TooNoisy:
+      return "force too noisy";
   }
   return "?";
 }

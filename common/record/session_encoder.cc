@@ -27,7 +27,7 @@ Message to_wire(Enum value) noexcept {
 static_assert(session::STOPPED == static_cast<int>(SiteState::Stopped));
 static_assert(session::LINK_LOST == static_cast<int>(LinkState::Lost));
 static_assert(session::INVALID == static_cast<int>(DepthVerdict::Invalid));
-static_assert(session::HASH_OUT_OF_RANGE == static_cast<int>(DepthReason::HashOutOfRange));
+static_assert(session::TOO_NOISY == static_cast<int>(DepthReason::TooNoisy));
 
 template <class Message>
 void put_payload(const CouplingPayload& payload, Message& out) {

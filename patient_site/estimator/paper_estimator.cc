@@ -208,6 +208,7 @@ DepthEstimate PaperEstimator::estimate_stroke() {
   };
   if (cutter_.pressed_again()) return invalid(DepthReason::StrokeNotMonotone);
   if (measured.saturated) return invalid(DepthReason::ForceSaturated);
+  if (measured.noise > config_.noise_max) return invalid(DepthReason::TooNoisy);
   if (measured.in_contact < config_.samples_min) return invalid(DepthReason::StrokeTooFewSamples);
   const std::size_t index = find_place(previous_->lateral, measured.first_contact);
   if (!learn_loading(places_[index], measured, estimate)) return invalid(DepthReason::NoContact);

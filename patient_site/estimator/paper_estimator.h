@@ -22,6 +22,7 @@ struct PaperEstimatorConfig {
   double force_range{49};          ///< [N], of the transducer (5 kgf)
   double indentation_min{2.5e-3};  ///< [m], a shorter stroke says nothing on eq. (2) over 4 mm
   double fit_range{4e-3};          ///< [m], of eq. (2): reproduces the paper's hash values
+  double noise_max{0.1};           ///< [N], rms of a sample: five times the transducer's
   std::size_t samples_min{30};     ///< of a stroke, in contact
   double place_size{1e-3};         ///< [m], of lateral: farther is another place
   double change_force{0.015};      ///< [N], mean misfit from which the tissue is not the same

@@ -135,6 +135,53 @@ TEST(PaperEstimatorTest, TooFewSamplesAreInvalid) {
   EXPECT_EQ(estimates[0].reason, DepthReason::StrokeTooFewSamples);
 }
 
+TEST(PaperEstimatorTest, ANoisyForceIsInvalidAndOneWithinTheLimitIsNot) {
+  const auto phantom = make_phantom("paper-10mm");
+  ASSERT_TRUE(phantom);
+  SimulatedPhantomConfig sensor;
+  sensor.force_noise = 0.15;
+  const auto noisy = tap(*phantom, sensor, {.taps = 1});
+  ASSERT_FALSE(noisy.empty());
+  EXPECT_EQ(noisy[0].verdict, DepthVerdict::Invalid);
+  EXPECT_EQ(noisy[0].reason, DepthReason::TooNoisy);
+  sensor.force_noise = 0.04;
+  const auto quieter = tap(*phantom, sensor, {.taps = 1});
+  ASSERT_FALSE(quieter.empty());
+  EXPECT_NE(quieter[0].reason, DepthReason::TooNoisy);
+}
+
+TEST(PaperEstimatorTest, AStrokeThatGoesBackAndPressesOnIsNotMonotone) {
+  const auto phantom = make_phantom("paper-10mm");
+  ASSERT_TRUE(phantom);
+  estimator::PaperEstimator estimator{{}};
+  SimulatedPhantomConfig sensor = ideal_sensor();
+  sensor.start_position = -3e-3;
+  SimulatedPhantom site{*phantom, sensor};
+  LowPass co_filter{20, 1e-3};
+  co_filter.reset(-3e-3);
+  std::vector<DepthEstimate> estimates;
+  TimePoint now{};
+  for (int i = 0; i < 3000; ++i) {
+    now += std::chrono::milliseconds{1};
+    const StageState stage = site.read(now);
+    const auto estimate = estimator.add({.at = now,
+                                         .position = co_filter.step(stage.position),
+                                         .force = site.sample(now)->force,
+                                         .lateral = 0});
+    if (estimate) estimates.push_back(*estimate);
+    // To 3 mm, back to 2 mm, on to 4 mm, out.
+    const double t = i * 1e-3;
+    const double target = t < 0.6   ? 10e-3 * t - 3e-3
+                          : t < 0.8 ? 3e-3 - 5e-3 * (t - 0.6)
+                          : t < 1.2 ? 2e-3 + 5e-3 * (t - 0.8)
+                                    : 4e-3 - 10e-3 * (t - 1.2);
+    site.move_to({std::max(-3e-3, target), 0});
+  }
+  ASSERT_EQ(estimates.size(), 2U);
+  EXPECT_EQ(estimates[1].verdict, DepthVerdict::Invalid);
+  EXPECT_EQ(estimates[1].reason, DepthReason::StrokeNotMonotone);
+}
+
 TEST(PaperEstimatorTest, NothingIsSaidWithoutContact) {
   const auto phantom = make_phantom("none");
   ASSERT_TRUE(phantom);

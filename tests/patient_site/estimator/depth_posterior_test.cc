@@ -1,0 +1,79 @@
+// Goal: the posterior of the depth means what it says. Method: distributions with known quantiles,
+// and curves of the database given back to the model that was made of it.
+#include "patient_site/estimator/depth_posterior.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "common/core/random.h"
+
+namespace palp::estimator {
+namespace {
+
+TEST(DepthDistributionTest, OneEvenMassHasTheQuantilesOfItsRange) {
+  const DepthMass mass{.log_depth = std::log(10e-3), .width = 0.2, .log_mass = -3};
+  const DepthDistribution depths{std::vector{mass}, 3e-3, 27e-3};
+  EXPECT_NEAR(depths.log_total(), -3, 1e-9);
+  EXPECT_NEAR(depths.quantile(0.5), 10e-3, 1e-5);
+  EXPECT_NEAR(depths.quantile(0.025), 10e-3 * std::exp(-0.095), 2e-5);
+  EXPECT_NEAR(depths.quantile(0.975), 10e-3 * std::exp(0.095), 2e-5);
+}
+
+TEST(DepthDistributionTest, NothingLiesOutsideTheRange) {
+  const DepthMass mass{.log_depth = std::log(3.1e-3), .width = 0.5, .log_mass = 0};
+  const DepthDistribution depths{std::vector{mass}, 3e-3, 27e-3};
+  EXPECT_GE(depths.quantile(0.001), 3e-3 * (1 - 1e-9));
+}
+
+TEST(CurveLatticeTest, GivesBackTheCurvesOfTheDatabase) {
+  const auto database = fem::default_database();
+  ASSERT_TRUE(database);
+  const CurveLattice lattice{*database, {}};
+  const CurveBasis basis{*database};
+  for (const double depth : {6.3e-3, 9.7e-3, 14.1e-3, 22e-3}) {
+    for (const double radius : {3.7e-3, 8.1e-3, 14.3e-3}) {
+      for (const double ratio : {5.0, 40.0, 700.0}) {
+        const auto curve = database->curve({.depth = depth, .radius = radius, .ratio = ratio});
+        const CurveTerms terms = lattice.at(std::log(depth), radius, effect_of(ratio));
+        for (double d = 0.2e-3; d < 4e-3; d += 0.4e-3) {
+          double force = 0;
+          const CurveBasis::Row row = basis.at(d);
+          for (std::size_t m = 0; m < kCurveTerms; ++m) force += row.force[m] * terms[m];
+          // The noise leaves 0.4 mN of the mean of four strokes.
+          EXPECT_NEAR(force, database->force(curve, d), 0.2e-3) << depth << ' ' << radius;
+        }
+      }
+    }
+  }
+}
+
+TEST(DepthModelTest, TheRangeOfSizesMakesTheIntervalWiderAndStillHoldsTheTruth) {
+  const auto database = fem::default_database();
+  ASSERT_TRUE(database);
+  const auto curve = database->curve({.depth = 8e-3, .radius = 10e-3, .ratio = 100});
+  std::vector<ContactPoint> points;
+  constexpr double kNoise = 0.02;  // [N]
+  constexpr double kCount = 40;
+  for (int i = -20; i < 80; ++i) {
+    const double d = i * 50e-6;
+    const double noise =
+        kNoise / std::sqrt(kCount) * random_normal(1, 1, static_cast<std::uint64_t>(i + 20));
+    points.push_back({d, database->force(curve, d) + noise, 0, kCount});
+  }
+  const CurveMatcher::Input input{
+      .points = points, .surface = 0, .noise = kNoise, .stiffness = {.scale_stddev = 0.003}};
+  const DepthPosterior known =
+      DepthModel{*database,
+                 {.radius_min = 10e-3, .radius_max = 10e-3, .ratio_min = 100, .ratio_max = 100}}
+          .update(input);
+  const DepthPosterior range = DepthModel{*database, {}}.update(input);
+  EXPECT_NEAR(known.depth, 8e-3, 4 * known.depth_stddev);
+  EXPECT_GT(range.depth_high - range.depth_low, 2 * (known.depth_high - known.depth_low));
+  EXPECT_LT(range.depth_low, 8e-3);
+  EXPECT_GT(range.depth_high, 8e-3);
+  EXPECT_GT(range.log_evidence, 5);
+}
+
+}  // namespace
+}  // namespace palp::estimator
