@@ -34,8 +34,8 @@ inline constexpr double kCurveReach = 4.4e-3;  ///< [m], to where the terms are 
 
 /// Even nodes of one coordinate, with cubic interpolation between; one node: a constant.
 struct NodeAxis {
-  double low{};
-  double step{};
+  double low{};   ///< [as the coordinate]
+  double step{};  ///< [as the coordinate]
   std::size_t count{1};
   struct Weights {
     std::size_t first{};

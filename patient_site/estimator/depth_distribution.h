@@ -25,9 +25,9 @@ class DepthDistribution {
   [[nodiscard]] double quantile(double share) const noexcept;
 
  private:
-  double low_{};   ///< [-], logarithm, of the first entry
-  double step_{};  ///< [-]
-  double log_total_{};
+  double low_{};                   ///< [-], logarithm, of the first entry
+  double step_{};                  ///< [-]
+  double log_total_{};             ///< [-]
   double mean_{};                  ///< [m]
   double stddev_{};                ///< [m]
   std::vector<double> cumulated_;  ///< [-]

@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "patient_site/estimator/peak_search.h"
+
 namespace palp::estimator {
 namespace {
 
@@ -15,14 +17,10 @@ constexpr std::size_t kLinesMax = 300;  // a bound on the time
 constexpr double kReach = 4;            // [-], standard deviations below the best: forgotten
 constexpr double kFine = 0.9;           // [-], standard deviations to a cell's edge: fine enough
 constexpr double kCaution = 1.4;        // [-], the information changes within a cell
-constexpr std::size_t kScan = 12;       // depths looked at first
-constexpr int kGuesses = 4;             // of the way from a guess to the peak
-constexpr int kSearchSteps = 24;
-constexpr double kPeakExact = 0.01;   // [-], of the log-likelihood
-constexpr double kNegligible = 10;    // [-], log-likelihood below a line's best: its ends
-constexpr std::size_t kMany = 60;     // cells, of which those narrower in the depth than
-constexpr double kNarrow = 0.03;      // [-] need not be summed: the posterior is made of many
-constexpr double kNormalReach = 3.5;  // [-], standard deviations
+constexpr double kNegligible = 10;      // [-], log-likelihood below a line's best: its ends
+constexpr std::size_t kMany = 60;       // cells, of which those narrower in the depth than
+constexpr double kNarrow = 0.03;        // [-] need not be summed: the posterior is made of many
+constexpr double kNormalReach = 3.5;    // [-], standard deviations
 constexpr int kNormalParts = 7;
 constexpr std::size_t kDepths = 21;  // of one line, summed
 constexpr double kShift = 0.5;       // [-], of the posterior's width, within a cell
@@ -31,88 +29,6 @@ constexpr double kBelow = 0.035;     // end that is met first has the smaller sh
 constexpr int kPasses = 2;           // from cells to the posterior's width and back
 constexpr std::size_t kShowingStride = 4;  // of the radii
 constexpr double kExcluded = 3;            // [-], log of 20
-
-/// Maximum of `value` between the first and the last of three places, the middle one above both:
-/// parabolas, golden sections where they lead nowhere.
-struct Peak {
-  double at{};
-  double value{};
-};
-template <typename Value>
-Peak climb(std::array<Peak, 3> bracket, const Value& value) {
-  for (int i = 0; i < kSearchSteps; ++i) {
-    auto& [left, middle, right] = bracket;
-    const double a = middle.at - left.at;
-    const double b = right.at - middle.at;
-    const double rise = (middle.value - left.value) / a;
-    const double fall = (middle.value - right.value) / b;
-    const double curvature = (rise + fall) / (a + b);  // half of it, negative
-    // Vertex of the parabola.
-    double step = curvature > 0 ? 0.5 * (rise * b - fall * a) / (rise + fall) : 0;
-    const double gain = curvature * step * step;
-    const bool exact =
-        gain < kPeakExact && std::max(left.value, right.value) > middle.value - 1 / kPeakExact;
-    if (exact) return {middle.at, middle.value};
-    const bool slow = std::abs(step) < 0.02 * std::min(a, b);
-    if (slow) step = 0.3 * (a > b ? -a : b);
-    if (!(step > -a && step < b)) step = 0.4 * (a > b ? -a : b);
-    const Peak next{middle.at + step, value(middle.at + step)};
-    if (next.value > middle.value) {
-      (step > 0 ? left : right) = middle;
-      middle = next;
-    } else {
-      (step > 0 ? right : left) = next;
-    }
-  }
-  return bracket[1];
-}
-
-/// The place where `value` is largest between `low` and `high`: sought from evenly spread places,
-/// or round a guess.
-template <typename Value>
-Peak scan(double low, double high, const Value& value) {
-  const double step = (high - low) / static_cast<double>(kScan - 1);
-  std::array<Peak, kScan> places;
-  for (std::size_t i = 0; i < kScan; ++i) {
-    const double at = low + step * static_cast<double>(i);
-    places[i] = {at, value(at)};
-  }
-  const auto top = std::max_element(
-      places.begin(), places.end(), [](const Peak& a, const Peak& b) { return a.value < b.value; });
-  if (top != places.begin() && top + 1 != places.end()) {
-    return climb({*(top - 1), *top, *(top + 1)}, value);
-  }
-  // The peak may lie just inside the end.
-  const double inward = top == places.begin() ? step : -step;
-  for (double part = 0.5; part > 1e-4; part *= 0.5) {
-    const Peak inside{top->at + part * inward, value(top->at + part * inward)};
-    if (inside.value <= top->value) continue;
-    const Peak beyond{top->at + 2 * part * inward, value(top->at + 2 * part * inward)};
-    return inward > 0 ? climb({*top, inside, beyond}, value) : climb({beyond, inside, *top}, value);
-  }
-  return *top;
-}
-
-/// The same, near `guess`; nothing if it is not within a few `width`.
-template <typename Value>
-std::optional<Peak> search(double guess, double width, const Value& value) {
-  std::array<Peak, 3> places{
-      {{guess - width, value(guess - width)}, {guess, value(guess)}, {guess + width, 0}}};
-  places[2].value = value(guess + width);
-  for (int i = 0; i < kGuesses; ++i) {
-    auto& [left, middle, right] = places;
-    if (middle.value >= left.value && middle.value >= right.value) return climb(places, value);
-    width *= 2;
-    if (right.value > left.value) {
-      const double at = right.at + width;
-      places = {middle, right, {at, value(at)}};
-    } else {
-      const double at = left.at - width;
-      places = {Peak{at, value(at)}, left, middle};
-    }
-  }
-  return std::nullopt;
-}
 
 DepthPrior showing(const fem::DepthDatabase& database, const DepthPrior& prior) {
   return {.depth_min = database.grid().depths.front(),
@@ -170,7 +86,7 @@ void DepthModel::look(const CurveMatcher& points, Cell& cell) const {
   std::optional<Peak> peak;
   if (cell.depth_stddev > 0) {
     const double width = 2 * cell.depth_stddev;
-    const double reach = std::exp2(kGuesses) * width;
+    const double reach = std::exp2(kPeakGuesses) * width;
     const CurveLine line =
         lattice_.line(cell.radius, effect, cell.log_depth - reach, cell.log_depth + reach);
     peak = search(cell.log_depth, width, [&](double log_depth) {
