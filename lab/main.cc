@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <unistd.h>
+
 #include "common/config/command_line.h"
 #include "common/config/exit_code.h"
 #include "common/config/report.h"
@@ -103,10 +105,14 @@ Ending run(const Arguments& arguments) {
 }
 
 Machine machine() {
-  return {.processors = io::processors(), .for_each_index = io::for_each_index, .used = [] {
-            const io::ProcessTime used = io::process_time();
-            return std::pair{seconds(used.cpu), seconds(used.wall)};
-          }};
+  return {.processors = io::processors(),
+          .for_each_index = io::for_each_index,
+          .used =
+              [] {
+                const io::ProcessTime used = io::process_time();
+                return std::pair{seconds(used.cpu), seconds(used.wall)};
+              },
+          .watched = isatty(STDERR_FILENO) != 0};
 }
 
 }  // namespace

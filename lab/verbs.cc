@@ -72,7 +72,7 @@ Result<Run> run(Plan plan, const BatchArguments& arguments, const Machine& machi
       [&](std::size_t count, const std::function<void(std::size_t)>& work) {
         machine.for_each_index(count, cores, work);
       },
-      show_progress);
+      machine.watched ? show_progress : Progress{});
   if (!results) return tl::unexpected(results.error());
   const auto end = machine.used();
   BatchAccount account;

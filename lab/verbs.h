@@ -19,6 +19,7 @@ struct Machine {
       std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work)>
       for_each_index;
   std::function<std::pair<double, double>()> used;  ///< [s] of processor time, [s] of wall time
+  bool watched{};                                   ///< somebody sees standard error
 };
 
 struct BatchArguments {

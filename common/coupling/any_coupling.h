@@ -23,7 +23,7 @@ using PatientCoupling = std::variant<DirectPatient, WavePatient, TdpaPatient, Mm
 inline constexpr std::array<std::string_view, 4> kCouplingNames{"direct", "wave", "tdpa", "mmt"};
 
 struct CouplingConfig {
-  std::string name{"direct"};
+  std::string name{"mmt"};
   DirectConfig direct;
   WaveConfig wave;
   TdpaConfig tdpa;

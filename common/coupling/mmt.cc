@@ -108,6 +108,26 @@ double MmtSurgeon::slew_for(double position, Duration round_trip) const noexcept
   return config_.slew + (small - config_.slew) * std::clamp(room, 0.0, 1.0);
 }
 
+/// How much the tank lacks, 0 to 1. A surface that breathes takes and gives its strokes' energy
+/// through the tank, so there it is to be full.
+double MmtSurgeon::debt() const noexcept {
+  const double level = swing_.rate > 0 ? config_.tank_max : config_.tank_start;
+  return std::clamp(1 - tank_ / level, 0.0, 1.0);
+}
+
+/// In the air and on the way out of the tissue the hand pays the tank back: on the way in, where
+/// stiffness is judged, damping would be felt as softness.
+double MmtSurgeon::damp(double force, double depth, double speed) const noexcept {
+  if (depth > 0) {
+    const double damping = config_.contact_damping + config_.repay_contact * debt();
+    force = std::max(0.0, force + damping * std::min(0.0, speed));
+  } else {
+    force += (config_.air_damping + config_.repay_air * debt()) * speed;
+  }
+  if (tank_ < 0) force += config_.empty_damping * speed;
+  return force;
+}
+
 SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   const double span = seconds(dt);
   swing_age_ += span;
@@ -139,13 +159,7 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   tank_ -= stored_ - moved;
 
   elastic_ = shown_.force(depth);
-  double force = elastic_;
-  if (depth > 0) {
-    force = std::max(0.0, force + config_.contact_damping * std::min(0.0, speed));
-  } else {
-    force += config_.air_damping * speed;
-  }
-  if (tank_ < 0) force += config_.empty_damping * speed;
+  const double force = damp(elastic_, depth, speed);
   return {force, {in.position, in.velocity, force, std::monostate{}}};
 }
 

@@ -29,6 +29,8 @@ struct MmtConfig {
   double blend{0.05};           ///< [s], time constant of changes of the model
   double contact_damping{0.2};  ///< [N s/m], on the way out: the way in is what a finger judges
   double air_damping{0.3};      ///< [N s/m], fills the tank
+  double repay_contact{3};      ///< [N s/m], on top on the way out while the tank is empty
+  double repay_air{0.7};        ///< [N s/m], the same in the air
   double empty_damping{2};      ///< [N s/m], on top while the tank is overdrawn
   double velocity_cut_off{60};  ///< [Hz]
   double fade{1};               ///< [s], of the model in Retract
@@ -64,6 +66,8 @@ class MmtSurgeon {
   void approach_candidate(double position, double depth, double dt) noexcept;
   [[nodiscard]] double slew_for(double position, Duration round_trip) const noexcept;
   void choose_offset(double position, double energy_max, double force_max) noexcept;
+  [[nodiscard]] double debt() const noexcept;
+  [[nodiscard]] double damp(double force, double depth, double speed) const noexcept;
 
   MmtConfig config_;
   VelocityEstimate velocity_;

@@ -74,7 +74,7 @@ TEST(TrialTest, AnotherNoiseDrawGainOrPacketFateGivesAnotherDigest) {
   noise.tissue.force_noise *= 1 + 1e-12;
   EXPECT_NE(digest_of(noise), reference);
   Scenario gain = short_scenario();
-  gain.coupling.direct.spring += 1e-9;
+  gain.coupling.mmt.air_damping += 1e-9;
   EXPECT_NE(digest_of(gain), reference);
   Scenario fate = short_scenario();
   fate.up.blackouts.push_back({std::chrono::milliseconds{3000}, std::chrono::milliseconds{1}});

@@ -65,9 +65,7 @@ Settings settings_with(const std::vector<std::string>& assignments) {
 }
 
 TEST(SurgeonSettingsTest, AnEmptyDocumentGivesTheDefaultsOfTheParts) {
-  Settings defaults;
-  defaults.node.supervisor.round_trip_max_to_engage = defaults.direct_round_trip_max;
-  EXPECT_EQ(text_of(settings_with({})), text_of(defaults));
+  EXPECT_EQ(text_of(settings_with({})), text_of(Settings{}));
 }
 
 TEST(SurgeonSettingsTest, EveryKnobIsRead) {
@@ -108,9 +106,13 @@ TEST(SurgeonSettingsTest, AnUnknownCouplingIsAnErrorThatListsTheKnownOnes) {
   EXPECT_THAT(made.error().text, HasSubstr("unknown coupling 'springy'; there are: direct"));
 }
 
-TEST(SurgeonSettingsTest, ForcedEngagementLiftsTheLimitOfTheRoundTrip) {
-  EXPECT_EQ(settings_with({"engagement.forced=true"}).node.supervisor.round_trip_max_to_engage,
-            Duration{0});
+TEST(SurgeonSettingsTest, DirectAloneHasALimitOfTheRoundTripAndForcedEngagementLiftsIt) {
+  const auto limit = [](const std::vector<std::string>& sets) {
+    return settings_with(sets).node.supervisor.round_trip_max_to_engage;
+  };
+  EXPECT_EQ(limit({"coupling.name=mmt"}), Duration{0});
+  EXPECT_EQ(limit({"coupling.name=direct"}), Settings{}.direct_round_trip_max);
+  EXPECT_EQ(limit({"coupling.name=direct", "engagement.forced=true"}), Duration{0});
 }
 
 TEST(SurgeonSettingsTest, TheAgreementIsOnTheLawAndThePeriodAlone) {

@@ -37,6 +37,7 @@ TEST(AnyCouplingTest, UnknownNameIsOneSentenceWithTheNameAndTheNamesThereAre) {
 
 TEST(AnyCouplingTest, ConfigurationReachesTheLaw) {
   CouplingConfig config;
+  config.name = "direct";
   config.direct = {.force_scale = 2, .position_scale = 3, .spring = 0};
   SurgeonCoupling surgeon = *make_surgeon_coupling(config);
   PatientCoupling patient = *make_patient_coupling(config);
