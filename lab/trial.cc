@@ -107,7 +107,11 @@ class Witness {
   Witness(const Scenario& scenario,
           const surgeon::SimulatedHand& hand,
           const patient::SimulatedPhantom& tissue)
-      : scenario_{scenario}, hand_{hand}, tissue_{tissue}, phases_{scenario.script} {}
+      : scenario_{scenario},
+        hand_{hand},
+        tissue_{tissue},
+        phases_{scenario.script},
+        relaxing_{scenario.phantom.relaxation} {}
 
   /// `at`: since the start of the run [s].
   void look(const surgeon::SurgeonStatus& status, double at, Digest& digest) {
@@ -127,17 +131,21 @@ class Witness {
     const double net = hand.work - tissue.tissue_energy;
     work_min_ = std::min(work_min_, hand.work);
     net_min_ = std::min(net_min_, net);
+    // What the hand itself would have felt, had it pressed the tissue.
+    const double depth = hand.position - status.offset - tissue.surface;
+    const double force_true = relaxing_.step(scenario_.phantom.at(status.lateral).force(depth),
+                                             seconds(scenario_.link.period));
     if (!hand.performing) return;
 
     TrialTick tick;
     tick.at = at;
     tick.phase = phases_.at(hand.script_time);
     tick.counted = status.state == SiteState::Engaged || status.state == SiteState::Hold;
-    tick.hand = hand.position - status.offset - tissue.surface;
+    tick.hand = depth;
     tick.surface = tissue.surface - scenario_.tissue.surface_offset;
     tick.hand_velocity = hand.velocity;
     tick.hand_force = hand.force;
-    tick.force_true = scenario_.phantom.at(status.lateral).force(tick.hand);
+    tick.force_true = force_true;
     tick.contact_force = tissue.contact_force;
     tick.tip = tissue.position - tissue.surface;
     tick.tip_velocity = tissue.velocity;
@@ -154,6 +162,7 @@ class Witness {
   const surgeon::SimulatedHand& hand_;
   const patient::SimulatedPhantom& tissue_;
   PhaseFinder phases_;
+  patient::RelaxingForce relaxing_;
   double work_min_{};  ///< [J]
   double net_min_{};   ///< [J]
   std::vector<TrialTick> ticks_;

@@ -28,7 +28,8 @@ SimulatedPhantom::SimulatedPhantom(const Phantom& phantom, const SimulatedPhanto
       target_{config.start_position, config.start_lateral},
       position_{config.start_position},
       lateral_{config.start_lateral},
-      surface_{config.surface_offset} {
+      surface_{config.surface_offset},
+      relaxing_{phantom.relaxation} {
   PALP_CHECK(config.servo_frequency > 0 && config.sensor_cut_off > 0, "frequencies are positive");
   const double omega = 2 * std::numbers::pi * config.servo_frequency;
   servo_stiffness_ = omega * omega;
@@ -90,7 +91,8 @@ void SimulatedPhantom::integrate_step() noexcept {
     surface_ = config_.surface_offset + config_.breathing_amplitude * std::sin(phase);
     surface_rate = config_.breathing_amplitude * omega * std::cos(phase);
   }
-  const double elastic = phantom_.at(lateral_).force(position_ - surface_);
+  const double elastic =
+      relaxing_.step(phantom_.at(lateral_).force(position_ - surface_), kStepSeconds);
   const double rate = velocity_ - surface_rate;
   contact_force_ = std::max(0.0, elastic * (1 + config_.viscous_factor * rate));
   tissue_energy_ += contact_force_ * velocity_ * kStepSeconds;

@@ -74,6 +74,7 @@ class SimulatedPhantom final : public Stage, public ForceSensor {
   double noisy_force_{};    ///< [N], the last reading before its rounding
   double sensed_force_{};   ///< [N], behind the transducer's pole
   double tissue_energy_{};  ///< [J]
+  RelaxingForce relaxing_;
 };
 
 }  // namespace palp::patient

@@ -70,8 +70,12 @@ TEST(PhantomTest, UnknownNamesGetOneSentence) {
   EXPECT_THAT(make_phantom("").error().text, HasSubstr("unknown phantom"));
   EXPECT_THAT(make_phantom("file:").error().text, HasSubstr("names no file"));
   EXPECT_THAT(make_phantom("file:no.csv").error().text, HasSubstr("no.csv: the file cannot"));
-  for (const char* bad :
-       {"closed-form:x", "closed-form:1.9", "closed-form:101", "closed-form:nan"}) {
+  for (const char* bad : {"relaxing:1",
+                          "exponential:",
+                          "closed-form:x",
+                          "closed-form:1.9",
+                          "closed-form:101",
+                          "closed-form:nan"}) {
     EXPECT_THAT(make_phantom(bad).error().text, HasSubstr("from 2 to 100")) << bad;
   }
   EXPECT_TRUE(make_phantom("closed-form:2"));
@@ -88,6 +92,33 @@ TEST(PhantomTest, TissueTextIsATableThatCanBeReadBack) {
   for (double d = 0; d < 5e-3; d += 1e-4) {
     EXPECT_NEAR(table->force(d), phantom->over.force(d), 1e-8);
   }
+}
+
+TEST(PhantomTest, TheExponentialOneStiffensAsFungsLawDoes) {
+  const auto phantom = make_phantom("exponential:10");
+  ASSERT_TRUE(phantom);
+  for (const double depth : {1e-3, 2e-3, 4e-3}) {
+    EXPECT_NEAR(phantom->plain.derivative(depth),
+                450 * (phantom->plain.force(depth) + 0.08),
+                1e-3 * phantom->plain.derivative(depth));
+    EXPECT_GT(phantom->over.force(depth), phantom->plain.force(depth));
+  }
+}
+
+TEST(RelaxingForceTest, AHeldTissueLetsGoOfItsShareAndNeverPulls) {
+  RelaxingForce tissue{{.share = 0.1, .time = 1}};
+  EXPECT_NEAR(tissue.step(1, 1e-4), 1, 1e-4) << "at once it is elastic";
+  double force = 0;
+  for (int i = 0; i < 10'000; ++i) force = tissue.step(1, 1e-4);
+  EXPECT_NEAR(force, 1 - 0.1 * (1 - std::exp(-1)), 1e-4);
+  for (int i = 0; i < 90'000; ++i) force = tissue.step(1, 1e-4);
+  EXPECT_NEAR(force, 0.9, 1e-4);
+  EXPECT_EQ(tissue.step(0.01, 1e-4), 0) << "the tip leaves faster than the tissue follows";
+}
+
+TEST(RelaxingForceTest, WithoutAShareItIsTheElasticForceToTheBit) {
+  RelaxingForce tissue{{}};
+  for (const double elastic : {0.0, 0.3, 1e-9}) EXPECT_EQ(tissue.step(elastic, 1e-4), elastic);
 }
 
 }  // namespace
