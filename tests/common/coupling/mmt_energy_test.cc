@@ -159,6 +159,58 @@ TEST(MmtSurgeonTest, ABeginningEpochDoesNotRefillTheTank) {
   EXPECT_LE(law.tank(), left);
 }
 
+/// A hand that a hard tissue surprised 4 mm deep, which took the whole tank; then it moves.
+class SurprisedHand {
+ public:
+  explicit SurprisedHand(const MmtConfig& config) : law_{config} {
+    law_.begin_epoch(position_);
+    incoming_.sample.payload = ModelPayload{.version = 1, .c = {0.3, 0, 0, 0}, .depth_max = 4e-3};
+    incoming_.fresh = true;
+    (void)move(0, 1000);
+  }
+  /// The force [N] after `ticks` at `speed` [m/s].
+  double move(double speed, int ticks) {
+    for (int tick = 0; tick < ticks; ++tick) {
+      position_ += 1e-3 * speed;
+      const std::array arrived{incoming_};
+      SurgeonInput in;
+      in.state = SiteState::Engaged;
+      in.position = position_;
+      in.force_applied = force_;
+      in.arrived = arrived;
+      force_ = law_.step(in, std::chrono::milliseconds{1}).force;
+    }
+    return force_;
+  }
+  [[nodiscard]] double tank() const { return law_.tank(); }
+
+ private:
+  MmtSurgeon law_;
+  Incoming incoming_;
+  double position_{4e-3};  ///< [m]
+  double force_{};         ///< [N]
+};
+
+TEST(MmtSurgeonTest, AnEmptyTankIsPaidBackOnTheWayOutAndInTheAirAndNotOnTheWayIn) {
+  const MmtConfig config;
+  MmtConfig lenient = config;
+  lenient.repay_contact = 0;
+  lenient.repay_air = 0;
+  SurprisedHand hand{config};
+  SurprisedHand other{lenient};
+  ASSERT_LT(hand.tank(), 0.01 * config.tank_start);
+  EXPECT_EQ(hand.move(20e-3, 20), other.move(20e-3, 20)) << "on the way in";
+  EXPECT_LT(hand.move(-20e-3, 50), other.move(-20e-3, 50) - 0.02) << "on the way out";
+  EXPECT_GT(hand.tank(), other.tank());
+  (void)hand.move(-20e-3, 300);
+  (void)other.move(-20e-3, 300);
+  const double before = hand.tank();
+  const double before_other = other.tank();
+  (void)hand.move(-20e-3, 400);
+  (void)other.move(-20e-3, 400);
+  EXPECT_GT(hand.tank() - before, other.tank() - before_other) << "in the air";
+}
+
 TEST(MmtSurgeonTest, ShowsNothingWhereTheGateLetsNothingThrough) {
   for (const SiteState state : {SiteState::Parked, SiteState::Clutched, SiteState::Stopped}) {
     MmtSurgeon law{MmtConfig{}};

@@ -75,6 +75,19 @@ TEST(PlayOutTest, PlaysASteadyWaveAsItWasSentOverAnEvenPath) {
   EXPECT_NEAR(played, 0.5, 1e-3);
 }
 
+TEST(PlayOutTest, APeerThatUnderstatesItsEnergyIsPlayedNoLouderThanItSays) {
+  PlayOut play_out{kPeriod};
+  WavePayload said;
+  for (std::uint64_t tick = 0; tick < 1000; ++tick) {
+    said.wave_integral += 0.5 * kPeriod;
+    said.wave_energy = 1e-6;
+    const double now = kPeriod * static_cast<double>(tick);
+    const std::array arrived{wave_sample(tick, said, now)};
+    (void)play_out.step(TimePoint{from_seconds(now)}, arrived);
+    ASSERT_LE(play_out.energy_played(), 1e-6 * (1 + 1e-9)) << "tick " << tick;
+  }
+}
+
 TEST(WaveTest, TheImpedanceKeepsAStageWithItsLagPassiveOnTheStiffestTissue) {
   WaveConfig config;
   EXPECT_GE(wave_impedance(config), config.stiffness_expected * config.stage_lag);
