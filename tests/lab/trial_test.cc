@@ -104,6 +104,19 @@ TEST(TrialTest, ABlackoutIsSurvivedAndThePedalEngagesAgain) {
   EXPECT_LE(result.metrics.contact_force_max, 3.3);
 }
 
+TEST(TrialTest, APatientSiteThatLiesGetsTheHandNoMoreThanTheTankHeldAtFirst) {
+  constexpr double kSlack = 0.05e-3;  // [J], one tick of held force and half an encoder count
+  Scenario lying = scenario("metro");
+  lying.bare = true;
+  lying.lying = true;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    lying.seed = seed;
+    const TrialResult result = run_trial(lying);
+    EXPECT_LE(result.metrics.energy_operator, lying.coupling.mmt.tank_start + kSlack) << seed;
+    EXPECT_GT(result.metrics.force_peak, 0.3) << "or nothing was shown";
+  }
+}
+
 TEST(TrialTest, TheSurfaceIsFoundWhereverItLies) {
   const TrialResult result = run_trial(scenario(
       "metro",
