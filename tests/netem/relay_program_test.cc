@@ -192,7 +192,6 @@ TEST_F(RelayProgramTest, BadInputIsExitCode2AndASentence) {
        std::vector<std::vector<std::string>>{{"--spec", "delay 5minutes"},
                                              {"--up", "loss 200%"},
                                              {"--preset", "moon"},
-                                             {"--timeline", "no such file"},
                                              {"--rtt-ms", "-1"},
                                              {"--loss", "1.5"},
                                              {"--loss", "101%"},
@@ -224,6 +223,9 @@ TEST_F(RelayProgramTest, BadInputIsExitCode2AndASentence) {
 }
 
 TEST_F(RelayProgramTest, WhatCannotBeOpenedIsExitCode3) {
+  Process absent = start_relay({"--timeline", "no such file"});
+  EXPECT_EQ(absent.wait(kLimit), 3);
+  EXPECT_THAT(absent.output(), StartsWith("palp-netem: --timeline: no file"));
   const DatagramSocket taken = DatagramSocket::bound(kAnyPort);
   Process busy =
       start({"relay", "--listen", taken.local().to_string(), "--forward", "localhost:9"});

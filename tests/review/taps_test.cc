@@ -104,7 +104,10 @@ TEST(TapsTest, TheTapsOverTheInclusionDecideTogether) {
   EXPECT_EQ(judge_depth(taps).verdict, DepthVerdict::Found);
   EXPECT_NEAR(judge_depth(taps).depth.value(), 0.0098 + 1e-4 * 5.5, 1e-12);
   EXPECT_FALSE(judge_depth(taps).low) << "this estimator gives no interval";
-  for (std::size_t k = 4; k < 7; ++k) taps[k].estimate.verdict = DepthVerdict::None;
+  for (std::size_t k = 4; k < 7; ++k) {
+    taps[k].estimate.verdict = DepthVerdict::None;
+    taps[k].estimate.depth_low = 0;  // nothing is excluded
+  }
   EXPECT_EQ(judge_depth(taps).verdict, DepthVerdict::None);
   EXPECT_FALSE(judge_depth(taps).depth);
 }

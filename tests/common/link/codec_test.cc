@@ -161,7 +161,8 @@ TEST(ProtobufCodecTest, RefusesEnumeratorsOutOfRange) {
   message.mutable_site()->mutable_depth()->set_verdict(static_cast<wire::DepthVerdict>(3));
   EXPECT_FALSE(codec.decode(view(message.SerializeAsString())));
   message.mutable_site()->mutable_depth()->clear_verdict();
-  message.mutable_site()->mutable_depth()->set_reason(static_cast<wire::DepthReason>(7));
+  message.mutable_site()->mutable_depth()->set_reason(
+      static_cast<wire::DepthReason>(kDepthReasonCount));
   EXPECT_FALSE(codec.decode(view(message.SerializeAsString())));
 }
 
