@@ -7,8 +7,11 @@
 namespace palp::lab {
 namespace {
 
-constexpr double kLeft = 70;  // [px]
-constexpr double kTop = 40;   // [px]
+constexpr double kLeft = 54;     // [px]
+constexpr double kTop = 60;      // [px]
+constexpr double kAcross = 34;   // [px], a cell and its gap; "1000" fits below
+constexpr double kDown = 22;     // [px]
+constexpr double kBetween = 54;  // [px], between panels
 
 }  // namespace
 
@@ -28,38 +31,39 @@ std::string map_svg(const Plan& plan, const std::vector<CaseResult>& results) {
     if (found == list.end()) found = list.insert(list.end(), value);
     return static_cast<double>(found - list.begin());
   };
-  constexpr double kCell = 22;
-  constexpr double kPanel = 8 * kCell + 46;
+  for (const CaseResult& result : results) (void)index_in(springs, result.labels[spring_at]);
+  const std::size_t rows = springs.size();
+  const double panel_height = kDown * static_cast<double>(rows) + kBetween;
   std::string cells;
   for (const CaseResult& result : results) {
     const double row = index_in(springs, result.labels[spring_at]);
     const double column = index_in(trips, result.labels[trip_at]);
     const double panel = index_in(grips, result.labels[grip_at]);
     plot::append(cells,
-                 "<rect x=\"%.0f\" y=\"%.0f\" width=\"20\" height=\"20\" fill=\"%s\"/>\n",
-                 kLeft + 30 + kCell * column,
-                 kTop + 20 + kPanel * panel + kCell * row,
+                 "<rect x=\"%.0f\" y=\"%.0f\" width=\"32\" height=\"20\" fill=\"%s\"/>\n",
+                 kLeft + kAcross * column,
+                 kTop + panel_height * panel + kDown * row,
                  result.unstable ? "#d55e00" : "#009e73");
   }
-  const double width = kLeft + 60 + kCell * static_cast<double>(trips.size());
+  const double width = kLeft + 20 + kAcross * static_cast<double>(trips.size());
   std::string text =
-      plot::open_picture(width, kTop + kPanel * static_cast<double>(grips.size()) + 10);
+      plot::open_picture(width, kTop + panel_height * static_cast<double>(grips.size()));
   plot::title(text, kLeft, 22, "eq. (1): stable (green), unstable (orange)");
   for (std::size_t g = 0; g < grips.size(); ++g) {
-    const double top = kTop + 20 + kPanel * static_cast<double>(g);
-    plot::label(text, kLeft + 30, top - 6, "start", "grip " + grips[g]);
+    const double top = kTop + panel_height * static_cast<double>(g);
+    plot::label(
+        text, kLeft, top - 8, "start", "grip " + grips[g] + ": k_p [N/m] over the round trip [ms]");
     for (std::size_t r = 0; r < springs.size(); ++r) {
-      plot::label(text, kLeft + 24, top + 15 + kCell * static_cast<double>(r), "end", springs[r]);
+      plot::label(text, kLeft - 8, top + 15 + kDown * static_cast<double>(r), "end", springs[r]);
     }
     for (std::size_t c = 0; c < trips.size(); ++c) {
       plot::label(text,
-                  kLeft + 40 + kCell * static_cast<double>(c),
-                  top + kCell * 8 + 12,
+                  kLeft + 16 + kAcross * static_cast<double>(c),
+                  top + kDown * static_cast<double>(rows) + 14,
                   "middle",
                   trips[c]);
     }
   }
-  plot::label(text, 6, kTop + 8, "start", "k_p N/m by round trip ms");
   return text + cells + "</svg>\n";
 }
 

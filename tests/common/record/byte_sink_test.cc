@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "common/record/mapped_file.h"
 
@@ -13,7 +14,7 @@ class FileTest : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::remove(path_); }
   void TearDown() override { std::filesystem::remove(path_); }
-  std::string path_{testing::TempDir() + "palp_byte_sink_test.bin"};
+  std::string path_{testing::TempDir() + "palp_byte_sink_" + std::to_string(::getpid())};
 };
 
 constexpr std::string_view kText{"some bytes"};
