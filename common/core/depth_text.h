@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "common/core/number_text.h"
 #include "common/core/stroke.h"
 
 namespace palp {
@@ -27,6 +28,17 @@ template <typename Estimate>
                      .depth = estimate.depth,
                      .low = estimate.depth_low,
                      .high = estimate.depth_high});
+}
+
+/// On a status line: "depth -" before the first estimate, and the hash behind what was found or
+/// not.
+template <typename Estimate>
+[[nodiscard]] std::string depth_line_of(const Estimate& estimate) {
+  if (estimate.number == 0) return "depth -";
+  const std::string hash = number_text(" (h ", estimate.hash, 4, " N)");
+  const std::string text = depth_text_of(estimate);
+  if (estimate.verdict == DepthVerdict::None) return text + hash;
+  return "depth " + text + (estimate.verdict == DepthVerdict::Found ? hash : "");
 }
 
 }  // namespace palp
