@@ -17,6 +17,7 @@
 #include "common/io/terminal.h"
 #include "common/link/codec_protobuf.h"
 #include "common/site_program/build_info.h"
+#include "common/site_program/check_command.h"
 #include "common/site_program/ending.h"
 #include "common/site_program/impaired_reception.h"
 #include "common/site_program/recording.h"
@@ -262,12 +263,18 @@ int run(int argc, char** argv) {
   config::CommandLine line{"palp-patient", "The patient's site: a stage, a force sensor, a link."};
   std::string report_file;
   declare_flags(line, document, report_file);
+  line.verbs_optional();
+  const site_program::CheckCommand check{line};
   site_program::SiteReport report;
   report.site = "patient";
   if (const auto ending = line.parse(argc, argv)) {
     if (ending->code == ExitCode::Done || report_file.empty()) return config::leave(*ending);
     report.ending = ending_of(*ending);
     return site_program::finish(report, report_file);
+  }
+  if (!line.chosen_verb().empty()) {
+    const Ending ending = check.run();
+    return config::leave({ending.code, ending.reason});
   }
   try {
     report.ending = run(document, report);

@@ -15,6 +15,7 @@
 #include "common/link/codec_protobuf.h"
 #include "common/site_program/build_info.h"
 #include "common/site_program/certificates_command.h"
+#include "common/site_program/check_command.h"
 #include "common/site_program/ending.h"
 #include "common/site_program/impaired_reception.h"
 #include "common/site_program/peer_watch.h"
@@ -241,6 +242,7 @@ int run(int argc, char** argv) {
   declare_flags(line, document, report_file);
   line.verbs_optional();
   const site_program::CertificatesCommand certificates{line};
+  const site_program::CheckCommand check{line};
   site_program::SiteReport report;
   report.site = "surgeon";
   if (const auto ending = line.parse(argc, argv)) {
@@ -248,8 +250,8 @@ int run(int argc, char** argv) {
     report.ending = ending_of(*ending);
     return site_program::finish(report, report_file);
   }
-  if (line.chosen_verb() == "certificates") {
-    const Ending ending = certificates.run();
+  if (!line.chosen_verb().empty()) {
+    const Ending ending = line.chosen_verb() == "check" ? check.run() : certificates.run();
     return config::leave({ending.code, ending.reason});
   }
   try {

@@ -1,0 +1,60 @@
+#include "common/site_program/check_command.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "common/config/report.h"
+#include "common/settings/site_settings.h"
+
+namespace palp::site_program {
+
+CheckCommand::CheckCommand(config::CommandLine& line) {
+  config::CommandLine& verb = line.verb(
+      "check", "Looks whether this machine can run a site on time, and says what to change.");
+  verb.number("--seconds", seconds_, {.min = 0.1, .max = 3600, .unit = "s"}, "of an idle loop");
+  verb.text("--report", report_, "FILE", "JSON report");
+}
+
+Ending CheckCommand::run() const {
+  const settings::LoopSettings site;
+  const io::LoopConfig loop{.period = site.period,
+                            .spin = site.spin,
+                            .priority = site.priority,
+                            .lock_memory = site.lock_memory};
+  const auto findings =
+      io::judge_machine(io::read_machine(loop, from_seconds(seconds_)), loop.period);
+  std::fputs(check_text(findings).c_str(), stdout);
+  if (!report_.empty()) {
+    const auto written = config::write_whole_file(report_, check_json(findings));
+    if (!written) return ending_of(written.error());
+  }
+  const bool good = std::all_of(
+      findings.begin(), findings.end(), [](const io::MachineFinding& one) { return one.good; });
+  return {good ? config::ExitCode::Done : config::ExitCode::Missed, "completed", ""};
+}
+
+std::string check_text(const std::vector<io::MachineFinding>& findings) {
+  std::string text;
+  for (const io::MachineFinding& one : findings) {
+    std::string what = one.what;
+    what.resize(std::max<std::size_t>(what.size(), 20), ' ');
+    text += std::string{one.good ? "good    " : "change  "} + what + "  " + one.found + '\n';
+    if (!one.good) text += std::string(30, ' ') + "-> " + one.advice + '\n';
+  }
+  return text;
+}
+
+std::string check_json(const std::vector<io::MachineFinding>& findings) {
+  nlohmann::ordered_json json;
+  json["schema"] = "palp.check/1";
+  json["findings"] = nlohmann::ordered_json::array();
+  for (const io::MachineFinding& one : findings) {
+    json["findings"].push_back(
+        {{"what", one.what}, {"good", one.good}, {"found", one.found}, {"advice", one.advice}});
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace palp::site_program

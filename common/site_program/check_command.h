@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/config/command_line.h"
+#include "common/io/machine_check.h"
+#include "common/site_program/ending.h"
+
+namespace palp::site_program {
+
+/// The verb `check`: can this machine run a site on time, and what should be changed?
+class CheckCommand {
+ public:
+  /// Declares the verb; this object outlives the line's parse().
+  explicit CheckCommand(config::CommandLine& line);
+  /// After the line was parsed with this verb: an idle loop with the default settings of a site's.
+  /// Prints a line for each thing looked at. Missed where something should be changed.
+  [[nodiscard]] Ending run() const;
+
+ private:
+  double seconds_{5};  ///< [s]
+  std::string report_;
+};
+
+/// "good  timer lateness  99 % of ...", and the advice below what is not.
+[[nodiscard]] std::string check_text(const std::vector<io::MachineFinding>& findings);
+/// Schema palp.check/1.
+[[nodiscard]] std::string check_json(const std::vector<io::MachineFinding>& findings);
+
+}  // namespace palp::site_program
