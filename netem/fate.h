@@ -30,6 +30,7 @@ class FateSequence {
 
   /// The fates of the datagram and its copies, in the order they enter the line; valid until the
   /// next call.
+  // NOLINTNEXTLINE(bugprone-exception-escape): never valueless, so no visit throws
   [[nodiscard]] std::span<const CopyFate> next(const Arrival& arrival) noexcept {
     return std::visit([&](auto& fates) { return fates.next(arrival); }, fates_);
   }

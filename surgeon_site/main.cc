@@ -194,8 +194,8 @@ std::optional<Ending> Program::look(TimePoint now) {
   }
   line_.show(status_line(status), now);
   if (hopeless) return Ending{ExitCode::CannotOpen, "refused", *hopeless};
-  if (const auto ending = end_of_script(status)) return ending;
-  if (const auto ending = watch_.judge(status.link, now)) return ending;
+  if (auto ending = end_of_script(status)) return ending;
+  if (auto ending = watch_.judge(status.link, now)) return ending;
   if (settings_.duration == Duration{0} || now - began_at_ < settings_.duration) {
     return std::nullopt;
   }

@@ -68,7 +68,7 @@ class CurveLine {
   NodeAxis depth_;       ///< log of m
   std::size_t first_{};  ///< node of the first terms
   std::size_t count_{};
-  std::array<CurveTerms, kDepths> terms_;  ///< of which count_ mean something
+  std::array<CurveTerms, kDepths> terms_{};  ///< of which count_ mean something
 };
 
 /// The curves of a depth database within a prior, shortened to terms and so dense that a cubic
