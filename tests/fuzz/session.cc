@@ -74,7 +74,11 @@ class Party {
     take(output, now);
   }
 
-  void tick(TimePoint now) { take(session_.tick(now, state_, link_session_), now); }
+  void tick(TimePoint now) {
+    const SessionOutput output = session_.tick(now, state_, link_session_);
+    told_working_ = state_ == LinkState::Live || state_ == LinkState::Hold;
+    take(output, now);
+  }
 
   void leave(TimePoint now) {
     take(session_.close("the input says so"), now);
@@ -104,7 +108,6 @@ class Party {
       out_.push(datagram.view(), now);
     }
     if (output.event) take(*output.event);
-    told_working_ = state_ == LinkState::Live || state_ == LinkState::Hold;
   }
 
   void datagram_laws(std::span<const std::byte> datagram) {
@@ -129,6 +132,7 @@ class Party {
                  "connections have ids");
       link_session_ = established->session_id;
       state_ = LinkState::Down;
+      told_working_ = false;
     } else if (const auto* refused = std::get_if<Refused>(&event)) {
       PALP_CHECK(!refused->text.empty(), "a refusal says why");
       stopped_ = stopped_ || refused->final;
@@ -136,6 +140,7 @@ class Party {
       PALP_CHECK(!std::get<Closed>(event).text.empty(), "an end says why");
       link_session_ = 0;
       state_ = LinkState::Down;
+      told_working_ = false;
     }
   }
 
@@ -145,7 +150,7 @@ class Party {
   Eavesdropper& path_;
   LinkState state_{LinkState::Down};
   std::uint64_t link_session_{};
-  bool told_working_{};  ///< at the last tick
+  bool told_working_{};  ///< at the last tick, of the session that is there
   bool stopped_{};
   std::uint64_t next_number_{};
   SessionCounters before_;
