@@ -171,9 +171,11 @@ std::string tap_table(const std::vector<Tap>& taps, const OverallDepth& depth) {
   }
   text += "over the inclusion: ";
   if (!depth.verdict) return text + "no tap\n";
-  if (depth.depth)
-    return text + "found, top of the inclusion " + depth.says + " below the surface\n";
-  text += depth.says;
+  if (!depth.depth) return text + depth.says + '\n';
+  text += "found, top of the inclusion " + fixed(*depth.depth * 1e3, 1) + " mm below the surface";
+  if (depth.low && depth.high) {
+    text += ", between " + fixed(*depth.low * 1e3, 1) + " and " + fixed(*depth.high * 1e3, 1);
+  }
   return text + '\n';
 }
 
