@@ -7,6 +7,7 @@
 #include <string_view>
 
 /// What a fuzzer calls with each input; the laws in it are PALP_CHECKs. Always returns 0.
+// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace palp::fuzz {

@@ -31,7 +31,7 @@ inline Fate after(Duration delay) {
 
 /// Loses the datagrams with these indices, delays the others.
 inline Fate losing(std::vector<std::uint64_t> lost, Duration delay = Duration{0}) {
-  return [=](std::uint64_t index, const Bytes& bytes) {
+  return [lost = std::move(lost), delay](std::uint64_t index, const Bytes& bytes) {
     const bool gone = std::find(lost.begin(), lost.end(), index) != lost.end();
     return gone ? std::vector<Release>{} : std::vector<Release>{{delay, bytes}};
   };
