@@ -16,10 +16,10 @@ constexpr double kShapeMax = 400;
 struct GammaShare {
   double below{};
   double above{};
+  double steepness{};  ///< dP / d log x
 };
 
 GammaShare gamma_share(double a, double x) {
-  if (x <= 0) return {0, 1};
   const double factor = std::exp(a * std::log(x) - x - std::lgamma(a));
   if (x < a + 1) {
     double term = 1 / a;
@@ -29,7 +29,7 @@ GammaShare gamma_share(double a, double x) {
       sum += term;
     }
     const double below = std::min(sum * factor, 1.0);
-    return {below, 1 - below};
+    return {below, 1 - below, factor};
   }
   double b = x + 1 - a;
   double c = 1e300;
@@ -45,26 +45,32 @@ GammaShare gamma_share(double a, double x) {
     if (std::abs(step - 1) < 1e-15) break;
   }
   const double above = std::min(factor * h, 1.0);
-  return {1 - above, above};
+  return {1 - above, above, factor};
 }
 
 /// The quantile of the gamma law of shape `a` and scale 1 where the standard normal is `z`; it lies
-/// above `least`. Bisection in the logarithm, on the smaller of the two tails.
+/// above `least`. Newton's steps in the logarithms of `x` and of the smaller tail, from Wilson and
+/// Hilferty's cube or, where that fails, from the law of small x; bisection where a step would
+/// leave what is known.
 double gamma_quantile(double a, double z, double least) {
-  const double below = normal_cdf(z);
-  const double above = normal_cdf(-z);
-  const auto too_small = [&](double x) {
-    const GammaShare share = gamma_share(a, x);
-    return z < 0 ? share.below < below : share.above > above;
-  };
+  const double target = normal_cdf(-std::abs(z));
+  const double root = 1 - 1 / (9 * a) + z / (3 * std::sqrt(a));
   double low = std::max(least, 1e-300);
-  double high = std::max(2 * low, a);
-  while (too_small(high)) high *= 2;
-  for (int step = 0; step < 200 && high / low > 1 + 1e-12; ++step) {
-    const double middle = std::sqrt(low) * std::sqrt(high);
-    (too_small(middle) ? low : high) = middle;
+  double high = 1e300;
+  double x = root > 0.3 ? a * root * root * root
+                        : std::exp((std::log(normal_cdf(z)) + std::lgamma(a + 1)) / a);
+  x = std::clamp(x, low, high);
+  for (int step = 0; step < 1000; ++step) {
+    const GammaShare share = gamma_share(a, x);
+    const double tail = z < 0 ? share.below : share.above;
+    const double excess = z < 0 ? std::log(tail / target) : -std::log(tail / target);
+    (excess < 0 ? low : high) = x;
+    double next = x * std::exp(-excess * tail / share.steepness);
+    if (!(next >= low && next <= high)) next = std::sqrt(low) * std::sqrt(high);
+    if (std::abs(next - x) <= 1e-12 * x) return next;
+    x = next;
   }
-  return high;
+  return x;
 }
 
 std::vector<double> as_doubles(const DelayTable& table) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "common/core/random.h"
@@ -21,7 +22,11 @@ class DelayCurve {
   /// The same where the standard normal is `z`.
   [[nodiscard]] double at_normal(double z) const noexcept {
     if (shape_ == DelayShape::Normal) return z;
-    return bent_.empty() ? bent(z) : lerp_at(bent_, (z + kZMax) * (kCells / (2 * kZMax)));
+    if (bent_.empty()) return bent(z);
+    const double place = std::clamp(z + kZMax, 0.0, kZInside) * (kCells / (2 * kZMax));
+    const auto cell = static_cast<std::int32_t>(place);
+    const double* left = bent_.data() + cell;
+    return left[0] + (place - cell) * (left[1] - left[0]);
   }
 
   /// Its argument should be a standard normal rather than a share.
@@ -40,6 +45,7 @@ class DelayCurve {
 
  private:
   static constexpr double kZMax = 8.5;  ///< [-], how far bent_ goes; no draw goes further
+  static constexpr double kZInside = 2 * kZMax * (1 - 1e-12);  ///< [-], in the last cell
   static constexpr std::size_t kCells = 1700;
 
   [[nodiscard]] static double lerp_at(const std::vector<double>& values, double place) noexcept {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palp::netem {
 namespace {
@@ -17,6 +18,14 @@ std::uint64_t pick(std::uint64_t bits, std::uint64_t count) noexcept {
 
 Duration rounded(double nanoseconds) noexcept {
   return Duration{static_cast<std::int64_t>(nanoseconds + 0.5)};
+}
+
+bool goes_on(const CopyFate& fate) noexcept {
+  return fate.verdict == Verdict::Delivered || fate.verdict == Verdict::HeaderHit;
+}
+
+bool stalls(const Impairment& law) noexcept {
+  return law.stall.median > Duration{} && law.stall.rate > 0;
 }
 
 }  // namespace
@@ -40,7 +49,8 @@ ExactFates::ExactFates(const PreparedLaw& law, const Streams& streams, TimePoint
       delay_stream_{streams.of(Stage::Delay)},
       stay_loss_stream_{streams.of(Stage::StayLoss)},
       gemodel_loss_stream_{streams.of(Stage::GemodelLoss)},
-      slot_stream_{streams.of(Stage::Slot)} {
+      slot_stream_{streams.of(Stage::Slot)},
+      slot_at_{start} {
   change(law);
 }
 
@@ -55,19 +65,35 @@ void ExactFates::change(const PreparedLaw& law) noexcept {
   swap_.change(impairment.swap);
   bottleneck_.change(impairment);
   trace_at_ = 0;
-  shared_ = !impairment.blackouts.empty() || impairment.burst.length > Duration{} ||
-            impairment.state || impairment.gemodel || !impairment.bitmap.lost.empty() ||
-            impairment.gilbert.bad > Duration{} || impairment.stall.median > Duration{} ||
-            impairment.reorder.gap > 0 || impairment.order == Order::Swap;
-  damages_ = impairment.truncate.share > 0 || impairment.corrupt.share > 0;
+  calm_until_ = TimePoint::min();
   mean_ = law.curve.mean();
   jitter_ = law.curve.jitter();
   least_ = impairment.delay.floor * mean_;
-  drawn_ = impairment.delay.jitter > Duration{} || impairment.delay.shape == DelayShape::Histogram;
-  correlated_ = drawn_ && (law.carry > 0 || impairment.delay.correlation_time > Duration{});
+  choose_draw(impairment.delay.jitter > Duration{} ||
+              impairment.delay.shape == DelayShape::Histogram);
   carry_ = law.carry;
   fresh_ = std::sqrt(1 - carry_ * carry_);
   carry_gap_ = Duration{-1};
+  const SlotLaw& slot = impairment.slot;
+  constexpr auto kEndless = std::numeric_limits<std::uint64_t>::max();
+  slotted_ = slot.max > Duration{};
+  slot_min_ = static_cast<double>(slot.min.count());
+  slot_width_ = static_cast<double>((slot.max - slot.min).count());
+  slot_packets_max_ = slot.packets > 0 ? slot.packets : kEndless;
+  slot_bytes_max_ = slot.bytes > 0 ? slot.bytes : kEndless;
+}
+
+void ExactFates::choose_draw(bool random) noexcept {
+  const DelayLaw& delay = law_->impairment.delay;
+  if (!law_->impairment.trace.points.empty()) {
+    draw_ = Draw::Trace;
+  } else if (!random) {
+    draw_ = Draw::Mean;
+  } else if (law_->carry > 0 || delay.correlation_time > Duration{}) {
+    draw_ = Draw::Correlated;
+  } else {
+    draw_ = law_->curve.by_normal() ? Draw::Normal : Draw::Share;
+  }
 }
 
 void ExactFates::lean(const Impairment& towards, double share) noexcept {
@@ -81,46 +107,39 @@ void ExactFates::lean(const Impairment& towards, double share) noexcept {
   mean_ = between(count(law.mean), count(towards.delay.mean));
   jitter_ = between(count(law.jitter), count(towards.delay.jitter));
   least_ = between(law.floor, towards.delay.floor) * mean_;
-  drawn_ = jitter_ > 0;
+  choose_draw(jitter_ > 0);
   loss_.change(mix(from.loss, towards.loss));
   duplicate_.change(mix(from.duplicate, towards.duplicate));
   corrupt_.change(mix(from.corrupt, towards.corrupt));
-  damages_ = true;
 }
 
 std::span<const CopyFate> ExactFates::next(const Arrival& arrival) noexcept {
   const TimePoint at = first_ ? arrival.at : std::max(arrival.at, last_at_);
-  if (!law_->impairment.replay.rows.empty()) return replay(arrival);
-  if (correlated_) correlate(first_ ? Duration{} : at - last_at_);
+  const Impairment& law = law_->impairment;
+  if (!law.replay.rows.empty()) return replay(arrival);
+  if (draw_ == Draw::Correlated) correlate(first_ ? Duration{} : at - last_at_);
   last_at_ = at;
 
-  const std::size_t count = 1 + (duplicate_.next(index_) ? 1U : 0U) + flood_;
-  Common common;
-  common.onward = at;
-  if (shared_) common = common_fate(at);
-  common.onward = std::max(common.onward, arrival.held_until);
+  const Chances chances = draw_chances();
+  Common common{.onward = at};
+  const bool calm = at < calm_until_;
+  if (!calm) common = common_fate(at);
+  const TimePoint onward = std::max(common.onward, arrival.held_until);
+  const bool harmless = calm && !(chances.lost || chances.cut || chances.flipped);
+  const auto tos = static_cast<std::uint8_t>(law.dscp_clear ? arrival.tos & kEcnMask : arrival.tos);
+  const std::size_t count = 1 + (chances.duplicate ? 1U : 0U) + flood_;
   std::size_t room = arrival.room;
   for (std::size_t copy = 0; copy < count; ++copy) {
     CopyFate& fate = copies_[copy];
-    fate = {.tos = arrival.tos, .length = static_cast<std::uint32_t>(arrival.length)};
-    if (law_->impairment.dscp_clear) fate.tos &= kEcnMask;
-    if (lost(common, copy)) {
-      const bool markable = law_->impairment.ecn && (fate.tos & kEcnMask) != 0;
-      if (markable) fate.tos |= kEcnMask;
-      if (!markable) fate.verdict = Verdict::Lost;
+    fate = {.tos = tos, .length = static_cast<std::uint32_t>(arrival.length)};
+    if (!harmless || copy > 0) harm(fate, copy, chances, common);
+    if (goes_on(fate) && (room == 0 || !fits(fate))) fate.verdict = Verdict::OverLimit;
+    // A correlated delay is drawn of each original, got through or not.
+    if (goes_on(fate) || (copy == 0 && draw_ == Draw::Correlated)) {
+      fate.delay = draw_delay(copy, onward, fate.floored);
     }
-    if (damages_) damage(fate, copy);
-    if (common.dark) {
-      fate.verdict = Verdict::Blackout;
-    } else if (fate.verdict != Verdict::Lost &&
-               (room == 0 ||
-                (law_->impairment.mtu > 0 &&
-                 fate.length + kFrameHeaders - kEthernetHeader > law_->impairment.mtu))) {
-      fate.verdict = Verdict::OverLimit;
-    }
-    draw_delay(fate, copy, common);
-    if (fate.verdict != Verdict::Delivered && fate.verdict != Verdict::HeaderHit) continue;
-    put_in_order(fate, copy == 0 && common.swaps);
+    if (!goes_on(fate)) continue;
+    leave(fate, onward, copy == 0 && chances.jumps, copy == 0 && chances.swaps);
     if (fate.verdict == Verdict::Delivered) --room;
   }
   first_ = false;
@@ -129,29 +148,15 @@ std::span<const CopyFate> ExactFates::next(const Arrival& arrival) noexcept {
   return std::span{copies_}.first(count);
 }
 
-inline ExactFates::Common ExactFates::common_fate(TimePoint at) noexcept {
-  Common common;
-  common.onward = at;
-  common.dark = !law_->impairment.blackouts.empty() && in_blackout(at);
-  if (law_->impairment.burst.length > Duration{})
-    common.lost = burst_.next(law_->impairment.burst, at, index_);
-  if (law_->impairment.state)
-    common.lost = state_.next(*law_->impairment.state, index_) || common.lost;
-  if (!law_->impairment.bitmap.lost.empty()) {
-    const auto& lost = law_->impairment.bitmap.lost;
-    common.lost = common.lost || lost[index_ % lost.size()];
-  }
-  if (law_->impairment.gemodel)
-    common.loss_gemodel = gemodel_.next(*law_->impairment.gemodel, index_);
-  if (law_->impairment.gilbert.bad > Duration{}) {
-    common.loss_state = gilbert_.next(law_->impairment.gilbert, at);
-  }
-  if (law_->impairment.stall.median > Duration{} && law_->impairment.stall.rate > 0) {
-    common.onward = stall_.next(law_->impairment.stall, at);
-  }
-  common.jumps = law_->impairment.reorder.gap > 0 && jumps();
-  common.swaps = law_->impairment.order == Order::Swap && swap_.next(index_);
-  return common;
+/// Every process is asked, whatever the others said: their states do not depend on each other.
+inline ExactFates::Chances ExactFates::draw_chances() noexcept {
+  const Impairment& law = law_->impairment;
+  return {.duplicate = duplicate_.next(index_),
+          .lost = loss_.next(index_),
+          .cut = truncate_.next(index_),
+          .flipped = corrupt_.next(index_),
+          .jumps = law.reorder.gap > 0 && jumps(),
+          .swaps = law.order == Order::Swap && swap_.next(index_)};
 }
 
 /// Of every datagram, lost or not, so that losses move no other draw.
@@ -159,6 +164,38 @@ inline bool ExactFates::jumps() noexcept {
   if (++since_reorder_ < law_->impairment.reorder.gap || !reorder_.next(index_)) return false;
   since_reorder_ = 0;
   return true;
+}
+
+ExactFates::Common ExactFates::common_fate(TimePoint at) noexcept {
+  const Impairment& law = law_->impairment;
+  Common common{.onward = at};
+  common.dark = in_blackout(at);
+  if (law.burst.length > Duration{}) common.lost = burst_.next(law.burst, at, index_);
+  if (law.state) common.lost = state_.next(*law.state, index_) || common.lost;
+  if (!law.bitmap.lost.empty()) {
+    common.lost = common.lost || law.bitmap.lost[index_ % law.bitmap.lost.size()];
+  }
+  if (law.gemodel) common.loss_gemodel = gemodel_.next(*law.gemodel, index_);
+  if (law.gilbert.bad > Duration{}) common.loss_state = gilbert_.next(law.gilbert, at);
+  if (stalls(law)) common.onward = stall_.next(law.stall, at);
+  calm_until_ = calm_until(at);
+  return common;
+}
+
+/// Until when nothing of what holds for all copies will act: the processes that count datagrams
+/// must be asked each time, those in time only when theirs has come.
+TimePoint ExactFates::calm_until(TimePoint at) const noexcept {
+  const Impairment& law = law_->impairment;
+  if (law.burst.length > Duration{} || law.state || law.gemodel || !law.bitmap.lost.empty()) {
+    return TimePoint::min();
+  }
+  TimePoint until = TimePoint::max();
+  for (const Blackout& window : law.blackouts) {
+    if (at - start_ < window.from + window.length) until = std::min(until, start_ + window.from);
+  }
+  if (law.gilbert.bad > Duration{}) until = std::min(until, gilbert_.harmless_until(law.gilbert));
+  if (stalls(law)) until = std::min(until, stall_.begins());
+  return until;
 }
 
 bool ExactFates::in_blackout(TimePoint at) const noexcept {
@@ -170,44 +207,55 @@ bool ExactFates::in_blackout(TimePoint at) const noexcept {
                      });
 }
 
-/// Every process is asked, whatever the others said: their states do not depend on each other.
-inline bool ExactFates::lost(const Common& common, std::size_t copy) noexcept {
-  bool lost = common.lost;
-  const bool random =
-      copy == 0 ? loss_.next(index_) : loss_.aside(streams_.of(Stage::Loss, copy), index_);
-  lost = lost || random;
-  if (common.loss_state > 0) {
-    lost = lost ||
-           stream_of(stay_loss_stream_, Stage::StayLoss, copy).uniform(index_) < common.loss_state;
+/// Losses, lengths, flipped bits and blackouts.
+void ExactFates::harm(CopyFate& fate,
+                      std::size_t copy,
+                      const Chances& chances,
+                      const Common& common) noexcept {
+  if (lost(copy, chances, common)) {
+    const bool markable = law_->impairment.ecn && (fate.tos & kEcnMask) != 0;
+    if (markable) fate.tos |= kEcnMask;
+    if (!markable) fate.verdict = Verdict::Lost;
   }
-  if (common.loss_gemodel > 0) {
-    lost = lost || stream_of(gemodel_loss_stream_, Stage::GemodelLoss, copy).uniform(index_) <
-                       common.loss_gemodel;
-  }
-  return lost;
+  damage(fate, copy, chances);
+  if (common.dark) fate.verdict = Verdict::Blackout;
 }
 
-inline void ExactFates::damage(CopyFate& fate, std::size_t copy) noexcept {
-  if (!truncate_.off()) {
-    const bool cut = copy == 0 ? truncate_.next(index_)
-                               : truncate_.aside(streams_.of(Stage::Truncate, copy), index_);
-    if (cut) {
-      fate.length = static_cast<std::uint32_t>(
-          std::min<std::uint64_t>(fate.length, law_->impairment.truncate_to));
-    }
+bool ExactFates::lost(std::size_t copy, const Chances& chances, const Common& common) noexcept {
+  const auto draw = [&](RandomStream original, Stage stage) {
+    return stream_of(original, stage, copy).uniform(index_);
+  };
+  const bool random =
+      copy == 0 ? chances.lost : loss_.aside(streams_.of(Stage::Loss, copy), index_);
+  return common.lost || random ||
+         (common.loss_state > 0 && draw(stay_loss_stream_, Stage::StayLoss) < common.loss_state) ||
+         (common.loss_gemodel > 0 &&
+          draw(gemodel_loss_stream_, Stage::GemodelLoss) < common.loss_gemodel);
+}
+
+void ExactFates::damage(CopyFate& fate, std::size_t copy, const Chances& chances) noexcept {
+  const Impairment& law = law_->impairment;
+  const bool cut =
+      copy == 0 ? chances.cut : truncate_.aside(streams_.of(Stage::Truncate, copy), index_);
+  if (cut) {
+    fate.length = static_cast<std::uint32_t>(std::min<std::uint64_t>(fate.length, law.truncate_to));
   }
-  if (corrupt_.off()) return;
   const bool hit =
-      copy == 0 ? corrupt_.next(index_) : corrupt_.aside(streams_.of(Stage::Corrupt, copy), index_);
+      copy == 0 ? chances.flipped : corrupt_.aside(streams_.of(Stage::Corrupt, copy), index_);
   const std::uint64_t headers = 8 * kFrameHeaders;
   const std::uint64_t payload = 8 * std::uint64_t{fate.length};
-  const std::uint64_t from = law_->impairment.corrupt_payload ? headers : 0;
+  const std::uint64_t from = law.corrupt_payload ? headers : 0;
   if (!hit || headers + payload == from) return;
   const std::uint64_t bits = streams_.of(Stage::CorruptBit, copy).bits(index_);
   fate.flipped_bit = static_cast<std::int32_t>(from + pick(bits, headers + payload - from));
   if (fate.verdict == Verdict::Delivered && fate.flipped_bit < static_cast<std::int32_t>(headers)) {
     fate.verdict = Verdict::HeaderHit;
   }
+}
+
+inline bool ExactFates::fits(const CopyFate& fate) const noexcept {
+  const std::uint64_t mtu = law_->impairment.mtu;
+  return mtu == 0 || fate.length + kFrameHeaders - kEthernetHeader <= mtu;
 }
 
 /// Prepares the step of the correlated process over `gap`.
@@ -220,40 +268,35 @@ inline void ExactFates::correlate(Duration gap) noexcept {
   carry_gap_ = gap;
 }
 
-/// A draw for each original, got through or not: correlated delays and the rest stay apart.
-inline void ExactFates::draw_delay(CopyFate& fate,
-                                   std::size_t copy,
-                                   const Common& common) noexcept {
-  const bool delivered = fate.verdict == Verdict::Delivered || fate.verdict == Verdict::HeaderHit;
-  if (!delivered && (copy > 0 || !correlated_)) return;
-  if (!law_->impairment.trace.points.empty()) {
-    fate.delay = traced_delay(common.onward, copy);
-  } else if (!drawn_) {
-    fate.delay = rounded(mean_);
+inline Duration ExactFates::draw_delay(std::size_t copy, TimePoint onward, bool& floored) noexcept {
+  if (draw_ == Draw::Mean) return rounded(mean_);
+  if (draw_ == Draw::Trace) return traced_delay(onward, copy);
+  double around = 0;  // [1], in units of the jitter
+  if (draw_ == Draw::Correlated) {
+    around = law_->curve.at_normal(draw_normal(copy));
   } else {
-    double around = 0;  // [1], in units of the jitter
-    if (correlated_) {
-      around = law_->curve.at_normal(draw_normal(copy));
-    } else {
-      const RandomStream stream = stream_of(delay_stream_, Stage::Delay, copy);
-      around = law_->curve.by_normal() ? law_->curve.at_normal(law_->normal.at(stream.bits(index_)))
-                                       : law_->curve.at_share(random_middle(stream.bits(index_)));
-    }
-    const double drawn = mean_ + jitter_ * around;
-    fate.floored = drawn < least_;
-    fate.delay = rounded(std::max(drawn, least_));
+    const std::uint64_t bits = stream_of(delay_stream_, Stage::Delay, copy).bits(index_);
+    around = draw_ == Draw::Normal ? law_->curve.at_normal(law_->normal.at(bits))
+                                   : law_->curve.at_share(random_middle(bits));
   }
-  if (!delivered) return;
-  TimePoint from = common.onward;
+  const double drawn = mean_ + jitter_ * around;
+  floored = drawn < least_;
+  return rounded(std::max(drawn, least_));
+}
+
+/// Through the line, after its delay, in order.
+inline void ExactFates::leave(CopyFate& fate, TimePoint onward, bool jumps, bool swaps) noexcept {
+  TimePoint from = onward;
   if (!bottleneck_.off()) {
-    from = bottleneck_.pass(common.onward, fate.length + kFrameHeaders);
+    from = bottleneck_.pass(onward, fate.length + kFrameHeaders);
     if (from == Bottleneck::kDropped) {
       fate.verdict = Verdict::OverLimit;
       return;
     }
   }
-  fate.immediate = copy == 0 && common.jumps;
-  fate.release = fate.immediate ? from : from + fate.delay;
+  fate.immediate = jumps;
+  fate.release = jumps ? from : from + fate.delay;
+  put_in_order(fate, swaps);
 }
 
 /// A standard normal. A duplicate is a sibling of its original in the correlated process and leaves
@@ -315,35 +358,34 @@ inline void ExactFates::put_in_order(CopyFate& fate, bool swaps) noexcept {
       releases_[released_++ % kSwapDepthMax] = fate.release;
     }
   }
-  if (law_->impairment.slot.max > Duration{}) fit_slot(fate);
+  if (slotted_) fit_slot(fate);
 }
 
 /// Moves the release to the slot that has room for it. Slots lie on a grid of their own, drawn by
 /// their number; nothing overtakes.
-void ExactFates::fit_slot(CopyFate& fate) noexcept {
-  const SlotLaw& law = law_->impairment.slot;
-  if (!slots_begun_) slot_at_ = start_;
-  slots_begun_ = true;
-  const auto next_slot = [&](TimePoint from) {
-    const double draw = random_middle(slot_stream_.bits(slot_number_++));
-    double span = static_cast<double>(law.min.count()) +
-                  draw * static_cast<double>((law.max - law.min).count());
-    if (law.spacing) span += law_->slot_curve.jitter() * law_->slot_curve.at_share(draw);
-    slot_packets_ = 0;
-    slot_bytes_ = 0;
-    return from + std::max(rounded(std::max(span, 1.0)), Duration{1});
-  };
+inline void ExactFates::fit_slot(CopyFate& fate) noexcept {
+  const std::uint64_t length = fate.length + kFrameHeaders;
   const auto full = [&] {
-    return (law.packets > 0 && slot_packets_ >= law.packets) ||
-           (law.bytes > 0 && slot_bytes_ > 0 &&
-            slot_bytes_ + fate.length + kFrameHeaders > law.bytes);
+    return slot_packets_ >= slot_packets_max_ ||
+           (slot_bytes_ > 0 && slot_bytes_ + length > slot_bytes_max_);
   };
   for (int walked = 0; slot_at_ < fate.release || full(); ++walked) {
-    slot_at_ = next_slot(walked < kSlotsPerGapMax ? slot_at_ : std::max(slot_at_, fate.release));
+    next_slot(walked < kSlotsPerGapMax ? slot_at_ : std::max(slot_at_, fate.release));
   }
   ++slot_packets_;
-  slot_bytes_ += fate.length + kFrameHeaders;
+  slot_bytes_ += length;
   fate.release = slot_at_;
+}
+
+inline void ExactFates::next_slot(TimePoint from) noexcept {
+  const double draw = random_middle(slot_stream_.bits(slot_number_++));
+  double span = slot_min_ + draw * slot_width_;
+  if (law_->impairment.slot.spacing) {
+    span += law_->slot_curve.jitter() * law_->slot_curve.at_share(draw);
+  }
+  slot_at_ = from + rounded(std::max(span, 1.0));
+  slot_packets_ = 0;
+  slot_bytes_ = 0;
 }
 
 std::span<const CopyFate> ExactFates::replay(const Arrival& arrival) noexcept {

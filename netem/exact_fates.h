@@ -33,16 +33,25 @@ class ExactFates {
   void lean(const Impairment& towards, double share) noexcept;
 
  private:
+  /// What befalls the original by chance.
+  struct Chances {
+    bool duplicate{};
+    bool lost{};
+    bool cut{};
+    bool flipped{};
+    bool jumps{};  ///< goes ahead of its delay
+    bool swaps{};  ///< overtakes some
+  };
   /// What holds for a datagram and all its copies.
   struct Common {
     TimePoint onward{};  ///< behind the stall
     bool dark{};
     bool lost{};
-    bool jumps{};           ///< the original goes ahead of its delay
-    bool swaps{};           ///< the original overtakes some
     double loss_state{};    ///< [1], of Gilbert-Elliott in time
     double loss_gemodel{};  ///< [1]
   };
+  /// Where a delay comes from.
+  enum class Draw : std::uint8_t { Mean, Trace, Correlated, Normal, Share };
 
   /// The original's stream is at hand; those of copies are made when needed.
   [[nodiscard]] RandomStream stream_of(RandomStream original,
@@ -50,17 +59,27 @@ class ExactFates {
                                        std::size_t copy) const noexcept {
     return copy == 0 ? original : streams_.of(stage, copy);
   }
-  [[nodiscard]] Common common_fate(TimePoint at) noexcept;
+  void choose_draw(bool random) noexcept;
+  [[nodiscard]] Chances draw_chances() noexcept;
   [[nodiscard]] bool jumps() noexcept;
+  [[nodiscard]] Common common_fate(TimePoint at) noexcept;
   [[nodiscard]] bool in_blackout(TimePoint at) const noexcept;
-  [[nodiscard]] bool lost(const Common& common, std::size_t copy) noexcept;
-  void damage(CopyFate& fate, std::size_t copy) noexcept;
-  void draw_delay(CopyFate& fate, std::size_t copy, const Common& common) noexcept;
+  [[nodiscard]] TimePoint calm_until(TimePoint at) const noexcept;
+  void harm(CopyFate& fate,
+            std::size_t copy,
+            const Chances& chances,
+            const Common& common) noexcept;
+  [[nodiscard]] bool lost(std::size_t copy, const Chances& chances, const Common& common) noexcept;
+  void damage(CopyFate& fate, std::size_t copy, const Chances& chances) noexcept;
+  [[nodiscard]] bool fits(const CopyFate& fate) const noexcept;
+  [[nodiscard]] Duration draw_delay(std::size_t copy, TimePoint onward, bool& floored) noexcept;
   [[nodiscard]] double draw_normal(std::size_t copy) noexcept;
   [[nodiscard]] Duration traced_delay(TimePoint onward, std::size_t copy) noexcept;
   void correlate(Duration gap) noexcept;
+  void leave(CopyFate& fate, TimePoint onward, bool jumps, bool swaps) noexcept;
   void put_in_order(CopyFate& fate, bool swaps) noexcept;
   void fit_slot(CopyFate& fate) noexcept;
+  void next_slot(TimePoint from) noexcept;
   std::span<const CopyFate> replay(const Arrival& arrival) noexcept;
 
   const PreparedLaw* law_;
@@ -93,10 +112,8 @@ class ExactFates {
   RandomStream stay_loss_stream_;
   RandomStream gemodel_loss_stream_;
   RandomStream slot_stream_;
-  bool shared_{};   ///< common_fate() has something to say
-  bool damages_{};  ///< damage() has something to do
-  bool drawn_{};    ///< the delay is random
-  bool correlated_{};
+  TimePoint calm_until_{TimePoint::min()};  ///< until then common_fate() has nothing to say
+  Draw draw_{Draw::Mean};
   double carry_{};          ///< [1], a of z_n = a z_(n-1) + sqrt(1 - a^2) e_n
   double fresh_{1};         ///< [1], sqrt(1 - a^2)
   Duration carry_gap_{-1};  ///< the gap that carry_ belongs to
@@ -110,9 +127,13 @@ class ExactFates {
   std::array<TimePoint, kSwapDepthMax> releases_{};  ///< of the last ones, a ring
   std::uint64_t released_{};
 
+  bool slotted_{};
+  double slot_min_{};    ///< [ns], from one slot to the next
+  double slot_width_{};  ///< [ns], from the least to the most of it
+  std::uint64_t slot_packets_max_{};
+  std::uint64_t slot_bytes_max_{};  ///< [bytes]
   std::uint64_t slot_number_{};
-  bool slots_begun_{};
-  TimePoint slot_at_{};
+  TimePoint slot_at_;
   std::uint64_t slot_packets_{};
   std::uint64_t slot_bytes_{};  ///< [bytes]
 };

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <limits>
 
 #include "common/core/random.h"
 #include "common/core/time.h"
@@ -20,37 +20,29 @@ class ChanceProcess {
 
   void change(const Chance& law) noexcept {
     off_ = law.share <= 0;
-    share_ = most_bits(law.share);
-    after_hit_ = most_bits(law.share + law.correlation * (1 - law.share));
-    after_miss_ = most_bits(law.share * (1 - law.correlation));
-    never_after_miss_ = law.share * (1 - law.correlation) <= 0;
+    share_ = threshold(law.share);
+    after_hit_ = threshold(law.share + law.correlation * (1 - law.share));
+    after_miss_ = threshold(law.share * (1 - law.correlation));
     now_ = share_;
-    begun_ = false;
-    correlated_ = law.correlation > 0;
   }
   [[nodiscard]] bool off() const noexcept { return off_; }
 
   /// Of datagram `index`; to be asked once for each.
   [[nodiscard]] bool next(std::uint64_t index) noexcept {
     if (off_) return false;
-    const bool hit = stream_.bits(index) <= now_ && !(begun_ && never_after_miss_ && !hit_);
-    if (correlated_) {
-      now_ = hit ? after_hit_ : after_miss_;
-      begun_ = true;
-      hit_ = hit;
-    }
+    const bool hit = (stream_.bits(index) >> 1U) < now_;
+    now_ = hit ? after_hit_ : after_miss_;
     return hit;
   }
   /// Of a copy: a sibling of its original that leaves no trace.
   [[nodiscard]] bool aside(RandomStream stream, std::uint64_t index) const noexcept {
-    return !off_ && stream.bits(index) <= share_;
+    return (stream.bits(index) >> 1U) < share_;
   }
 
  private:
-  /// The most that 64 random bits may be to hit with that probability, which is above 0.
-  [[nodiscard]] static std::uint64_t most_bits(double share) noexcept {
-    if (share >= 1) return std::numeric_limits<std::uint64_t>::max();
-    return static_cast<std::uint64_t>(share * 0x1.0p64);
+  /// What 63 random bits must lie below to hit with that probability; exact for 0 and 1.
+  [[nodiscard]] static std::uint64_t threshold(double share) noexcept {
+    return static_cast<std::uint64_t>(std::clamp(share, 0.0, 1.0) * 0x1.0p63);
   }
 
   RandomStream stream_;
@@ -59,10 +51,6 @@ class ChanceProcess {
   std::uint64_t after_miss_{};
   std::uint64_t now_{};  ///< what holds for the next one
   bool off_{};
-  bool correlated_{};
-  bool never_after_miss_{};  ///< a correlation of 1
-  bool begun_{};
-  bool hit_{};
 };
 
 /// The 4-state chain of tc, one step for each datagram.
@@ -113,6 +101,10 @@ class GilbertTimeProcess {
       : states_{states}, lengths_{lengths} {}
   /// The probability of loss at `at`.
   [[nodiscard]] double next(const GilbertLaw& law, TimePoint at) noexcept;
+  /// Till then next() would say 0 and stay as it is.
+  [[nodiscard]] TimePoint harmless_until(const GilbertLaw& law) const noexcept {
+    return bad_ || law.loss_good > 0 ? TimePoint::min() : until_;
+  }
 
  private:
   void enter(const GilbertLaw& law, TimePoint from) noexcept;
@@ -131,6 +123,8 @@ class StallProcess {
   StallProcess(RandomStream gaps, RandomStream lengths) noexcept : gaps_{gaps}, lengths_{lengths} {}
   /// When what arrives at `at` may go on: `at`, or the end of the stall.
   [[nodiscard]] TimePoint next(const StallLaw& law, TimePoint at) noexcept;
+  /// Of the stall that is planned; till then next() has nothing to say.
+  [[nodiscard]] TimePoint begins() const noexcept { return from_; }
 
  private:
   void plan(const StallLaw& law, TimePoint from) noexcept;

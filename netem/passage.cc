@@ -19,6 +19,12 @@ std::size_t limit_of(const Impairment& impairment) noexcept {
   return std::numeric_limits<std::size_t>::max();
 }
 
+bool may_overtake(const Impairment& impairment) noexcept {
+  if (impairment.mode == Mode::Netem61 || !impairment.replay.rows.empty()) return true;
+  const bool slots = impairment.slot.max > Duration{};  // what has no order gets it there
+  return !slots && (impairment.order != Order::Keep || impairment.reorder.gap > 0);
+}
+
 PreparedChange prepare(const Change& change) {
   PreparedChange prepared{.at = change.at,
                           .kind = change.kind,

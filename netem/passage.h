@@ -29,6 +29,9 @@ struct PreparedChange {
 /// How many may be on their way; tc's default in mode netem-6.1, else none.
 [[nodiscard]] std::size_t limit_of(const Impairment& impairment) noexcept;
 
+/// Whether somebody may leave before one who came earlier.
+[[nodiscard]] bool may_overtake(const Impairment& impairment) noexcept;
+
 /// What happened to one copy of a datagram: a line of the decision log.
 struct Decision {
   std::uint64_t index{};  ///< of the datagram, in order of arrival from 0

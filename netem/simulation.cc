@@ -10,8 +10,13 @@
 namespace palp::netem {
 namespace {
 
-/// As many as tc's limit can say where people ask for many; the memory is used as it is needed.
-constexpr std::size_t kInFlightMax = 1'000'000;
+constexpr std::size_t kInFlightMax = 4'000'000;
+
+/// Room for all, each with its duplicate, up to a bound; the memory is used as it is needed.
+std::size_t in_flight_max(const SimulationConfig& config) {
+  return std::min<std::uint64_t>(2 * std::min<std::uint64_t>(config.packets, kInFlightMax) + 1,
+                                 kInFlightMax);
+}
 
 /// With so many, the quantiles of every eighth delay are as good.
 constexpr std::uint64_t kManyPackets = 100'000;
@@ -21,8 +26,8 @@ constexpr std::uint64_t kEighth = 7;  ///< mask of a count
 class Account {
  public:
   /// The delays whose number has none of the bits of `mask` go into the histograms. A remainder
-  /// would cost as much as the decision.
-  explicit Account(std::uint64_t mask) : mask_{mask} {}
+  /// would cost as much as the decision. `overtaken`: somebody may be, so it is looked for.
+  Account(std::uint64_t mask, bool overtaken) : mask_{mask}, overtaken_{overtaken} {}
 
   /// The original of the next datagram, and how many copies came with it.
   void add(Verdict verdict, bool corrupted, bool floored, Duration intended, std::size_t copies) {
@@ -41,6 +46,12 @@ class Account {
   /// An original that came at `at` leaves at `release`; in the order they came.
   void leaves(TimePoint at, TimePoint release) {
     if ((++left_ & mask_) == 0) result.delay.record(release - at);
+    if (overtaken_) look_back(at, release);
+  }
+  SimulationResult result;
+
+ private:
+  void look_back(TimePoint at, TimePoint release) {
     // Those ahead that leave later are overtaken, once each (RFC 4737); who has left cannot be.
     while (pending_.size() > first_ && pending_.back() > release) {
       pending_.pop_back();
@@ -53,10 +64,9 @@ class Account {
     }
     pending_.push_back(release);
   }
-  SimulationResult result;
 
- private:
   std::uint64_t mask_;
+  bool overtaken_;
   std::uint64_t counted_{};
   std::uint64_t left_{};
   bool lost_before_{};
@@ -70,10 +80,15 @@ void send_all(const SimulationConfig& config, Judge&& judge, Pause&& pause) {
   const std::uint64_t burst = std::max<std::uint64_t>(config.burst, 1);
   const Duration step = config.interval * static_cast<std::int64_t>(burst);
   TimePoint at{};
-  for (std::uint64_t k = 0; k < config.packets; at += step) {
-    for (const std::uint64_t end = std::min(k + burst, config.packets); k < end; ++k) judge(at);
+  std::uint64_t in_bunch = 0;
+  for (std::uint64_t k = 0; k < config.packets; ++k) {
+    judge(at);
+    if (++in_bunch < burst) continue;
     pause(at);
+    at += step;
+    in_bunch = 0;
   }
+  if (in_bunch > 0) pause(at);
 }
 
 std::size_t payload_of(const SimulationConfig& config) {
@@ -85,15 +100,17 @@ std::size_t payload_of(const SimulationConfig& config) {
 SimulationResult sums(const SimulationConfig& config) {
   const Impairment& law = config.plan.impairment;
   FateSequence fates{law, config.seed, config.direction, TimePoint{}};
-  Occupancy occupancy{std::min(limit_of(law), kInFlightMax)};
-  Account account{config.packets >= kManyPackets ? kEighth : 0};
-  Arrival arrival{.length = payload_of(config)};
+  const std::size_t most = in_flight_max(config);
+  const bool crowded = limit_of(law) < most || most == kInFlightMax;
+  Occupancy occupancy{std::min(limit_of(law), most)};
+  Account account{config.packets >= kManyPackets ? kEighth : 0, may_overtake(law)};
+  Arrival arrival{.length = payload_of(config), .room = kCopiesMax};
   const Duration tie{law.mode == Mode::Netem61 ? 1 : 0};
   send_all(
       config,
       [&](TimePoint at) {
         arrival.at = at;
-        arrival.room = occupancy.room(at - tie, kCopiesMax);
+        if (crowded) arrival.room = occupancy.room(at - tie, kCopiesMax);
         const auto copies = fates.next(arrival);
         const CopyFate& original = copies.front();
         account.add(original.verdict,
@@ -101,8 +118,10 @@ SimulationResult sums(const SimulationConfig& config) {
                     original.floored,
                     original.delay,
                     copies.size() - 1);
-        for (const CopyFate& copy : copies) {
-          if (copy.verdict == Verdict::Delivered) occupancy.enter(copy.release);
+        if (crowded) {
+          for (const CopyFate& copy : copies) {
+            if (copy.verdict == Verdict::Delivered) occupancy.enter(copy.release);
+          }
         }
         if (original.verdict == Verdict::Delivered) account.leaves(at, original.release);
       },
@@ -166,8 +185,9 @@ SimulationResult simulate(const SimulationConfig& config, const DecisionOrder::S
   const Impairment& law = config.plan.impairment;
   const bool kernel_slots = law.mode == Mode::Netem61 && law.slot.max > Duration{};
   if (!each && config.plan.changes.empty() && !kernel_slots) return sums(config);
-  Passage passage{config.plan, config.seed, config.direction, kInFlightMax, kInFlightMax, {}};
-  Account account{0};
+  const std::size_t most = in_flight_max(config);
+  Passage passage{config.plan, config.seed, config.direction, most, most, {}};
+  Account account{0, true};
   DecisionOrder order{[&](const Decision& decision) {
     if (decision.copy == 0 && decision.verdict == Verdict::Delivered) {
       account.leaves(decision.arrived_at, decision.released_at);
@@ -183,7 +203,7 @@ SimulationResult simulate(const SimulationConfig& config, const DecisionOrder::S
   send_all(
       config,
       [&](TimePoint at) {
-        const auto decisions = passage.push({.at = at, .length = payload, .room = kInFlightMax});
+        const auto decisions = passage.push({.at = at, .length = payload, .room = most});
         const Decision& original = decisions.front();
         account.add(original.verdict,
                     original.flipped_bit >= 0,
