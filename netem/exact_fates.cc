@@ -20,7 +20,7 @@ Duration rounded(double nanoseconds) noexcept {
   return Duration{static_cast<std::int64_t>(nanoseconds + 0.5)};
 }
 
-bool goes_on(const CopyFate& fate) noexcept {
+bool on_its_way(const CopyFate& fate) noexcept {
   return fate.verdict == Verdict::Delivered || fate.verdict == Verdict::HeaderHit;
 }
 
@@ -55,6 +55,8 @@ ExactFates::ExactFates(const PreparedLaw& law, const Streams& streams, TimePoint
 }
 
 void ExactFates::change(const PreparedLaw& law) noexcept {
+  catch_up();
+  quiet_end_ = 0;
   law_ = &law;
   const Impairment& impairment = law.impairment;
   duplicate_.change(impairment.duplicate);
@@ -74,17 +76,20 @@ void ExactFates::change(const PreparedLaw& law) noexcept {
   carry_ = law.carry;
   fresh_ = std::sqrt(1 - carry_ * carry_);
   carry_gap_ = Duration{-1};
+  ahead_end_ = 0;
   const SlotLaw& slot = impairment.slot;
   constexpr auto kEndless = std::numeric_limits<std::uint64_t>::max();
   slotted_ = slot.max > Duration{};
   slot_min_ = static_cast<double>(slot.min.count());
   slot_width_ = static_cast<double>((slot.max - slot.min).count());
+  slot_counts_ = slot.packets > 0 || slot.bytes > 0;
   slot_packets_max_ = slot.packets > 0 ? slot.packets : kEndless;
   slot_bytes_max_ = slot.bytes > 0 ? slot.bytes : kEndless;
 }
 
 void ExactFates::choose_draw(bool random) noexcept {
   const DelayLaw& delay = law_->impairment.delay;
+  const Draw before = draw_;
   if (!law_->impairment.trace.points.empty()) {
     draw_ = Draw::Trace;
   } else if (!random) {
@@ -94,9 +99,12 @@ void ExactFates::choose_draw(bool random) noexcept {
   } else {
     draw_ = law_->curve.by_normal() ? Draw::Normal : Draw::Share;
   }
+  if (draw_ != before) ahead_end_ = 0;
 }
 
 void ExactFates::lean(const Impairment& towards, double share) noexcept {
+  catch_up();
+  quiet_end_ = 0;
   const auto between = [share](double from, double to) { return from + share * (to - from); };
   const auto mix = [&](const Chance& one, const Chance& to) {
     return Chance{between(one.share, to.share), between(one.correlation, to.correlation)};
@@ -115,32 +123,15 @@ void ExactFates::lean(const Impairment& towards, double share) noexcept {
 
 std::span<const CopyFate> ExactFates::next(const Arrival& arrival) noexcept {
   const TimePoint at = first_ ? arrival.at : std::max(arrival.at, last_at_);
-  const Impairment& law = law_->impairment;
-  if (!law.replay.rows.empty()) return replay(arrival);
+  if (!law_->impairment.replay.rows.empty()) return replay(arrival);
   if (draw_ == Draw::Correlated) correlate(first_ ? Duration{} : at - last_at_);
   last_at_ = at;
-
-  const Chances chances = draw_chances();
-  Common common{.onward = at};
-  const bool calm = at < calm_until_;
-  if (!calm) common = common_fate(at);
-  const TimePoint onward = std::max(common.onward, arrival.held_until);
-  const bool harmless = calm && !(chances.lost || chances.cut || chances.flipped);
-  const auto tos = static_cast<std::uint8_t>(law.dscp_clear ? arrival.tos & kEcnMask : arrival.tos);
-  const std::size_t count = 1 + (chances.duplicate ? 1U : 0U) + flood_;
-  std::size_t room = arrival.room;
-  for (std::size_t copy = 0; copy < count; ++copy) {
-    CopyFate& fate = copies_[copy];
-    fate = {.tos = tos, .length = static_cast<std::uint32_t>(arrival.length)};
-    if (!harmless || copy > 0) harm(fate, copy, chances, common);
-    if (goes_on(fate) && (room == 0 || !fits(fate))) fate.verdict = Verdict::OverLimit;
-    // A correlated delay is drawn of each original, got through or not.
-    if (goes_on(fate) || (copy == 0 && draw_ == Draw::Correlated)) {
-      fate.delay = draw_delay(copy, onward, fate.floored);
-    }
-    if (!goes_on(fate)) continue;
-    leave(fate, onward, copy == 0 && chances.jumps, copy == 0 && chances.swaps);
-    if (fate.verdict == Verdict::Delivered) --room;
+  std::size_t count = 1;
+  if (index_ < quiet_end_ && at < calm_until_) {
+    copies_[0] = untouched(arrival);
+    go_on(copies_[0], 0, std::max(at, arrival.held_until), arrival.room > 0);
+  } else {
+    count = next_troubled(arrival, at);
   }
   first_ = false;
   z_before_ = z_;
@@ -148,20 +139,71 @@ std::span<const CopyFate> ExactFates::next(const Arrival& arrival) noexcept {
   return std::span{copies_}.first(count);
 }
 
-/// Every process is asked, whatever the others said: their states do not depend on each other.
-inline ExactFates::Chances ExactFates::draw_chances() noexcept {
+inline CopyFate ExactFates::untouched(const Arrival& arrival) const noexcept {
+  const bool clear = law_->impairment.dscp_clear;
+  return {.tos = static_cast<std::uint8_t>(clear ? arrival.tos & kEcnMask : arrival.tos),
+          .length = static_cast<std::uint32_t>(arrival.length)};
+}
+
+/// @returns how many there are of it.
+std::size_t ExactFates::next_troubled(const Arrival& arrival, TimePoint at) noexcept {
+  draw_chances();
+  const Common common = common_fate(at);
+  const std::size_t count = 1 + (chances_.duplicate ? 1U : 0U) + flood_;
+  std::size_t room = arrival.room;
+  for (std::size_t copy = 0; copy < count; ++copy) {
+    CopyFate& fate = copies_[copy];
+    fate = untouched(arrival);
+    harm(fate, copy, common);
+    go_on(fate, copy, std::max(common.onward, arrival.held_until), room > 0);
+    if (fate.verdict == Verdict::Delivered) --room;
+  }
+  chances_ = {};
+  return count;
+}
+
+[[gnu::always_inline]] inline void ExactFates::go_on(CopyFate& fate,
+                                                     std::size_t copy,
+                                                     TimePoint onward,
+                                                     bool room) noexcept {
+  if (on_its_way(fate) && !(room && fits(fate))) fate.verdict = Verdict::OverLimit;
+  // A correlated delay is drawn of each original, got through or not.
+  if (on_its_way(fate) || (copy == 0 && draw_ == Draw::Correlated)) draw_delay(fate, copy, onward);
+  if (on_its_way(fate)) leave(fate, copy, onward);
+}
+
+/// Tells the processes how many datagrams passed without asking them.
+void ExactFates::catch_up() noexcept {
+  const std::uint64_t passed = index_ - asked_;
+  for (ChanceProcess* process : {&duplicate_, &loss_, &truncate_, &corrupt_}) process->skip(passed);
+  if (law_->impairment.reorder.gap == 1) reorder_.skip(passed);
+  if (law_->impairment.order == Order::Swap) swap_.skip(passed);
+  asked_ = index_;
+}
+
+/// Every process is asked, whatever the others said: their states do not depend on each other. And
+/// how long none of them will have anything to say.
+void ExactFates::draw_chances() noexcept {
   const Impairment& law = law_->impairment;
-  return {.duplicate = duplicate_.next(index_),
-          .lost = loss_.next(index_),
-          .cut = truncate_.next(index_),
-          .flipped = corrupt_.next(index_),
-          .jumps = law.reorder.gap > 0 && jumps(),
-          .swaps = law.order == Order::Swap && swap_.next(index_)};
+  catch_up();
+  const bool swaps = law.order == Order::Swap;
+  chances_ = {.duplicate = duplicate_.next(),
+              .lost = loss_.next(),
+              .cut = truncate_.next(),
+              .flipped = corrupt_.next(),
+              .jumps = law.reorder.gap > 0 && jumps(),
+              .swaps = swaps && swap_.next()};
+  asked_ = index_ + 1;
+  std::uint64_t quiet =
+      std::min({duplicate_.quiet(), loss_.quiet(), truncate_.quiet(), corrupt_.quiet()});
+  if (law.reorder.gap > 0) quiet = law.reorder.gap == 1 ? std::min(quiet, reorder_.quiet()) : 0;
+  if (swaps) quiet = std::min(quiet, swap_.quiet());
+  quiet_end_ = flood_ > 0 ? 0 : asked_ + quiet;
 }
 
 /// Of every datagram, lost or not, so that losses move no other draw.
 inline bool ExactFates::jumps() noexcept {
-  if (++since_reorder_ < law_->impairment.reorder.gap || !reorder_.next(index_)) return false;
+  if (++since_reorder_ < law_->impairment.reorder.gap || !reorder_.next()) return false;
   since_reorder_ = 0;
   return true;
 }
@@ -208,40 +250,37 @@ bool ExactFates::in_blackout(TimePoint at) const noexcept {
 }
 
 /// Losses, lengths, flipped bits and blackouts.
-void ExactFates::harm(CopyFate& fate,
-                      std::size_t copy,
-                      const Chances& chances,
-                      const Common& common) noexcept {
-  if (lost(copy, chances, common)) {
+void ExactFates::harm(CopyFate& fate, std::size_t copy, const Common& common) const noexcept {
+  if (lost(copy, common)) {
     const bool markable = law_->impairment.ecn && (fate.tos & kEcnMask) != 0;
     if (markable) fate.tos |= kEcnMask;
     if (!markable) fate.verdict = Verdict::Lost;
   }
-  damage(fate, copy, chances);
+  damage(fate, copy);
   if (common.dark) fate.verdict = Verdict::Blackout;
 }
 
-bool ExactFates::lost(std::size_t copy, const Chances& chances, const Common& common) noexcept {
+bool ExactFates::lost(std::size_t copy, const Common& common) const noexcept {
   const auto draw = [&](RandomStream original, Stage stage) {
     return stream_of(original, stage, copy).uniform(index_);
   };
   const bool random =
-      copy == 0 ? chances.lost : loss_.aside(streams_.of(Stage::Loss, copy), index_);
+      copy == 0 ? chances_.lost : loss_.aside(streams_.of(Stage::Loss, copy), index_);
   return common.lost || random ||
          (common.loss_state > 0 && draw(stay_loss_stream_, Stage::StayLoss) < common.loss_state) ||
          (common.loss_gemodel > 0 &&
           draw(gemodel_loss_stream_, Stage::GemodelLoss) < common.loss_gemodel);
 }
 
-void ExactFates::damage(CopyFate& fate, std::size_t copy, const Chances& chances) noexcept {
+void ExactFates::damage(CopyFate& fate, std::size_t copy) const noexcept {
   const Impairment& law = law_->impairment;
   const bool cut =
-      copy == 0 ? chances.cut : truncate_.aside(streams_.of(Stage::Truncate, copy), index_);
+      copy == 0 ? chances_.cut : truncate_.aside(streams_.of(Stage::Truncate, copy), index_);
   if (cut) {
     fate.length = static_cast<std::uint32_t>(std::min<std::uint64_t>(fate.length, law.truncate_to));
   }
   const bool hit =
-      copy == 0 ? chances.flipped : corrupt_.aside(streams_.of(Stage::Corrupt, copy), index_);
+      copy == 0 ? chances_.flipped : corrupt_.aside(streams_.of(Stage::Corrupt, copy), index_);
   const std::uint64_t headers = 8 * kFrameHeaders;
   const std::uint64_t payload = 8 * std::uint64_t{fate.length};
   const std::uint64_t from = law.corrupt_payload ? headers : 0;
@@ -268,24 +307,24 @@ inline void ExactFates::correlate(Duration gap) noexcept {
   carry_gap_ = gap;
 }
 
-inline Duration ExactFates::draw_delay(std::size_t copy, TimePoint onward, bool& floored) noexcept {
-  if (draw_ == Draw::Mean) return rounded(mean_);
-  if (draw_ == Draw::Trace) return traced_delay(onward, copy);
-  double around = 0;  // [1], in units of the jitter
-  if (draw_ == Draw::Correlated) {
-    around = law_->curve.at_normal(draw_normal(copy));
-  } else {
-    const std::uint64_t bits = stream_of(delay_stream_, Stage::Delay, copy).bits(index_);
-    around = draw_ == Draw::Normal ? law_->curve.at_normal(law_->normal.at(bits))
-                                   : law_->curve.at_share(random_middle(bits));
+[[gnu::always_inline]] inline void ExactFates::draw_delay(CopyFate& fate,
+                                                          std::size_t copy,
+                                                          TimePoint onward) noexcept {
+  if (draw_ == Draw::Mean || draw_ == Draw::Trace) {
+    fate.delay = draw_ == Draw::Mean ? rounded(mean_) : traced_delay(onward, copy);
+    return;
   }
+  double around = copy == 0 ? drawn_ahead() : draw(streams_.of(Stage::Delay, copy), index_);
+  if (draw_ == Draw::Correlated) around = law_->curve.at_normal(correlated(around, copy));
   const double drawn = mean_ + jitter_ * around;
-  floored = drawn < least_;
-  return rounded(std::max(drawn, least_));
+  fate.floored = drawn < least_;
+  fate.delay = rounded(std::max(drawn, least_));
 }
 
-/// Through the line, after its delay, in order.
-inline void ExactFates::leave(CopyFate& fate, TimePoint onward, bool jumps, bool swaps) noexcept {
+/// Through the line, after its delay, in order, at its slot. Only the original jumps or swaps.
+[[gnu::always_inline]] inline void ExactFates::leave(CopyFate& fate,
+                                                     std::size_t copy,
+                                                     TimePoint onward) noexcept {
   TimePoint from = onward;
   if (!bottleneck_.off()) {
     from = bottleneck_.pass(onward, fate.length + kFrameHeaders);
@@ -294,17 +333,44 @@ inline void ExactFates::leave(CopyFate& fate, TimePoint onward, bool jumps, bool
       return;
     }
   }
-  fate.immediate = jumps;
-  fate.release = jumps ? from : from + fate.delay;
-  put_in_order(fate, swaps);
+  fate.immediate = copy == 0 && chances_.jumps;
+  TimePoint release = fate.immediate ? from : from + fate.delay;
+  const Order order = law_->impairment.order;
+  if (order == Order::Keep && !fate.immediate) {
+    // Which of the two it is cannot be foreseen: no branch.
+    const TimePoint last = last_release_;
+    release = release < last ? last : release;
+    last_release_ = release;
+  } else if (order == Order::Swap && !fate.immediate) {
+    release = swap_order(release, copy == 0 && chances_.swaps);
+  }
+  if (slotted_) release = fit_slot(release, fate.length + kFrameHeaders);
+  fate.release = release;
 }
 
-/// A standard normal. A duplicate is a sibling of its original in the correlated process and leaves
-/// no trace in it.
-inline double ExactFates::draw_normal(std::size_t copy) noexcept {
-  const RandomStream stream = stream_of(delay_stream_, Stage::Delay, copy);
-  double z = law_->normal.at(stream.bits(index_));
-  if (!first_) z = carry_ * z_before_ + fresh_ * z;
+/// What the delay of datagram `index` is made of: where it hangs on the last one's a standard
+/// normal, else its distance from the mean in units of the jitter.
+inline double ExactFates::draw(RandomStream stream, std::uint64_t index) const noexcept {
+  const std::uint64_t bits = stream.bits(index);
+  if (draw_ == Draw::Share) return law_->curve.at_share(random_middle(bits));
+  const double normal = law_->normal.at(bits);
+  return draw_ == Draw::Normal ? law_->curve.at_normal(normal) : normal;
+}
+
+/// One after the other each would wait for its tables; many at once wait together.
+inline double ExactFates::drawn_ahead() noexcept {
+  if (index_ >= ahead_end_) {
+    for (std::uint64_t i = index_; i < index_ + kAhead; ++i) {
+      ahead_[i % kAhead] = draw(delay_stream_, i);
+    }
+    ahead_end_ = index_ + kAhead;
+  }
+  return ahead_[index_ % kAhead];
+}
+
+/// A duplicate is a sibling of its original in the correlated process and leaves no trace in it.
+inline double ExactFates::correlated(double normal, std::size_t copy) noexcept {
+  const double z = first_ ? normal : carry_ * z_before_ + fresh_ * normal;
   if (copy == 0) z_ = z;
   return z;
 }
@@ -344,37 +410,32 @@ Duration ExactFates::traced_delay(TimePoint onward, std::size_t copy) noexcept {
   return std::max(delay, Duration{});
 }
 
-inline void ExactFates::put_in_order(CopyFate& fate, bool swaps) noexcept {
-  const TimePoint earliest = last_at_;
-  if (law_->impairment.order != Order::Netem && !fate.immediate) {
-    fate.release = std::max(fate.release, last_release_);
-    const std::uint64_t depth = std::min<std::uint64_t>(law_->impairment.swap_depth, released_);
-    const TimePoint overtaken =
-        depth > 0 ? releases_[(released_ - depth) % kSwapDepthMax] : TimePoint::min();
-    if (swaps && overtaken > earliest) {
-      fate.release = std::max(overtaken - Duration{1}, earliest);
-    } else {
-      last_release_ = fate.release;
-      releases_[released_++ % kSwapDepthMax] = fate.release;
-    }
-  }
-  if (slotted_) fit_slot(fate);
+/// Who swaps leaves before those who came just before it.
+TimePoint ExactFates::swap_order(TimePoint release, bool swaps) noexcept {
+  const std::uint64_t depth = std::min<std::uint64_t>(law_->impairment.swap_depth, released_);
+  const TimePoint overtaken =
+      depth > 0 ? releases_[(released_ - depth) % kSwapDepthMax] : TimePoint::min();
+  if (swaps && overtaken > last_at_) return std::max(overtaken - Duration{1}, last_at_);
+  last_release_ = std::max(release, last_release_);
+  releases_[released_++ % kSwapDepthMax] = last_release_;
+  return last_release_;
 }
 
-/// Moves the release to the slot that has room for it. Slots lie on a grid of their own, drawn by
-/// their number; nothing overtakes.
-inline void ExactFates::fit_slot(CopyFate& fate) noexcept {
-  const std::uint64_t length = fate.length + kFrameHeaders;
+/// The slot that has room for it. Slots lie on a grid of their own, drawn by their number; nothing
+/// overtakes.
+inline TimePoint ExactFates::fit_slot(TimePoint release, std::uint64_t length) noexcept {
   const auto full = [&] {
-    return slot_packets_ >= slot_packets_max_ ||
-           (slot_bytes_ > 0 && slot_bytes_ + length > slot_bytes_max_);
+    return slot_counts_ && (slot_packets_ >= slot_packets_max_ ||
+                            (slot_bytes_ > 0 && slot_bytes_ + length > slot_bytes_max_));
   };
-  for (int walked = 0; slot_at_ < fate.release || full(); ++walked) {
-    next_slot(walked < kSlotsPerGapMax ? slot_at_ : std::max(slot_at_, fate.release));
+  for (int walked = 0; slot_at_ < release || full(); ++walked) {
+    next_slot(walked < kSlotsPerGapMax ? slot_at_ : std::max(slot_at_, release));
   }
-  ++slot_packets_;
-  slot_bytes_ += length;
-  fate.release = slot_at_;
+  if (slot_counts_) {
+    ++slot_packets_;
+    slot_bytes_ += length;
+  }
+  return slot_at_;
 }
 
 inline void ExactFates::next_slot(TimePoint from) noexcept {

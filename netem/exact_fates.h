@@ -28,7 +28,10 @@ class ExactFates {
   void change(const PreparedLaw& law) noexcept;
 
   /// Copies beside those of the law, of each datagram from now on: a flood. Below kCopiesMax - 1.
-  void flood(std::size_t copies) noexcept { flood_ = copies; }
+  void flood(std::size_t copies) noexcept {
+    flood_ = copies;
+    quiet_end_ = 0;
+  }
   /// Delay, jitter and random losses go this share of the way towards those of another law.
   void lean(const Impairment& towards, double share) noexcept;
 
@@ -60,25 +63,28 @@ class ExactFates {
     return copy == 0 ? original : streams_.of(stage, copy);
   }
   void choose_draw(bool random) noexcept;
-  [[nodiscard]] Chances draw_chances() noexcept;
+  [[nodiscard]] CopyFate untouched(const Arrival& arrival) const noexcept;
+  [[nodiscard]] std::size_t next_troubled(const Arrival& arrival, TimePoint at) noexcept;
+  void go_on(CopyFate& fate, std::size_t copy, TimePoint onward, bool room) noexcept;
+  void catch_up() noexcept;
+  void draw_chances() noexcept;
   [[nodiscard]] bool jumps() noexcept;
   [[nodiscard]] Common common_fate(TimePoint at) noexcept;
   [[nodiscard]] bool in_blackout(TimePoint at) const noexcept;
   [[nodiscard]] TimePoint calm_until(TimePoint at) const noexcept;
-  void harm(CopyFate& fate,
-            std::size_t copy,
-            const Chances& chances,
-            const Common& common) noexcept;
-  [[nodiscard]] bool lost(std::size_t copy, const Chances& chances, const Common& common) noexcept;
-  void damage(CopyFate& fate, std::size_t copy, const Chances& chances) noexcept;
+  void harm(CopyFate& fate, std::size_t copy, const Common& common) const noexcept;
+  [[nodiscard]] bool lost(std::size_t copy, const Common& common) const noexcept;
+  void damage(CopyFate& fate, std::size_t copy) const noexcept;
   [[nodiscard]] bool fits(const CopyFate& fate) const noexcept;
-  [[nodiscard]] Duration draw_delay(std::size_t copy, TimePoint onward, bool& floored) noexcept;
-  [[nodiscard]] double draw_normal(std::size_t copy) noexcept;
+  void draw_delay(CopyFate& fate, std::size_t copy, TimePoint onward) noexcept;
+  [[nodiscard]] double draw(RandomStream stream, std::uint64_t index) const noexcept;
+  [[nodiscard]] double drawn_ahead() noexcept;
+  [[nodiscard]] double correlated(double normal, std::size_t copy) noexcept;
   [[nodiscard]] Duration traced_delay(TimePoint onward, std::size_t copy) noexcept;
   void correlate(Duration gap) noexcept;
-  void leave(CopyFate& fate, TimePoint onward, bool jumps, bool swaps) noexcept;
-  void put_in_order(CopyFate& fate, bool swaps) noexcept;
-  void fit_slot(CopyFate& fate) noexcept;
+  void leave(CopyFate& fate, std::size_t copy, TimePoint onward) noexcept;
+  [[nodiscard]] TimePoint swap_order(TimePoint release, bool swaps) noexcept;
+  [[nodiscard]] TimePoint fit_slot(TimePoint release, std::uint64_t length) noexcept;
   void next_slot(TimePoint from) noexcept;
   std::span<const CopyFate> replay(const Arrival& arrival) noexcept;
 
@@ -91,6 +97,9 @@ class ExactFates {
   bool first_{true};
   std::size_t flood_{};
   std::array<CopyFate, kCopiesMax> copies_;
+  Chances chances_;            ///< of the datagram being judged
+  std::uint64_t quiet_end_{};  ///< below this index no chance strikes
+  std::uint64_t asked_{};      ///< up to this index the chances have been asked or told
 
   ChanceProcess duplicate_;
   ChanceProcess loss_;
@@ -114,12 +123,15 @@ class ExactFates {
   RandomStream slot_stream_;
   TimePoint calm_until_{TimePoint::min()};  ///< until then common_fate() has nothing to say
   Draw draw_{Draw::Mean};
-  double carry_{};          ///< [1], a of z_n = a z_(n-1) + sqrt(1 - a^2) e_n
-  double fresh_{1};         ///< [1], sqrt(1 - a^2)
-  Duration carry_gap_{-1};  ///< the gap that carry_ belongs to
-  double z_before_{};       ///< [1], z_(n-1)
-  double z_{};              ///< [1], z_n, once drawn
-  std::size_t trace_at_{};  ///< the segment of the trace looked up last
+  static constexpr std::size_t kAhead = 32;
+  std::array<double, kAhead> ahead_{};  ///< draw() of the next datagrams, by index, a ring ...
+  std::uint64_t ahead_end_{};           ///< ... below this index
+  double carry_{};                      ///< [1], a of z_n = a z_(n-1) + sqrt(1 - a^2) e_n
+  double fresh_{1};                     ///< [1], sqrt(1 - a^2)
+  Duration carry_gap_{-1};              ///< the gap that carry_ belongs to
+  double z_before_{};                   ///< [1], z_(n-1)
+  double z_{};                          ///< [1], z_n, once drawn
+  std::size_t trace_at_{};              ///< the segment of the trace looked up last
   std::size_t replay_at_{};
   std::uint32_t since_reorder_{};
 
@@ -130,6 +142,7 @@ class ExactFates {
   bool slotted_{};
   double slot_min_{};    ///< [ns], from one slot to the next
   double slot_width_{};  ///< [ns], from the least to the most of it
+  bool slot_counts_{};   ///< a slot has not room for all
   std::uint64_t slot_packets_max_{};
   std::uint64_t slot_bytes_max_{};  ///< [bytes]
   std::uint64_t slot_number_{};

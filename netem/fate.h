@@ -35,6 +35,13 @@ class FateSequence {
     return std::visit([&](auto& fates) { return fates.next(arrival); }, fates_);
   }
 
+  /// Calls `use` with the fates of the mode, whose next() is the one above: for who asks a million
+  /// times.
+  template <class Use>
+  decltype(auto) with_fates(Use&& use) {
+    return std::visit(use, fates_);
+  }
+
   /// From the next datagram on another law holds; the streams go on where they are, so the future
   /// is not reshuffled. The mode must be the same. The old law comes back in `law`.
   void change(std::unique_ptr<PreparedLaw>& law) noexcept;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palp::netem {
 namespace {
@@ -9,6 +10,7 @@ namespace {
 /// After so many stays within one gap the chain has forgotten where it was: it is entered afresh
 /// from its stationary law, which bounds the work per datagram.
 constexpr int kStaysPerGapMax = 256;
+constexpr std::uint64_t kEndless = std::uint64_t{1} << 62U;  ///< datagrams, more than there are
 constexpr double kStallMax = 3600;  ///< [s], an hour: keeps the log-normal within the line of time
 
 Duration exponential(double mean, double draw) noexcept {
@@ -16,7 +18,31 @@ Duration exponential(double mean, double draw) noexcept {
   return from_seconds(-std::log1p(-draw) * std::min(mean, kMeanMax));
 }
 
+/// 1 + floor(exponential draw times this) is the length of a run in which each is followed by one
+/// more with probability `stays`.
+double run_scale(double stays) noexcept {
+  return stays <= 0   ? 0
+         : stays >= 1 ? std::numeric_limits<double>::infinity()
+                      : -1 / std::log(stays);
+}
+
 }  // namespace
+
+void ChanceProcess::begin(const Chance& law) noexcept {
+  law_ = law;
+  hits_ = run_scale(law.share + law.correlation * (1 - law.share));
+  misses_ = run_scale(1 - law.share * (1 - law.correlation));
+  hit_ = law.share <= 0 || stream_.uniform(number_++) >= law.share;
+  turn();
+}
+
+/// Hits after misses and the other way round.
+void ChanceProcess::turn() noexcept {
+  hit_ = !hit_;
+  const double scale = hit_ ? hits_ : misses_;
+  const double more = -std::log(random_middle(stream_.bits(number_++))) * scale;
+  left_ = 1 + (more < static_cast<double>(kEndless) ? static_cast<std::uint64_t>(more) : kEndless);
+}
 
 bool FourStateProcess::next(const FourStateLaw& law, std::uint64_t index) noexcept {
   const double draw = stream_.uniform(index);

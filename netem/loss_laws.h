@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
 #include "common/core/random.h"
@@ -13,44 +12,46 @@
 namespace palp::netem {
 
 /// Two-state Markov chain: P(hit) = share in the long run, and lag-1 correlation as asked:
-/// P(hit | hit) = P + C (1 - P), P(hit | no hit) = P (1 - C).
+/// P(hit | hit) = P + C (1 - P), P(hit | no hit) = P (1 - C). Drawn run by run: the length of a run
+/// is geometric, so most datagrams need no draw.
 class ChanceProcess {
  public:
-  ChanceProcess(const Chance& law, RandomStream stream) noexcept : stream_{stream} { change(law); }
+  ChanceProcess(const Chance& law, RandomStream stream) noexcept : stream_{stream} { begin(law); }
 
+  /// The same law goes on as if nothing had been said.
   void change(const Chance& law) noexcept {
-    off_ = law.share <= 0;
-    share_ = threshold(law.share);
-    after_hit_ = threshold(law.share + law.correlation * (1 - law.share));
-    after_miss_ = threshold(law.share * (1 - law.correlation));
-    now_ = share_;
+    if (law != law_) begin(law);
   }
-  [[nodiscard]] bool off() const noexcept { return off_; }
 
-  /// Of datagram `index`; to be asked once for each.
-  [[nodiscard]] bool next(std::uint64_t index) noexcept {
-    if (off_) return false;
-    const bool hit = (stream_.bits(index) >> 1U) < now_;
-    now_ = hit ? after_hit_ : after_miss_;
+  /// Of the next datagram.
+  [[nodiscard]] bool next() noexcept {
+    const bool hit = hit_;
+    skip(1);
     return hit;
+  }
+  /// So many will not be hit, it is known without a draw ...
+  [[nodiscard]] std::uint64_t quiet() const noexcept { return hit_ ? 0 : left_; }
+  /// ... and need not be asked for: `count` of them have passed.
+  void skip(std::uint64_t count) noexcept {
+    left_ -= count;
+    if (left_ == 0) turn();
   }
   /// Of a copy: a sibling of its original that leaves no trace.
   [[nodiscard]] bool aside(RandomStream stream, std::uint64_t index) const noexcept {
-    return (stream.bits(index) >> 1U) < share_;
+    return stream.uniform(index) < law_.share;
   }
 
  private:
-  /// What 63 random bits must lie below to hit with that probability; exact for 0 and 1.
-  [[nodiscard]] static std::uint64_t threshold(double share) noexcept {
-    return static_cast<std::uint64_t>(std::clamp(share, 0.0, 1.0) * 0x1.0p63);
-  }
+  void begin(const Chance& law) noexcept;
+  void turn() noexcept;
 
   RandomStream stream_;
-  std::uint64_t share_{};
-  std::uint64_t after_hit_{};
-  std::uint64_t after_miss_{};
-  std::uint64_t now_{};  ///< what holds for the next one
-  bool off_{};
+  std::uint64_t number_{};  ///< of the next draw
+  Chance law_;
+  double hits_{};         ///< [1], run_scale() of a run of hits
+  double misses_{};       ///< [1]
+  bool hit_{};            ///< of the present run
+  std::uint64_t left_{};  ///< of it, at least 1
 };
 
 /// The 4-state chain of tc, one step for each datagram.

@@ -4,7 +4,7 @@ namespace palp::netem {
 
 NormalDraw::NormalDraw() noexcept : knots_{} {
   for (std::size_t i = kOuter; i <= kCells - kOuter; ++i) {
-    knots_[i] = normal_quantile(static_cast<double>(i) / kCells);
+    knots_[i] = static_cast<float>(normal_quantile(static_cast<double>(i) / kCells));
   }
 }
 

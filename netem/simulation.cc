@@ -106,26 +106,28 @@ SimulationResult sums(const SimulationConfig& config) {
   Account account{config.packets >= kManyPackets ? kEighth : 0, may_overtake(law)};
   Arrival arrival{.length = payload_of(config), .room = kCopiesMax};
   const Duration tie{law.mode == Mode::Netem61 ? 1 : 0};
-  send_all(
-      config,
-      [&](TimePoint at) {
-        arrival.at = at;
-        if (crowded) arrival.room = occupancy.room(at - tie, kCopiesMax);
-        const auto copies = fates.next(arrival);
-        const CopyFate& original = copies.front();
-        account.add(original.verdict,
-                    original.flipped_bit >= 0,
-                    original.floored,
-                    original.delay,
-                    copies.size() - 1);
-        if (crowded) {
-          for (const CopyFate& copy : copies) {
-            if (copy.verdict == Verdict::Delivered) occupancy.enter(copy.release);
+  fates.with_fates([&](auto& judge) {
+    send_all(
+        config,
+        [&](TimePoint at) {
+          arrival.at = at;
+          if (crowded) arrival.room = occupancy.room(at - tie, kCopiesMax);
+          const auto copies = judge.next(arrival);
+          const CopyFate& original = copies.front();
+          account.add(original.verdict,
+                      original.flipped_bit >= 0,
+                      original.floored,
+                      original.delay,
+                      copies.size() - 1);
+          if (crowded) {
+            for (const CopyFate& copy : copies) {
+              if (copy.verdict == Verdict::Delivered) occupancy.enter(copy.release);
+            }
           }
-        }
-        if (original.verdict == Verdict::Delivered) account.leaves(at, original.release);
-      },
-      [](TimePoint) {});
+          if (original.verdict == Verdict::Delivered) account.leaves(at, original.release);
+        },
+        [](TimePoint) {});
+  });
   return account.result;
 }
 
