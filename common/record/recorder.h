@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <type_traits>
 #include <variant>
@@ -70,6 +71,10 @@ using Record = std::variant<SiteTick,
                             DepthEstimate,
                             DepthArrived>;
 static_assert(std::is_trivially_copyable_v<Record>, "crosses threads by copy");
+
+/// Their names in summaries and reports, in the same order.
+inline constexpr std::array<const char*, std::variant_size_v<Record>> kRecordNames{
+    "tick", "arrived", "link", "note", "transition", "contact", "depth_estimate", "depth_arrived"};
 
 /// Thread: rt. Never blocks, never allocates.
 class Recorder {

@@ -10,9 +10,6 @@ std::uint64_t stamp(TimePoint at) noexcept {
   return static_cast<std::uint64_t>(at.time_since_epoch().count());
 }
 
-constexpr std::array<const char*, std::variant_size_v<Record>> kRecordNames{
-    "tick", "arrived", "link", "note", "transition", "contact", "depth_estimate", "depth_arrived"};
-
 }  // namespace
 
 std::uint64_t SessionCounts::records() const noexcept {

@@ -20,13 +20,10 @@ ordered_json milliseconds(const std::optional<Duration>& span) {
   return static_cast<double>(span->count()) * 1e-6;
 }
 
-constexpr std::array<const char*, std::variant_size_v<record::Record>> kRecordNames{
-    "tick", "arrived", "link", "note", "transition", "contact", "depth_estimate", "depth_arrived"};
-
 ordered_json records_json(const RecordAccount& account) {
   ordered_json json;
-  for (std::size_t type = 0; type < kRecordNames.size(); ++type) {
-    json[kRecordNames[type]] = account.counts.by_type[type];
+  for (std::size_t type = 0; type < record::kRecordNames.size(); ++type) {
+    json[record::kRecordNames[type]] = account.counts.by_type[type];
   }
   return json;
 }
