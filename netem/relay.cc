@@ -13,8 +13,12 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/// The kernel wakes a sleeper some 10-50 us late; this much of a wait is spun instead.
-constexpr Duration kSpin = microseconds{60};
+/// The kernel wakes a sleeper some 10-50 us late, one that slept deeply later still; so much of a
+/// wait is spun instead: what the late ones of the last wakings make advisable, within these.
+constexpr Duration kSpinMin = microseconds{60};
+constexpr Duration kSpinMax = microseconds{600};
+constexpr Duration kSpinSpare = microseconds{20};
+constexpr std::int64_t kSpinMemory = 128;  ///< wakings
 constexpr Duration kLate = microseconds{60};
 /// A send call on a busy machine costs about 8 us; more is a disturbance, not a cost to lead by.
 constexpr Duration kLeadMax = microseconds{20};
@@ -51,6 +55,7 @@ Relay::Relay(const RelayConfig& config)
             config.datagram_max},
       stop_descriptor_{config.stop_descriptor},
       priority_{config.priority},
+      spin_{kSpinMin},
       awake_since_{start_} {
   waiting_.reserve(64);
 }
@@ -204,16 +209,24 @@ Relay::Readable Relay::rest(TimePoint now, TimePoint until) noexcept {
   std::array<pollfd, 3> watched{{{client_side_.descriptor(), POLLIN, 0},
                                  {server_side_.descriptor(), POLLIN, 0},
                                  {stop_descriptor_, POLLIN, 0}}};
-  const timespec wait = to_timespec(std::max(next - now - kSpin, Duration{}));
+  const TimePoint wake = std::max(next - spin_, now);
+  const timespec wait = to_timespec(wake - now);
   const int ready = ::ppoll(watched.data(), watched.size(), &wait, nullptr);
   const bool slept = wait.tv_sec > 0 || wait.tv_nsec > 0;
   if (slept) {
     const TimePoint woken = monotonic_now();
     if (woken - now > kNap / 4) awake_since_ = woken;
+    if (ready == 0) learn_spin(woken - wake);
   }
   if (ready <= 0) return {};
   stopped_ = (watched[2].revents & POLLIN) != 0;
   return {.client_side = watched[0].revents != 0, .server_side = watched[1].revents != 0};
+}
+
+/// Up at once, down slowly.
+void Relay::learn_spin(Duration late) noexcept {
+  const Duration wanted = std::clamp(late + kSpinSpare, kSpinMin, kSpinMax);
+  spin_ = wanted > spin_ ? wanted : spin_ - (spin_ - wanted) / kSpinMemory;
 }
 
 void Relay::show(TimePoint now) noexcept {

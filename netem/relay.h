@@ -112,6 +112,7 @@ class Relay {
   void account(Direction direction, std::size_t sent, TimePoint before) noexcept;
   void rebind_if_asked();
   [[nodiscard]] Readable rest(TimePoint now, TimePoint until) noexcept;
+  void learn_spin(Duration late) noexcept;
   void show(TimePoint now) noexcept;
   [[nodiscard]] Channel& way(Direction direction) noexcept {
     return direction == Direction::Up ? up_ : down_;
@@ -134,6 +135,7 @@ class Relay {
   std::vector<RelayCommand> waiting_;    ///< commands whose time has not come
   std::array<RelayTraffic, 2> traffic_;  ///< by Direction
   Duration lead_{};                      ///< running median of what a send call takes
+  Duration spin_;                        ///< so long before a release it is awake
   TimePoint awake_since_{};
   TimePoint show_at_{};
   std::array<Decision, kDatagramBatch> leaving_;
