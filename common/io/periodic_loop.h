@@ -33,8 +33,11 @@ struct LoopStats {
 
 /// Where a running loop tells how it is; both may be left out.
 struct LoopTaps {
-  std::function<void(const RealtimeGrant&)> granted;  ///< once, before the first tick
-  Mailbox<LoopProgress>* progress{};                  ///< put after each tick; writer: the loop
+  std::function<void(const RealtimeGrant&)> granted{};  ///< once, before the first tick
+  /// Once a period, awake before the deadline, where enough of the spin is left for it: some 10 us
+  /// of work that makes the tick quick, its outcome of no account.
+  std::function<void()> rehearse{};
+  Mailbox<LoopProgress>* progress{};  ///< put after each tick; writer: the loop
 };
 
 /// Calls `tick` at absolute deadlines until stopped, with the time at which it really began. A

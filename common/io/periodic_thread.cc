@@ -7,13 +7,19 @@ namespace palp::io {
 
 PeriodicThread::PeriodicThread(const std::string& name,
                                const LoopConfig& config,
-                               std::function<void(TimePoint now)> tick) {
+                               std::function<void(TimePoint now)> tick,
+                               std::function<void()> rehearse) {
   std::promise<RealtimeGrant> granted;
   std::future<RealtimeGrant> answer = granted.get_future();
-  thread_ = std::jthread{[this, name, config, tick = std::move(tick), granted = std::move(granted)](
-                             const std::stop_token& stop) mutable {
+  thread_ = std::jthread{[this,
+                          name,
+                          config,
+                          tick = std::move(tick),
+                          rehearse = std::move(rehearse),
+                          granted = std::move(granted)](const std::stop_token& stop) mutable {
     name_this_thread(name);
     const LoopTaps taps{.granted = [&](const RealtimeGrant& grant) { granted.set_value(grant); },
+                        .rehearse = std::move(rehearse),
                         .progress = &progress_};
     stats_ = run_periodic(config, tick, stop, taps);
   }};

@@ -16,7 +16,8 @@ class PeriodicThread {
   /// Returns once the system has said what it grants; the first tick follows a period later.
   PeriodicThread(const std::string& name,
                  const LoopConfig& config,
-                 std::function<void(TimePoint now)> tick);
+                 std::function<void(TimePoint now)> tick,
+                 std::function<void()> rehearse = {});
   /// Stops and waits.
   ~PeriodicThread();
   PeriodicThread(const PeriodicThread&) = delete;

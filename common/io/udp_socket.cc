@@ -62,14 +62,17 @@ struct UdpSocket::Batch {
       messages[at].msg_hdr.msg_iov = &blocks[at];
       messages[at].msg_hdr.msg_iovlen = 1;
       messages[at].msg_hdr.msg_control = controls[at].bytes.data();
+      messages[at].msg_hdr.msg_controllen = sizeof(Control);
     }
   }
 
-  /// The kernel shortens this field to what it wrote.
+  /// The kernel has shortened this field to what it wrote, in those that it filled.
   void prepare() noexcept {
-    for (mmsghdr& message : messages) {
+    for (mmsghdr& message : std::span{messages}.first(size)) {
       message.msg_hdr.msg_controllen = sizeof(Control);
     }
+    size = 0;
+    next = 0;
   }
 
   [[nodiscard]] std::optional<Duration> stamp_of(std::size_t at) noexcept {
@@ -153,7 +156,6 @@ bool UdpSocket::fetch() noexcept {
         socket_.number(), batch.messages.data(), kBatch, MSG_DONTWAIT | MSG_TRUNC, nullptr);
     if (got > 0) {
       batch.size = static_cast<std::size_t>(got);
-      batch.next = 0;
       drained_ = batch.size < kBatch;
       timespec wall{};
       batch.taken_at = SteadyClock{}.now();
@@ -208,6 +210,17 @@ std::optional<link::Datagram> UdpSocket::receive(
     }
   }
   return std::nullopt;
+}
+
+void UdpSocket::rehearse() noexcept {
+  Batch& batch = *batch_;
+  if (batch.next < batch.size) return;
+  batch.prepare();
+  batch.size = 1;  // the peek shortens a field of the first message, which is to be put right again
+  batch.next = 1;
+  const ssize_t got =
+      ::recvmsg(socket_.number(), &batch.messages[0].msg_hdr, MSG_DONTWAIT | MSG_PEEK | MSG_TRUNC);
+  if (got < 0 && is_path_error(errno)) ++inbox_.counting.path_errors;
 }
 
 std::optional<UdpSocket::Stranger> UdpSocket::take_early(std::span<std::byte> buffer) noexcept {

@@ -42,6 +42,7 @@ class UdpSocket final : public link::Transport {
   /// kernel's stamp, never after `now`.
   std::optional<link::Datagram> receive(std::span<std::byte, link::kDatagramSizeMax> buffer,
                                         TimePoint now) noexcept override;
+  void rehearse() noexcept override;
 
   /// io, before rt gets the socket: between bind and connect the kernel gave it datagrams of
   /// strangers. Takes one that waits, with its sender; nullopt: none left.

@@ -48,6 +48,22 @@ PortSample for_repetition(const PortSample& sample) noexcept {
   return {sample.position, sample.velocity, sample.force, std::monostate{}};
 }
 
+/// With all that a telegram can hold.
+const WireTelegram kRehearsed{
+    .sent_at_ns = kSentAtMaxNs,
+    .echo_ns = kSentAtMaxNs,
+    .newest_number = 1,
+    .before_newest = 1,
+    .hold_us = 1000,
+    .telegram = {.site = {.state = SiteState::Engaged,
+                          .epoch = 1,
+                          .lateral = 1,
+                          .depth = {.number = 1, .depth = 1, .depth_low = 1, .depth_high = 1}},
+                 .port = {.position = 1, .velocity = 1, .force = 1, .payload = ModelPayload{}}},
+    .older = {PortSample{.position = 1, .velocity = 1, .force = 1, .payload = {}},
+              PortSample{.position = 1, .velocity = 1, .force = 1, .payload = {}}},
+    .older_count = 2};
+
 }  // namespace
 
 Link::Link(const LinkConfig& config, std::unique_ptr<Codec> codec)
@@ -338,6 +354,14 @@ Duration Link::gap(TimePoint now) const noexcept {
   return std::max(
       Duration{0},
       now - (conversation_.heard ? conversation_.newest_arrived_at : conversation_.began_at));
+}
+
+void Link::rehearse() noexcept {
+  if (session_id_ == 0) return;
+  transport_->rehearse();
+  const std::size_t size = codec_->encode(kRehearsed, std::span{plain_}.first<kTelegramSizeMax>());
+  protection_->rehearse(std::span{plain_}.first(size), datagram_);
+  (void)codec_->decode(std::span{plain_}.first(size));
 }
 
 LinkState Link::judge(TimePoint now) const noexcept {

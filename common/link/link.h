@@ -47,6 +47,10 @@ class Link {
   /// Once per period, before send(): drains the transport within its budget.
   [[nodiscard]] Arrivals receive(TimePoint now) noexcept;
   [[nodiscard]] LinkHealth health(TimePoint now) const noexcept;
+  /// In spare time before a tick: walks once through what sending and receiving do, with a telegram
+  /// that nobody gets, because code that was not run for a millisecond runs slowly. Changes
+  /// nothing.
+  void rehearse() noexcept;
 
  private:
   static constexpr std::size_t kHistory = 64;  ///< > the number distance of 10 ms

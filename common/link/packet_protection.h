@@ -35,6 +35,10 @@ class PacketProtection {
   /// @returns bytes written into `plain`.
   virtual tl::expected<std::size_t, Rejection> open(std::span<const std::byte> datagram,
                                                     std::span<std::byte> plain) noexcept = 0;
+  /// Seals `plain` and opens it again under keys that protect nothing, in `room`: only so that code
+  /// and tables are in the processor's caches when they are needed. Changes nothing that counts.
+  virtual void rehearse(std::span<const std::byte> /*plain*/,
+                        std::span<std::byte> /*room*/) noexcept {}
 };
 
 /// Header and payload, nothing else: anybody on the path can read, change and forge.

@@ -26,6 +26,8 @@ class Transport {
   /// @returns nullopt: none waiting.
   virtual std::optional<Datagram> receive(std::span<std::byte, kDatagramSizeMax> buffer,
                                           TimePoint now) noexcept = 0;
+  /// In spare time: touches what receive() will need. Takes nothing.
+  virtual void rehearse() noexcept {}
 };
 
 }  // namespace palp::link

@@ -38,10 +38,13 @@ void Runner::start(link::Link& link, std::function<void(TimePoint now)> tick) {
                             .priority = loop_.priority,
                             .lock_memory = loop_.lock_memory};
   rt_ = std::make_unique<io::PeriodicThread>(
-      "palp-rt", loop, [this, &link, tick = std::move(tick)](TimePoint now) {
+      "palp-rt",
+      loop,
+      [this, &link, tick = std::move(tick)](TimePoint now) {
         desk_.serve(link, now);
         tick(now);
-      });
+      },
+      [&link] { link.rehearse(); });
 }
 
 std::vector<std::string> Runner::shortcomings() const {

@@ -1,8 +1,9 @@
 // What security costs and stands, with numbers:
 //   security_bench cost               ns to seal and open a telegram; bytes it adds
-//   security_bench handshakes N L R   N handshakes, loss L (share), round trip R (ms)
+//   security_bench handshakes N L R [SEED]   N handshakes, loss L (share), round trip R (ms)
 //   security_bench flood S            each kind of junk for S seconds at 100,000/s, from the peer's
-//                                     own address, beside a 1 kHz session of two sites
+//                                     own address, beside a 1 kHz session of two sites and a raw
+//                                     loop of the same rate and priority
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -21,13 +22,10 @@
 
 #include "common/core/random.h"
 #include "common/io/associations.h"
-#include "common/io/handover_desk.h"
-#include "common/io/periodic_thread.h"
-#include "common/io/session_server.h"
 #include "common/io/steady_clock.h"
 #include "common/link/aead_protection.h"
-#include "common/link/codec_protobuf.h"
-#include "common/link/link.h"
+#include "tests/bench/raw_loop.h"
+#include "tests/bench/secure_site.h"
 #include "tests/common/io/keys_folder.h"
 #include "tests/common/io/loopback.h"
 #include "tests/common/link/some_keys.h"
@@ -123,7 +121,7 @@ struct Trial {
   std::size_t bytes_down{};
 };
 
-int handshakes(int count, double loss, Duration round_trip) {
+int handshakes(int count, double loss, Duration round_trip, std::uint64_t seed) {
   const io::test::KeysFolder keys{"bench"};
   const auto surgeon_keys = keys.credentials(Role::Surgeon);
   const auto patient_keys = keys.credentials(Role::Patient);
@@ -135,8 +133,8 @@ int handshakes(int count, double loss, Duration round_trip) {
   for (int done = 0; done < count; done += kAtOnce) {
     std::vector<std::unique_ptr<Trial>> trials;
     for (int i = done; i < std::min(count, done + kAtOnce); ++i) {
-      trials.push_back(
-          std::make_unique<Trial>(*surgeon_keys, *patient_keys, static_cast<std::uint64_t>(i) + 1));
+      trials.push_back(std::make_unique<Trial>(
+          *surgeon_keys, *patient_keys, random_bits(seed, 1, static_cast<std::uint64_t>(i))));
     }
     const TimePoint began = clock.now();
     int open = static_cast<int>(trials.size());
@@ -190,35 +188,6 @@ int handshakes(int count, double loss, Duration round_trip) {
       all.back());
   return all.size() == static_cast<std::size_t>(count) ? 0 : 1;
 }
-
-/// A site in real time: what a program makes of it, without a node.
-struct Site {
-  Site(Role role, std::uint16_t port, const io::Credentials& credentials)
-      : server{config_of(role, port, credentials), desk} {}
-  static io::SessionServerConfig config_of(Role role,
-                                           std::uint16_t port,
-                                           const io::Credentials& credentials) {
-    io::SessionServerConfig config;
-    config.session = {.role = role, .settings_hash = 1, .coupling = "direct", .git = ""};
-    config.address = {.host = "127.0.0.1", .port = port};
-    config.priority = 70;
-    config.credentials = &credentials;
-    return config;
-  }
-  void start() {
-    rt = std::make_unique<io::PeriodicThread>("bench-rt", io::LoopConfig{}, [this](TimePoint now) {
-      desk.serve(link, now);
-      (void)link.receive(now);
-      link.send({}, now);
-      health.put(link.health(now));
-    });
-  }
-  io::HandoverDesk desk;
-  link::Link link{{}, std::make_unique<link::ProtobufCodec>()};
-  io::SessionServer server;
-  Mailbox<link::LinkHealth> health;  ///< writer: rt, reader: main
-  std::unique_ptr<io::PeriodicThread> rt;
-};
 
 /// The way between the sites: passes all, keeps the newest telegram, and sends junk from the
 /// address that the patient's socket is connected to.
@@ -299,48 +268,76 @@ class Road {
   std::jthread stranger_;
 };
 
+/// One kind of junk beside the session, and beside a raw loop that talks to itself. @returns
+/// whether all targets were kept.
+bool flood_with(int kind, Duration span, Road& road, SecureSite& surgeon, SecureSite& patient) {
+  constexpr std::array<const char*, 6> kNames{
+      "none", "random", "right header", "replayed", "bit flipped", "ClientHello"};
+  const io::SteadyClock clock;
+  const int socket = make_raw_socket();
+  const StolenTime stolen;
+  RawLoop raw{
+      socket, clock.now() + milliseconds{10}, static_cast<std::size_t>(span / milliseconds{1})};
+  const link::LinkHealth before = patient.health.get();
+  const link::LinkHealth sent_before = surgeon.health.get();
+  const io::LoopProgress loop_before = patient.rt->progress();
+  const long memory = resident_kb();
+  const std::uint64_t junk = road.junk();
+  road.flood(kind);
+  clock.sleep_until(clock.now() + span);
+  road.flood(0);
+  clock.sleep_until(clock.now() + milliseconds{200});
+  const link::LinkHealth after = patient.health.get();
+  const io::LoopProgress loop = patient.rt->progress();
+  const RawAccount reference = raw.stop();
+  ::close(socket);
+  const auto per_thousand = [](std::uint64_t missed, std::uint64_t ticks) {
+    return 1e3 * static_cast<double>(missed) /
+           static_cast<double>(std::max<std::uint64_t>(1, missed + ticks));
+  };
+  const auto sent = static_cast<double>(surgeon.health.get().sent - sent_before.sent);
+  const auto taken =
+      static_cast<double>(after.accepted + after.late - before.accepted - before.late);
+  const double missed =
+      per_thousand(loop.missed - loop_before.missed, loop.ticks - loop_before.ticks);
+  const double raw_missed = per_thousand(reference.missed, reference.ticks);
+  const long grown = resident_kb() - memory;
+  const bool good = taken >= 0.999 * sent && after.state == LinkState::Live &&
+                    missed <= raw_missed + 0.5 && grown < 1024;
+  std::printf("%-13s %7.0f %6.0f %9.0f  %.5f %8.2f %8.2f %7ld %5.2f %%  %s\n",
+              kNames[static_cast<std::size_t>(kind)],
+              static_cast<double>(road.junk() - junk) / seconds(span),
+              sent,
+              taken,
+              taken / sent,
+              missed,
+              raw_missed,
+              grown,
+              100 * stolen.share(),
+              good ? "kept" : "MISSED");
+  std::fflush(stdout);
+  return good;
+}
+
 int flood(int span_s) {
   const io::test::KeysFolder keys{"flood"};
   const auto surgeon_keys = keys.credentials(Role::Surgeon);
   const auto patient_keys = keys.credentials(Role::Patient);
-  Site patient{Role::Patient, 0, *patient_keys};
+  SecureSite patient{Role::Patient, 0, *patient_keys};
   Road road{patient.server.local()};
-  Site surgeon{Role::Surgeon, road.port(), *surgeon_keys};
-  const std::array<const char*, 6> names{
-      "none", "random", "right header", "replayed", "bit flipped", "ClientHello"};
-  patient.start();
-  surgeon.start();
+  SecureSite surgeon{Role::Surgeon, road.port(), *surgeon_keys};
+  for (SecureSite* site : {&patient, &surgeon}) {
+    site->start([site](TimePoint now) {
+      (void)site->link.receive(now);
+      site->link.send({}, now);
+    });
+  }
   while (patient.health.get().state != LinkState::Live) std::this_thread::yield();
   int failures = 0;
-  std::printf("kind           junk/s   sent  accepted  share    missed/1000  p99.9 us   RSS +kB\n");
+  std::printf(
+      "kind           junk/s   sent  accepted  share  missed/1000   raw   RSS +kB stolen\n");
   for (int kind = 0; kind <= 5; ++kind) {
-    const link::LinkHealth before = patient.health.get();
-    const link::LinkHealth sent_before = surgeon.health.get();
-    const io::LoopProgress loop_before = patient.rt->progress();
-    const long memory = resident_kb();
-    const std::uint64_t junk = road.junk();
-    road.flood(kind);
-    std::this_thread::sleep_for(std::chrono::seconds{span_s});
-    road.flood(0);
-    std::this_thread::sleep_for(milliseconds{200});
-    const link::LinkHealth after = patient.health.get();
-    const io::LoopProgress loop = patient.rt->progress();
-    const auto sent = static_cast<double>(surgeon.health.get().sent - sent_before.sent);
-    const auto taken =
-        static_cast<double>(after.accepted + after.late - before.accepted - before.late);
-    const double share = taken / sent;
-    const double missed = 1000.0 * static_cast<double>(loop.missed - loop_before.missed) /
-                          static_cast<double>(loop.ticks - loop_before.ticks);
-    std::printf("%-13s %7.0f %6.0f %9.0f  %.5f  %10.2f   %s  %7ld\n",
-                names[static_cast<std::size_t>(kind)],
-                static_cast<double>(road.junk() - junk) / span_s,
-                sent,
-                taken,
-                share,
-                missed,
-                "-",
-                resident_kb() - memory);
-    failures += share < 0.999 || after.state != LinkState::Live ? 1 : 0;
+    failures += flood_with(kind, std::chrono::seconds{span_s}, road, surgeon, patient) ? 0 : 1;
   }
   surgeon.server.close("done");
   patient.server.close("done");
@@ -354,9 +351,11 @@ int flood(int span_s) {
 
 int main(int argc, char** argv) {
   const std::string_view what = argc > 1 ? argv[1] : "cost";
-  if (what == "handshakes" && argc == 5) {
-    return palp::bench::handshakes(
-        std::atoi(argv[2]), std::atof(argv[3]), std::chrono::milliseconds{std::atoi(argv[4])});
+  if (what == "handshakes" && (argc == 5 || argc == 6)) {
+    return palp::bench::handshakes(std::atoi(argv[2]),
+                                   std::atof(argv[3]),
+                                   std::chrono::milliseconds{std::atoi(argv[4])},
+                                   argc == 6 ? std::strtoull(argv[5], nullptr, 10) : 1);
   }
   if (what == "flood" && argc == 3) return palp::bench::flood(std::atoi(argv[2]));
   return palp::bench::cost() + palp::bench::hellos();

@@ -61,6 +61,28 @@ TEST(PeriodicLoopTest, CountsWhatALongTickCosts) {
   EXPECT_GE(stats.overruns, 1U);
 }
 
+TEST(PeriodicLoopTest, RehearsesAtMostOncePerPeriodAndBeforeItsTick) {
+  std::stop_source stop;
+  int ticks = 0;
+  int rehearsals = 0;
+  int since_tick = 0;
+  int most = 0;
+  run_periodic({.spin = std::chrono::microseconds{500}},
+               [&](TimePoint) {
+                 ++ticks;
+                 since_tick = 0;
+                 if (ticks >= 20 && (rehearsals > 0 || ticks > 10'000)) stop.request_stop();
+               },
+               stop.get_token(),
+               {.rehearse = [&] {
+                 ++rehearsals;
+                 most = std::max(most, ++since_tick);
+               }});
+  EXPECT_GT(rehearsals, 0);
+  EXPECT_EQ(most, 1);
+  EXPECT_LE(rehearsals, ticks);
+}
+
 TEST(PeriodicThreadTest, TellsItsGrantAtOnceAndItsProgressWhileItRuns) {
   Mailbox<int> seen;  // writer: loop, reader: test
   int count = 0;

@@ -72,6 +72,7 @@ TEST(RealtimeSafetyTest, DeskIsCleanWhileSessionsComeAndGo) {
     }
     const TimePoint now = clock.now();
     desk.serve(link, now);
+    link.rehearse();
     (void)link.receive(now);
     link.send({}, now);
   }
@@ -103,6 +104,7 @@ TEST(RealtimeSafetyTest, SealingAndOpeningIsCleanAlsoWhereTagsAreRefusedAndKeysA
       opened += receiver.open(std::span{datagram}.first(size), room) ? 1U : 0U;
       datagram[20] ^= std::byte{1};
       opened += receiver.open(std::span{datagram}.first(size), room) ? 1U : 0U;
+      sender->rehearse(plain, room);
     }
   }
   guard.release();

@@ -196,6 +196,29 @@ TEST_F(UdpSocketTest, StampOlderThanATenthOfASecondIsNotBelieved) {
   }));
 }
 
+TEST_F(UdpSocketTest, RehearsalsTakeNothingAndStampsRemain) {
+  constexpr std::size_t kMoreThanABatch = 70;
+  for (std::size_t i = 0; i < kMoreThanABatch; ++i) {
+    ASSERT_TRUE(peer_.send_to(socket_->local(), bytes_of(0x80, 40 + i)));
+  }
+  std::vector<std::size_t> sizes;
+  ASSERT_TRUE(wait_until([&] {
+    const TimePoint now = clock_.now();
+    for (;;) {
+      socket_->rehearse();
+      const auto datagram = socket_->receive(buffer_, now);
+      if (!datagram) break;
+      sizes.push_back(datagram->size);
+    }
+    return sizes.size() >= kMoreThanABatch;
+  }));
+  socket_->rehearse();
+  ASSERT_EQ(sizes.size(), kMoreThanABatch);
+  for (std::size_t i = 0; i < kMoreThanABatch; ++i) EXPECT_EQ(sizes[i], 40 + i);
+  EXPECT_EQ(inbox_.counting.received, kMoreThanABatch);
+  EXPECT_EQ(inbox_.counting.without_stamp, 0U);
+}
+
 TEST_F(UdpSocketTest, HearsNobodyButItsPeer) {
   PlainSocket stranger;
   ASSERT_TRUE(stranger.send_to(socket_->local(), bytes_of(0x80, 31)));

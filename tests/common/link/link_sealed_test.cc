@@ -77,6 +77,27 @@ TEST(SealedLinkTest, TelegramsFlow) {
   EXPECT_EQ(couple.patient_health().forged, 0U);
 }
 
+TEST(SealedLinkTest, RehearsalsChangeNothingThatIsSentOrCounted) {
+  std::array<std::vector<Bytes>, 2> sent;
+  std::array<LinkHealth, 2> health;
+  for (const std::size_t rehearses : {0U, 1U}) {
+    SealedCouple couple;
+    couple.pipe.up->fate = [&](std::uint64_t, const Bytes& bytes) {
+      sent[rehearses].push_back(bytes);
+      return std::vector<Release>{{2ms, bytes}};
+    };
+    couple.before_send = [&] {
+      for (std::size_t i = 0; i < rehearses; ++i) couple.surgeon.link.rehearse();
+      for (std::size_t i = 0; i < rehearses; ++i) couple.patient.link.rehearse();
+    };
+    couple.run(50ms);
+    health[rehearses] = couple.patient_health();
+  }
+  EXPECT_EQ(sent[0], sent[1]);
+  EXPECT_EQ(health[0].accepted, health[1].accepted);
+  EXPECT_EQ(health[1].forged + health[1].malformed + health[1].unsent, 0U);
+}
+
 TEST(SealedLinkTest, ManyRekeysCostNoTelegramAndNoNonceComesTwice) {
   SealedCouple couple;
   // A key is told apart by handshake and direction: only one generation of an id is in use at once.
