@@ -21,6 +21,7 @@ struct ConversationOutput {
   /// With Established: for the new session. Alone: replaces that of the present one.
   std::unique_ptr<link::PacketProtection> protection;
   std::optional<Endpoint> moved_to;  ///< the peer of the present session now has this address
+  bool detours{};  ///< what was heard is a telegram for rt, from an address that is being proven
   std::vector<Letter> letters;
 };
 

@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+#include "common/io/detour.h"
 #include "common/io/entropy.h"
 
 namespace palp::io {
@@ -23,7 +24,9 @@ constexpr Duration kGreetingPause = milliseconds{200};
 constexpr Duration kGreetingLife = seconds{15};
 constexpr Duration kQuestionPause = milliseconds{200};
 constexpr int kQuestionsMax = 3;
-constexpr std::size_t kUnprovenShare = 3;  // bytes sent to an unproven address per byte from it
+/// Bytes of questions to an unproven address per byte from it; to no more than three altogether,
+/// because rt sends telegrams there as well.
+constexpr std::size_t kUnprovenShare = 3 - Detour::kShare;
 constexpr Duration kFailurePause = seconds{10};
 constexpr std::byte kQuestion{0};
 constexpr std::byte kAnswer{1};
@@ -95,7 +98,7 @@ void SecureConversation::hear_sealed(std::span<const std::byte> datagram,
     return;
   }
   if (header->type == PacketType::Data) {
-    hear_data(datagram, from, now);
+    out.detours = hear_data(datagram, from, now);
     return;
   }
   const auto opened = associations_.open(datagram, now);
@@ -272,7 +275,7 @@ ConversationOutput SecureConversation::close(std::string_view why) {
 }
 
 /// What rt did not get because it comes from elsewhere than the peer's address.
-void SecureConversation::hear_data(std::span<const std::byte> datagram,
+bool SecureConversation::hear_data(std::span<const std::byte> datagram,
                                    const Endpoint& from,
                                    TimePoint now) {
   const link::Header header = *link::parse_header(datagram);
@@ -281,20 +284,21 @@ void SecureConversation::hear_data(std::span<const std::byte> datagram,
   // Only what is newer than all: an old datagram, sent again from elsewhere, must not move us.
   if (!follows || header.number <= std::max(link_.newest_number, data_newest_)) {
     ++foreign_;
-    return;
+    return false;
   }
   std::array<std::byte, link::kDatagramSizeMax> plain{};
   if (!opener_->open(datagram, plain)) {
     ++foreign_;
-    return;
+    return false;
   }
   data_newest_ = header.number;
   if (candidate_ && candidate_->address == from) {
     candidate_->received += datagram.size();
-    return;
+    return true;
   }
   candidate_ = Candidate{.address = from, .question = draw_question(), .received = datagram.size()};
   ask(now);
+  return true;
 }
 
 void SecureConversation::ask(TimePoint now) {

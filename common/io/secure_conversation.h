@@ -52,7 +52,10 @@ class SecureConversation final : public Conversation {
                    const Endpoint& from,
                    TimePoint now,
                    ConversationOutput& out);
-  void hear_data(std::span<const std::byte> datagram, const Endpoint& from, TimePoint now);
+  /// @returns whether it is new and authentic.
+  [[nodiscard]] bool hear_data(std::span<const std::byte> datagram,
+                               const Endpoint& from,
+                               TimePoint now);
   void hear_path(const Associations::Opened& opened, const Endpoint& from, ConversationOutput& out);
   void ask(TimePoint now);
   void say(const link::SessionOutput& output, Association& by, const Endpoint& to);

@@ -95,6 +95,7 @@ class SessionServer::Io {
   void replace_keys(std::unique_ptr<link::PacketProtection> protection);
   void move(const Endpoint& peer);
   [[nodiscard]] Result<std::unique_ptr<link::Transport>> way_to(const Endpoint& peer);
+  void offer_waiting();
   void leave();
   void tell(SessionNews::Kind kind, const Endpoint& peer, std::string sentence, bool final = false);
 
@@ -195,9 +196,7 @@ void SessionServer::Io::run_round() {
   for (std::deque<Early> early = std::exchange(early_, {}); !early.empty(); early.pop_front()) {
     hear(early.front().bytes, early.front().from);
   }
-  while (!waiting_.empty() && desk_.offer(std::move(waiting_.front()))) {
-    waiting_.pop_front();
-  }
+  offer_waiting();
   noise_.put(conversation_->counters());
   strangers_ = 0;
   wait_for_strangers();
@@ -242,7 +241,10 @@ void SessionServer::Io::hear_strangers() {
 }
 
 void SessionServer::Io::hear(std::span<const std::byte> datagram, const Endpoint& from) {
-  carry_out(conversation_->hear(datagram, from, clock_.now()), from);
+  const TimePoint now = clock_.now();
+  ConversationOutput output = conversation_->hear(datagram, from, now);
+  if (output.detours) (void)desk_.inbox().detours.try_emplace(datagram, from, now);
+  carry_out(std::move(output), from);
 }
 
 void SessionServer::Io::carry_out(ConversationOutput output, const Endpoint& from) {
@@ -261,6 +263,13 @@ void SessionServer::Io::carry_out(ConversationOutput output, const Endpoint& fro
   for (const Letter& letter : output.letters) {
     boost::system::error_code refusal;  // nothing to do about it: what matters is repeated
     listening_.send_to(asio::buffer(letter.bytes), as_asio(letter.to), 0, refusal);
+  }
+  offer_waiting();
+}
+
+void SessionServer::Io::offer_waiting() {
+  while (!waiting_.empty() && desk_.offer(std::move(waiting_.front()))) {
+    waiting_.pop_front();
   }
 }
 

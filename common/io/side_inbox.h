@@ -41,18 +41,20 @@ struct SocketCounts {
   std::uint64_t received{};       ///< all that was taken from the kernel
   std::uint64_t set_aside{};      ///< not data: left to io
   std::uint64_t dropped{};        ///< not data, and the inbox was full or it was empty or too long
+  std::uint64_t detoured{};       ///< copies sent to an address that is being proven
   std::uint64_t path_errors{};    ///< ICMP and the like, as the kernel reports them
   std::uint64_t without_stamp{};  ///< no receive stamp, or a senseless one: the drain's time counts
 };
 
-/// Where rt leaves to io what it received but must not look into. Outlives the sockets that fill
-/// it. Writer: the rt thread, reader: io.
+/// Where rt leaves to io what it received but must not look into, and io to rt the telegrams that
+/// came from an address that is being proven. Outlives the sockets that fill it.
 struct SideInbox {
   static constexpr std::size_t kCapacity = 64;
 
-  SpscQueue<SideDatagram> datagrams{kCapacity};
-  SocketCounts counting;         ///< rt's own
-  Mailbox<SocketCounts> counts;  ///< its copy for io
+  SpscQueue<SideDatagram> datagrams{kCapacity};  ///< writer: rt, reader: io
+  SpscQueue<SideDatagram> detours{kCapacity};    ///< writer: io, reader: rt
+  SocketCounts counting;                         ///< rt's own
+  Mailbox<SocketCounts> counts;                  ///< its copy for io
 };
 
 }  // namespace palp::io

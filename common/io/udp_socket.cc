@@ -124,6 +124,14 @@ Result<std::unique_ptr<UdpSocket>> UdpSocket::connect(const Endpoint& local,
 }
 
 bool UdpSocket::send(std::span<const std::byte> datagram, TimePoint /*now*/) noexcept {
+  if (detour_.spend(datagram.size()) && ::sendto(socket_.number(),
+                                                 datagram.data(),
+                                                 datagram.size(),
+                                                 MSG_DONTWAIT,
+                                                 detour_.to().address(),
+                                                 detour_.to().size()) >= 0) {
+    ++inbox_.counting.detoured;
+  }
   // A second time, because an error of the path belongs to an earlier datagram and has kept this
   // one from leaving.
   for (int attempt = 0; attempt < 2; ++attempt) {
@@ -182,7 +190,7 @@ std::optional<link::Datagram> UdpSocket::receive(
   SocketCounts& counting = inbox_.counting;
   while (taken_ < link::kDatagramsPerTickMax) {
     if (batch.next == batch.size && !fetch()) {
-      return std::nullopt;
+      return take_detour(buffer, now);
     }
     const std::size_t at = batch.next++;
     ++taken_;
@@ -210,6 +218,20 @@ std::optional<link::Datagram> UdpSocket::receive(
     }
   }
   return std::nullopt;
+}
+
+std::optional<link::Datagram> UdpSocket::take_detour(
+    std::span<std::byte, link::kDatagramSizeMax> buffer, TimePoint now) noexcept {
+  SideDatagram taken;
+  if (!inbox_.detours.try_dequeue(taken)) {
+    return std::nullopt;
+  }
+  ++taken_;
+  if (!(taken.from == peer_)) {  // it was proven meanwhile
+    detour_.heard(taken.from, taken.size);
+  }
+  std::ranges::copy(taken.datagram(), buffer.begin());
+  return link::Datagram{.size = taken.size, .arrived_at = std::min(taken.arrived_at, now)};
 }
 
 void UdpSocket::rehearse() noexcept {

@@ -9,6 +9,7 @@
 #include "common/core/result.h"
 #include "common/core/time.h"
 #include "common/io/descriptor.h"
+#include "common/io/detour.h"
 #include "common/io/endpoint.h"
 #include "common/io/side_inbox.h"
 #include "common/link/transport.h"
@@ -22,8 +23,9 @@ struct UdpSocketConfig {
 
 /// A connected, non-blocking UDP socket: the kernel lets through what the peer's address sent.
 /// Datagrams of type data go to the caller, all others into the inbox; both count against the
-/// budget of a tick. ICMP errors are counted and never end anything.
-/// Thread: made by io, then rt's. Allocates nothing after construction.
+/// budget of a tick. Telegrams that io took from an address that is being proven come after them,
+/// and what is sent goes there too, within the bounds of Detour. ICMP errors are counted and never
+/// end anything. Thread: made by io, then rt's. Allocates nothing after construction.
 class UdpSocket final : public link::Transport {
  public:
   /// Bound to `local` (port 0: any), connected to `peer`. `inbox` outlives receive(), not the
@@ -60,12 +62,15 @@ class UdpSocket final : public link::Transport {
 
   UdpSocket(Descriptor socket, const Endpoint& peer, SideInbox& inbox);
   bool fetch() noexcept;
+  std::optional<link::Datagram> take_detour(std::span<std::byte, link::kDatagramSizeMax> buffer,
+                                            TimePoint now) noexcept;
   void begin_tick(TimePoint now) noexcept;
 
   Descriptor socket_;
   Endpoint peer_;
   SideInbox& inbox_;
   std::unique_ptr<Batch> batch_;
+  Detour detour_;
   TimePoint tick_{TimePoint::min()};
   std::size_t taken_{};  ///< in this tick
   int errors_{};         ///< in this tick

@@ -15,6 +15,7 @@
 #include "common/link/link.h"
 #include "tests/common/io/keys_folder.h"
 #include "tests/common/io/loopback.h"
+#include "tests/common/io/secure_world.h"
 
 namespace palp::io {
 namespace {
@@ -22,185 +23,19 @@ namespace {
 using link::Role;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using test::kElsewhere;
 using test::KeysFolder;
+using test::kPatientAt;
+using test::kSurgeonAt;
+using test::session_of;
+using test::Site;
+using test::World;
 using testing::HasSubstr;
 
-const Endpoint kPatientAt = *resolve_endpoint("127.0.0.1:2000");
-const Endpoint kSurgeonAt = *resolve_endpoint("127.0.0.1:1000");
-const Endpoint kElsewhere = *resolve_endpoint("127.0.0.1:1001");
-
-link::SessionConfig session_of(Role role) {
-  return {.role = role, .settings_hash = 77, .coupling = "direct", .git = "abc"};
+bool is_question(std::span<const std::byte> bytes) {
+  const auto header = link::parse_header(bytes);
+  return header && header->type == link::PacketType::Path;
 }
-
-/// Datagrams that wait for a Link, and those it has sent.
-struct Wire {
-  std::deque<std::vector<std::byte>> in;
-  std::deque<std::vector<std::byte>> out;
-};
-
-class WireEnd final : public link::Transport {
- public:
-  explicit WireEnd(Wire& wire) : wire_{wire} {}
-  bool send(std::span<const std::byte> datagram, TimePoint) noexcept override {
-    wire_.out.emplace_back(datagram.begin(), datagram.end());
-    return true;
-  }
-  std::optional<link::Datagram> receive(std::span<std::byte, link::kDatagramSizeMax> buffer,
-                                        TimePoint now) noexcept override {
-    if (wire_.in.empty()) return std::nullopt;
-    const auto bytes = std::move(wire_.in.front());
-    wire_.in.pop_front();
-    std::copy_n(bytes.begin(), std::min(bytes.size(), buffer.size()), buffer.begin());
-    return link::Datagram{bytes.size(), now};
-  }
-
- private:
-  Wire& wire_;
-};
-
-/// A site's io thread without sockets, and its Link.
-struct Site {
-  Site(Role role, const Credentials& credentials, Duration rekey_after, std::uint64_t entropy)
-      : at{role == Role::Surgeon ? kSurgeonAt : kPatientAt},
-        conversation{{.session = session_of(role),
-                      .callee = role == Role::Surgeon ? kPatientAt : Endpoint{},
-                      .rekey_after = rekey_after},
-                     credentials,
-                     entropy} {}
-
-  void take(ConversationOutput output, TimePoint now) {
-    for (Letter& letter : output.letters) letters.push_back(std::move(letter));
-    if (output.moved_to) moved_to.push_back(*output.moved_to);
-    if (output.event) {
-      if (const auto* session = std::get_if<link::Established>(&*output.event)) {
-        established.push_back(*session);
-        (void)link.adopt({.transport = std::make_unique<WireEnd>(wire),
-                          .protection = std::move(output.protection),
-                          .send_connection = session->send_connection,
-                          .receive_connection = session->receive_connection,
-                          .session_id = session->session_id},
-                         now);
-      } else if (const auto* refusal = std::get_if<link::Refused>(&*output.event)) {
-        refused.push_back(refusal->text);
-      } else {
-        ++closed;
-        (void)link.adopt({}, now);
-      }
-    }
-    if (output.protection) {
-      ++rekeyed;
-      const link::Established& session = established.back();
-      (void)link.adopt({.transport = nullptr,
-                        .protection = std::move(output.protection),
-                        .send_connection = session.send_connection,
-                        .receive_connection = session.receive_connection,
-                        .session_id = session.session_id,
-                        .continues = true},
-                       now);
-    }
-  }
-  void tick(TimePoint now) {
-    (void)link.receive(now);
-    link.send({}, now);
-    const link::LinkHealth health = link.health(now);
-    take(conversation.tick(now,
-                           {.state = health.state,
-                            .session_id = health.session_id,
-                            .newest_number = health.newest_number,
-                            .key = health.key}),
-         now);
-  }
-
-  Endpoint at;
-  SecureConversation conversation;
-  link::Link link{{}, std::make_unique<link::ProtobufCodec>()};
-  Wire wire;
-  std::deque<Letter> letters;
-  std::vector<link::Established> established;
-  std::vector<std::string> refused;
-  std::vector<Endpoint> moved_to;
-  int closed{};
-  int rekeyed{};
-};
-
-/// Both sites and what lies between.
-class World {
- public:
-  explicit World(const std::string& name, Duration rekey_after = std::chrono::hours{1})
-      : keys{name},
-        surgeon_credentials{keys.credentials(Role::Surgeon)},
-        patient_credentials{keys.credentials(Role::Patient)},
-        rekey_after_{rekey_after} {
-    start(Role::Surgeon);
-    start(Role::Patient);
-  }
-  void start(Role role) {
-    auto& site = role == Role::Surgeon ? surgeon : patient;
-    site =
-        std::make_unique<Site>(role,
-                               role == Role::Surgeon ? *surgeon_credentials : *patient_credentials,
-                               rekey_after_,
-                               ++started_);
-  }
-  void run(Duration span) {
-    for (const TimePoint end = now + span; now < end; now += milliseconds{1}) {
-      surgeon->tick(now);
-      patient->tick(now);
-      pass(*surgeon, *patient, surgeon_seen_at);
-      pass(*patient, *surgeon, kPatientAt);
-    }
-  }
-  void pass(Site& from, Site& to, const Endpoint& seen_at) {
-    for (auto& bytes : std::exchange(from.wire.out, {})) {
-      if (cut || (lose && lose())) continue;
-      if (from.at == kSurgeonAt) recorded.push_back(bytes);
-      // As the kernel does: rt's socket is connected to the peer's address, the others go to io.
-      const bool known = !(to.at == kPatientAt) || seen_at == patient_hears;
-      if (known) {
-        to.wire.in.push_back(std::move(bytes));
-      } else {
-        to.take(to.conversation.hear(bytes, seen_at, now), now);
-        follow();
-      }
-    }
-    for (Letter& letter : std::exchange(from.letters, {})) {
-      // Lost handshakes are repeated by OpenSSL's clock, which does not know this time.
-      if (cut || (lose && !looks_like_dtls(letter.bytes) && lose())) continue;
-      if (letter.to == elsewhere_watched) watched.push_back(letter.bytes);
-      if (!(letter.to == (to.at == kSurgeonAt ? surgeon_seen_at : to.at))) continue;
-      control.push_back(letter.bytes);
-      to.take(to.conversation.hear(letter.bytes, seen_at, now), now);
-      follow();
-    }
-  }
-  void follow() {
-    if (!patient->moved_to.empty()) patient_hears = patient->moved_to.back();
-  }
-  [[nodiscard]] LinkState state(const Site& site) const { return site.link.health(now).state; }
-  [[nodiscard]] bool live() const {
-    return state(*surgeon) == LinkState::Live && state(*patient) == LinkState::Live;
-  }
-
-  KeysFolder keys;
-  std::unique_ptr<Credentials> surgeon_credentials;
-  std::unique_ptr<Credentials> patient_credentials;
-  std::unique_ptr<Site> surgeon;
-  std::unique_ptr<Site> patient;
-  TimePoint now{};
-  bool cut{};
-  std::function<bool()> lose;
-  Endpoint surgeon_seen_at{kSurgeonAt};
-  Endpoint patient_hears{kSurgeonAt};  ///< whom the patient's data socket is connected to
-  Endpoint elsewhere_watched;
-  std::vector<std::vector<std::byte>> watched;   ///< letters to that address
-  std::vector<std::vector<std::byte>> recorded;  ///< telegrams of the surgeon
-  std::vector<std::vector<std::byte>> control;   ///< handshakes and control messages of both
-
- private:
-  Duration rekey_after_;
-  std::uint64_t started_{};
-};
 
 TEST(SecureConversationTest, SitesMeetUnderKeysAndSayByeUnderThem) {
   World world{"meet"};
@@ -396,8 +231,8 @@ TEST(RoamingTest, ANewTelegramTakenOffTheWayMovesNobodyAndDrawsLittle) {
     if (i < 1) {
       for (auto& bytes : std::exchange(world.surgeon->wire.out, {})) {
         in += bytes.size();
-        world.patient->take(world.patient->conversation.hear(bytes, kElsewhere, world.now),
-                            world.now);
+        test::Parcel stolen{world.now, false, kPatientAt, kElsewhere, bytes};
+        world.arrive(stolen, *world.patient);
       }
     }
     world.pass(*world.surgeon, *world.patient, kSurgeonAt);
@@ -407,7 +242,8 @@ TEST(RoamingTest, ANewTelegramTakenOffTheWayMovesNobodyAndDrawsLittle) {
   for (const auto& bytes : world.watched) out += bytes.size();
   EXPECT_GT(out, 0U);
   EXPECT_LE(out, 3 * in);
-  EXPECT_LE(world.watched.size(), 3U);
+  EXPECT_LE(std::ranges::count_if(world.watched, is_question), 3);
+  EXPECT_GE(std::ranges::count_if(world.watched, is_question), 1);
   EXPECT_TRUE(world.patient->moved_to.empty());
   EXPECT_TRUE(world.live());
 }
