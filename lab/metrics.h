@@ -75,13 +75,16 @@ struct TrialMetrics {
   /// [s], from the first contact of 0.1 N at a site until the force is right, to 0.02 N or 10 %,
   /// through 50 ms of contact deeper than 1 mm.
   double learning[2]{kUndefined, kUndefined};
-  double force_rms{kUndefined};        ///< [N], of felt - true over all taps
-  double drag_rms{kUndefined};         ///< [N]
-  double drag_peak{kUndefined};        ///< [N]
-  double drift{kUndefined};            ///< [m]
-  double energy_operator{};            ///< [J], most the operator ever got
-  double energy_net{};                 ///< [J], most excess delivered to the tissue
-  double force_step_10ms{};            ///< [N], worst change of F_h in 10 ms
+  double force_rms{kUndefined};  ///< [N], of felt - true over all taps
+  double drag_rms{kUndefined};   ///< [N]
+  double drag_peak{kUndefined};  ///< [N]
+  double drift{kUndefined};      ///< [m]
+  double energy_operator{};      ///< [J], most the operator ever got
+  double energy_net{};           ///< [J], most excess delivered to the tissue
+  double force_step_10ms{};      ///< [N], worst change of F_h in 10 ms
+  /// [N], the same over the whole run, also while the operator waits or aligns: as long as the
+  /// surgeon's process lives and its pedal is down. Not judge()'s: whoever made the ticks knows.
+  double force_step_guarded{};
   double force_peak{};                 ///< [N]
   double contact_force_max{};          ///< [N]
   double phantom_force{kUndefined};    ///< [N], |F_h| in the air in and after a blackout

@@ -24,6 +24,22 @@ void place_blackout(Scenario& scenario) {
   scenario.blackout_at_script_time = before - std::chrono::seconds{1};
 }
 
+/// The middle of the nth stretch of a kind, in script time.
+Duration middle_of(const surgeon::GestureScript& script, surgeon::StretchKind kind, int nth) {
+  for (const surgeon::Stretch& stretch : script.stretches()) {
+    if (stretch.kind == kind && --nth == 0) return stretch.began_at + stretch.duration / 2;
+  }
+  return script.length() / 2;
+}
+
+Duration fault_time(const surgeon::GestureScript& script, std::string_view place) {
+  using surgeon::StretchKind;
+  if (place == "tap") return middle_of(script, StretchKind::Tap, 2);
+  if (place == "press") return middle_of(script, StretchKind::PressHold, 2);
+  if (place == "press-b") return middle_of(script, StretchKind::PressHold, 4);
+  return middle_of(script, StretchKind::Air, 1);
+}
+
 Result<void> apply(config::Document& document, const Setting& setting) {
   if (setting.path == "rtt_ms") {
     double trip = 0;
@@ -86,7 +102,10 @@ Result<Plan> make_sweep(const std::string& scenario,
   std::vector<Setting> chosen;
   combine(values, 0, chosen, [&](const std::vector<Setting>& settings) {
     for (std::uint64_t repeat = 0; repeat < repeats; ++repeat) {
-      Case one{plan.cases.size(), ask.seed + repeat, settings, {}};
+      Case one;
+      one.index = plan.cases.size();
+      one.seed = ask.seed + repeat;
+      one.settings = settings;
       if (!ask.coupling.empty())
         one.settings.insert(one.settings.begin(), {"coupling.name", ask.coupling});
       for (const Setting& setting : settings) one.labels.push_back(setting.value);
@@ -130,6 +149,8 @@ Result<Scenario> make_case(const Plan& plan, const Case& one) {
   scenario->depths = false;
   scenario->lying = plan.lying;
   if (plan.blackout) place_blackout(*scenario);
+  scenario->fault = one.fault;
+  scenario->fault.at_script_time = fault_time(scenario->script, one.fault_place);
   return scenario;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/core/result.h"
@@ -23,7 +25,13 @@ struct Case {
   std::uint64_t seed{};
   std::vector<Setting> settings;
   std::vector<std::string> labels;  ///< one per name in Plan::label_names
+  Fault fault;                      ///< `at_script_time` is found from `fault_place`
+  std::string_view fault_place;     ///< of kFaultPlaces
 };
+
+/// In the middle of: a sine in the air, the second tap and the deep press of the first site, the
+/// deep press of the second.
+inline constexpr std::array<std::string_view, 4> kFaultPlaces{"air", "tap", "press", "press-b"};
 
 struct Plan {
   std::string name;
@@ -45,8 +53,8 @@ struct PlanAsk {
                                       ///< any phantom
 };
 
-/// table, net, mc, mc-hard, mc-noise, mc-adv, grips, inc, blackout, breath, long. Random sets draw
-/// case i from (seed, i) alone, so that the first 100 of 1000 are the first 100 of 100.
+/// table, net, mc, mc-hard, mc-noise, mc-adv, grips, inc, blackout, breath, long, faults. Random
+/// sets draw case i from (seed, i) alone, so that the first 100 of 1000 are the first 100 of 100.
 [[nodiscard]] Result<Plan> make_set(const std::string& name, const PlanAsk& ask);
 [[nodiscard]] std::string describe_sets();
 

@@ -6,6 +6,7 @@
 #include "common/core/time.h"
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
+#include "lab/fault.h"
 #include "netem/impairment.h"
 #include "patient_site/estimator/depth_estimator.h"
 #include "patient_site/patient_node.h"
@@ -38,6 +39,7 @@ struct Scenario {
   bool lying{};            ///< the patient site's models are random (adversary.h)
   /// > 0: nothing passes for 2 s from there on.
   Duration blackout_at_script_time{};
+  Fault fault;  ///< with one, sites meet by the handshake
 };
 
 }  // namespace palp::lab

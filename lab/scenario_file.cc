@@ -82,7 +82,8 @@ Result<Scenario> make_scenario(const std::string& name, const config::Document& 
                   .up = std::move(*up),
                   .down = std::move(*down),
                   .duration = from_seconds(message.duration_s()),
-                  .bare = false};
+                  .bare = false,
+                  .fault = {}};
 }
 
 std::string describe_scenarios() {

@@ -64,7 +64,9 @@ std::string phantom_words(const std::string& tissue, double inclusion) {
 
 Case make_one(std::uint64_t index, std::uint64_t seed, const Draw& draw, const PlanAsk& ask) {
   const std::string path = path_words(draw);
-  Case one{index, seed, {}, {}};
+  Case one;
+  one.index = index;
+  one.seed = seed;
   one.settings = {{"coupling.name", ask.coupling},
                   {"surgeon.engagement.forced", "true"},
                   {"up.spec", path},
@@ -191,6 +193,36 @@ void fill_long(Plan& plan, const PlanAsk& ask) {
   plan.cases.back().settings.push_back({"surgeon.hand.master", "script:long"});
 }
 
+/// One fault in each case, of every kind, place and size, over the links and hands of `mc`.
+void fill_faults(Plan& plan, const PlanAsk& ask) {
+  fill_random(plan, ask, false);
+  plan.label_names.insert(plan.label_names.end(), {"fault", "place", "amount_s"});
+  for (Case& one : plan.cases) {
+    const auto uniform = [&](std::uint64_t which) {
+      return random_uniform(ask.seed, kCaseStream + 20 + which, one.index);
+    };
+    constexpr std::array kKinds{FaultKind::KillSurgeon,
+                                FaultKind::KillPatient,
+                                FaultKind::StepSurgeonClock,
+                                FaultKind::StepPatientClock,
+                                FaultKind::LiftPedal};
+    one.fault.kind = kKinds[static_cast<std::size_t>(uniform(0) * kKinds.size())];
+    one.fault_place = kFaultPlaces[static_cast<std::size_t>(uniform(1) * kFaultPlaces.size())];
+    double amount = pick(std::array{0.05, 0.3, 1.0, 5.0, 40.0}, uniform(2));
+    if (one.fault.kind == FaultKind::LiftPedal)
+      amount = pick(std::array{0.002, 0.05, 1.0}, uniform(2));
+    const bool clock = one.fault.kind == FaultKind::StepSurgeonClock ||
+                       one.fault.kind == FaultKind::StepPatientClock;
+    if (clock && uniform(3) < 0.5) amount = -amount;
+    one.fault.amount = from_seconds(amount);
+    one.settings.push_back({"duration_s", "600"});
+    one.labels.insert(one.labels.end(),
+                      {std::string{to_string(one.fault.kind)},
+                       std::string{one.fault_place},
+                       text("%.9g", amount)});
+  }
+}
+
 void set_for_all(Plan& plan, const Setting& setting) {
   for (Case& one : plan.cases) one.settings.push_back(setting);
 }
@@ -227,6 +259,7 @@ constexpr std::array kSets{
     Set{"blackout", "2 s without a link at the end of a press", fill_blackout},
     Set{"breath", "a surface that breathes, 1 mm at 0.25 Hz", fill_breath},
     Set{"long", "ten minutes on the worst link", fill_long},
+    Set{"faults", "mc with a process killed, a clock that jumps or another epoch", fill_faults},
 };
 
 }  // namespace

@@ -1,17 +1,17 @@
 #include "lab/trial.h"
 
 #include <algorithm>
+#include <cmath>
+#include <deque>
 #include <memory>
 #include <optional>
 
 #include "common/core/denormals.h"
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
-#include "common/link/codec_protobuf.h"
-#include "common/link/packet_protection.h"
 #include "common/record/session_writer.h"
-#include "lab/adversary.h"
 #include "lab/phase_finder.h"
+#include "lab/site_process.h"
 #include "lab/state_digest.h"
 #include "lab/valve.h"
 #include "lab/world.h"
@@ -25,6 +25,7 @@ namespace {
 constexpr Duration kRunMax = std::chrono::hours{5};
 /// What happens after the script: the pedal goes up and the force fades.
 constexpr Duration kAfterScript = std::chrono::milliseconds{500};
+constexpr std::size_t kStepTicks = 10;
 constexpr double kAfterBlackout = 2;  // [s], still judged with it
 constexpr std::size_t kInFlightMax = 4096;
 constexpr std::size_t kContactQueue = 4096;
@@ -81,26 +82,6 @@ class DirectRecorder final : public record::Recorder {
 
 constexpr Duration kBlackout = std::chrono::seconds{2};
 
-std::unique_ptr<link::Codec> make_codec(bool bare) {
-  if (bare) return std::make_unique<link::RawCodec>();
-  return std::make_unique<link::ProtobufCodec>();
-}
-
-std::unique_ptr<link::Codec> patient_codec(const Scenario& scenario) {
-  auto codec = make_codec(scenario.bare);
-  if (!scenario.lying) return codec;
-  return std::make_unique<LyingCodec>(std::move(codec), scenario.seed, scenario.link.period);
-}
-
-/// A session as the handshake would have left it.
-link::Handover handover(std::unique_ptr<link::Transport> transport) {
-  return {.transport = std::move(transport),
-          .protection = std::make_unique<link::PlainProtection>(),
-          .send_connection = 1,
-          .receive_connection = 1,
-          .session_id = 1};
-}
-
 /// Follows the plant's true states.
 class Witness {
  public:
@@ -114,8 +95,12 @@ class Witness {
         relaxing_{scenario.phantom.relaxation} {}
 
   /// `at`: since the start of the run [s].
-  void look(const surgeon::SurgeonStatus& status, double at, Digest& digest) {
+  void look(const SurgeonProcess& site, double at, Digest& digest) {
+    const surgeon::SurgeonStatus& status = site.status();
+    const bool guarded = site.pressed();
     const surgeon::HandTruth hand = hand_.truth();
+    step_max_ = guarded ? std::max(step_max_, force_step(hand.force)) : step_max_;
+    if (!guarded) forces_.clear();
     const patient::PhantomTruth tissue = tissue_.truth();
     for (const double state : {hand.position,
                                hand.velocity,
@@ -135,7 +120,7 @@ class Witness {
     const double depth = hand.position - status.offset - tissue.surface;
     const double force_true = relaxing_.step(scenario_.phantom.at(status.lateral).force(depth),
                                              seconds(scenario_.link.period));
-    if (!hand.performing) return;
+    if (!hand.performing || !site.alive()) return;
 
     TrialTick tick;
     tick.at = at;
@@ -156,16 +141,65 @@ class Witness {
   }
   [[nodiscard]] const std::vector<TrialTick>& ticks() const { return ticks_; }
   [[nodiscard]] std::vector<TrialTick> take_ticks() { return std::move(ticks_); }
+  /// [N], in 10 ms, whatever the operator was doing.
+  [[nodiscard]] double force_step_max() const { return step_max_; }
 
  private:
+  /// Against 10 ms ago, or the oldest since the force became the site's own.
+  double force_step(double force) {
+    forces_.push_back(force);
+    if (forces_.size() > kStepTicks + 1) forces_.pop_front();
+    return std::abs(force - forces_.front());
+  }
+
   const Scenario& scenario_;
   const surgeon::SimulatedHand& hand_;
   const patient::SimulatedPhantom& tissue_;
   PhaseFinder phases_;
   patient::RelaxingForce relaxing_;
-  double work_min_{};  ///< [J]
-  double net_min_{};   ///< [J]
+  double work_min_{};          ///< [J]
+  double net_min_{};           ///< [J]
+  std::deque<double> forces_;  ///< [N], newest last
+  double step_max_{};          ///< [N]
   std::vector<TrialTick> ticks_;
+};
+
+/// Makes the one fault of a run happen, and ends it.
+class Mishap {
+ public:
+  Mishap(const Fault& fault, SurgeonProcess& surgeon, PatientProcess& patient)
+      : fault_{fault}, surgeon_{surgeon}, patient_{patient} {}
+
+  void step(TimePoint now, const surgeon::HandTruth& hand) {
+    if (fault_.kind == FaultKind::None) return;
+    if (!began_at_ && hand.performing && hand.script_time >= fault_.at_script_time) {
+      began_at_ = now;
+      begin(now);
+    } else if (began_at_ && !over_ && now - *began_at_ >= fault_.amount) {
+      over_ = true;
+      end(now);
+    }
+  }
+
+ private:
+  void begin(TimePoint now) {
+    if (fault_.kind == FaultKind::KillSurgeon) surgeon_.kill(now);
+    if (fault_.kind == FaultKind::KillPatient) patient_.kill(now);
+    if (fault_.kind == FaultKind::StepSurgeonClock) surgeon_.clock().ahead += fault_.amount;
+    if (fault_.kind == FaultKind::StepPatientClock) patient_.clock().ahead += fault_.amount;
+    if (fault_.kind == FaultKind::LiftPedal) surgeon_.hand().lift_pedal(true);
+  }
+  void end(TimePoint now) {
+    if (fault_.kind == FaultKind::KillSurgeon) surgeon_.start(now);
+    if (fault_.kind == FaultKind::KillPatient) patient_.start(now);
+    if (fault_.kind == FaultKind::LiftPedal) surgeon_.hand().lift_pedal(false);
+  }
+
+  Fault fault_;
+  SurgeonProcess& surgeon_;
+  PatientProcess& patient_;
+  std::optional<TimePoint> began_at_;
+  bool over_{};
 };
 
 void drop_all(SpscQueue<ContactSample>& queue) {
@@ -189,33 +223,30 @@ TrialResult run_trial(const Scenario& scenario, const TrialFiles& files) {
 
   // The path.
   netem::Pipe pipe{scenario.up, scenario.down, scenario.seed, kInFlightMax, start};
-  link::Link surgeon_link{scenario.link, make_codec(scenario.bare)};
-  link::Link patient_link{scenario.link, patient_codec(scenario)};
   bool shut = false;
-  (void)surgeon_link.adopt(handover(std::make_unique<Valve>(pipe.surgeon_end(), shut)), start);
-  (void)patient_link.adopt(handover(std::make_unique<Valve>(pipe.patient_end(), shut)), start);
 
   // The surgeon's site.
   surgeon::SimulatedHand hand{scenario.hand, scenario.script};
-  auto surgeon_law = coupling::make_surgeon_coupling(scenario.coupling).value();
   DirectRecorder surgeon_file{world, session_files.surgeon()};
   DigestRecorder surgeon_recorder{digest, &surgeon_file};
-  surgeon::SurgeonNode surgeon{scenario.surgeon,
-                               {hand, surgeon_law, surgeon_link, surgeon_recorder}};
+  SurgeonProcess surgeon{
+      scenario, hand, std::make_unique<Valve>(pipe.surgeon_end(), shut), surgeon_recorder};
 
   // The patient's site.
   patient::SimulatedPhantom tissue{scenario.phantom, seeded(scenario.tissue, scenario.seed)};
-  auto patient_law = coupling::make_patient_coupling(scenario.coupling).value();
   DirectRecorder patient_file{world, session_files.patient()};
   DigestRecorder patient_recorder{digest, &patient_file};
   SpscQueue<ContactSample> contact{kContactQueue};  // one thread is both writer and reader here
   Mailbox<DepthEstimate> depth;
-  patient::PatientNode patient{
-      scenario.patient,
-      {tissue, tissue, patient_law, patient_link, patient_recorder, contact, depth}};
+  PatientProcess patient{scenario,
+                         {tissue, patient_recorder, contact, depth},
+                         std::make_unique<Valve>(pipe.patient_end(), shut)};
   patient::EstimatorWorker estimator{scenario.estimator, {contact, depth, patient_recorder}};
+  surgeon.start(start);
+  patient.start(start);
 
   Witness witness{scenario, hand, tissue};
+  Mishap mishap{scenario.fault, surgeon, patient};
   std::optional<TimePoint> finished_at;
   std::optional<TimePoint> dark_from;
   const Duration period = scenario.link.period;
@@ -227,13 +258,13 @@ TrialResult run_trial(const Scenario& scenario, const TrialFiles& files) {
     } else {
       drop_all(contact);
     }
+    const surgeon::HandTruth truth = hand.truth();
     if (scenario.blackout_at_script_time > Duration{0}) {
-      if (!dark_from && hand.truth().script_time >= scenario.blackout_at_script_time) {
-        dark_from = now;
-      }
+      if (!dark_from && truth.script_time >= scenario.blackout_at_script_time) dark_from = now;
       shut = dark_from && now - *dark_from < kBlackout;
     }
-    witness.look(surgeon.status().get(), seconds(now - start), digest);
+    witness.look(surgeon, seconds(now - start), digest);
+    mishap.step(now, truth);
     if (hand.finished() && !finished_at) finished_at = now;
   });
 
@@ -254,10 +285,11 @@ TrialResult run_trial(const Scenario& scenario, const TrialFiles& files) {
     judging.blackout_to = judging.blackout_from + seconds(kBlackout) + kAfterBlackout;
   }
   result.metrics = judge(witness.ticks(), judging);
+  result.metrics.force_step_guarded = witness.force_step_max();
   result.ticks = witness.take_ticks();
   result.depths = patient_file.estimates();
-  result.surgeon_link = surgeon_link.health(world.now());
-  result.patient_link = patient_link.health(world.now());
+  result.surgeon_link = surgeon.health(world.now());
+  result.patient_link = patient.health(world.now());
   result.records = session_files.records();
   return result;
 }

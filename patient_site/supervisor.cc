@@ -60,7 +60,9 @@ PatientSupervisor::Arrow PatientSupervisor::decide(const SupervisorInput& in) co
   const Arrow lost = by_link(in);
   if (lost.reason != NoteCode::None) return lost;
   if (state_ == SiteState::Clutched) {
-    if (!engagement(in) || !in.free_to_follow) return {};
+    if (!engagement(in)) return {};
+    // Nobody could ever engage again over a tip that stands in the tissue: it is walked out.
+    if (!in.free_to_follow) return {SiteState::Retract, NoteCode::EngageRefusedForce};
     return {SiteState::Engaged, NoteCode::PeerEngaged};
   }
   // Engaged or Hold.

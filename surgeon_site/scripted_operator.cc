@@ -105,7 +105,6 @@ void ScriptedOperator::break_off() noexcept {
   // Back in Clutched with the link alive: the patient site did not follow, or let go.
   if (view_.state == SiteState::Clutched) return try_again();
   if (!config_.engage_again) return finish(ScriptOutcome::Interrupted);
-  pedal_held_ = false;
   begin(Doing::Pausing);
 }
 
@@ -161,6 +160,7 @@ void ScriptedOperator::step(Duration dt) noexcept {
       perform(dt);
       break;
     case Doing::Pausing:
+      if (doing_for_ >= config_.reaction) pedal_held_ = false;
       if (doing_for_ >= config_.pause) begin(Doing::Waiting);
       break;
     case Doing::Finished:

@@ -15,6 +15,7 @@ struct OperatorConfig {
   double aligned_within{5e-5};  ///< [m], mismatch the operator accepts: about what an eye sees
   Duration settling{std::chrono::milliseconds{300}};  ///< still, before the pedal goes down
   Duration patience{std::chrono::milliseconds{100}};  ///< pedal down without an engagement
+  Duration reaction{std::chrono::milliseconds{200}};  ///< from a session's end to the pedal up
   Duration pause{std::chrono::milliseconds{500}};     ///< between a refusal and the next try
   std::uint32_t attempts_max{20};                     ///< refusals in a row before giving up
   bool engage_again{true};                            ///< after the link was lost

@@ -11,6 +11,9 @@ namespace {
 
 using record::NoteCode;
 
+/// What a law may do in one tick is bounded by time; what the process slept through buys nothing.
+constexpr Duration kLawTickMax = std::chrono::milliseconds{10};
+
 ForceGateConfig within_device(ForceGateConfig gate, const HapticDevice& device) {
   gate.force_max = std::min(gate.force_max, device.force_max());
   gate.force_continuous = std::min(gate.force_continuous, device.force_continuous());
@@ -130,7 +133,8 @@ void SurgeonNode::tick(TimePoint now) noexcept {
   in.force_applied = now_.force;
   in.round_trip = now_.link.round_trip;
   if (decision.state == SiteState::Engaged && !decision.engaged_now) in.arrived = arrived.samples;
-  const coupling::SurgeonOutput out = coupling::step(parts_.law, in, dt);
+  const coupling::SurgeonOutput out =
+      coupling::step(parts_.law, in, std::min(dt, std::max(kLawTickMax, config_.period)));
 
   const bool cut = hand.faulted || hand.emergency_stop || commands_.get().emergency_stop;
   const ForceAnswer answer = gate_.pass({out.force, decision.state, hand.dead_man_held, cut}, dt);

@@ -86,12 +86,34 @@ TEST(PlanTest, EverySetCanBeMadeIntoScenarios) {
                            "inc",
                            "blackout",
                            "breath",
-                           "long"}) {
+                           "long",
+                           "faults"}) {
     const auto plan = make_set(name, {.count = 3});
     ASSERT_TRUE(plan) << name;
     EXPECT_TRUE(make_case(*plan, plan->cases.back())) << name;
   }
   EXPECT_FALSE(make_set("all", {}));
+}
+
+TEST(PlanTest, FaultsAreOfEveryKindEverywhereAndWithinTheScript) {
+  const auto plan = make_set("faults", {.count = 100, .seed = 8});
+  std::set<FaultKind> kinds;
+  std::set<std::string_view> places;
+  for (const Case& one : plan->cases) {
+    kinds.insert(one.fault.kind);
+    places.insert(one.fault_place);
+  }
+  EXPECT_EQ(kinds.size(), 5U);
+  EXPECT_EQ(places.size(), kFaultPlaces.size());
+  std::set<Duration> moments;
+  for (std::size_t i = 0; i < 20; ++i) {
+    const Scenario scenario = *make_case(*plan, plan->cases[i]);
+    EXPECT_EQ(scenario.fault.kind, plan->cases[i].fault.kind);
+    EXPECT_GT(scenario.fault.at_script_time, Duration{0});
+    EXPECT_LT(scenario.fault.at_script_time, scenario.script.length());
+    moments.insert(scenario.fault.at_script_time);
+  }
+  EXPECT_GE(moments.size(), kFaultPlaces.size());
 }
 
 TEST(PlanTest, ASweepIsAllCombinations) {

@@ -117,6 +117,62 @@ TEST(TrialTest, APatientSiteThatLiesGetsTheHandNoMoreThanTheTankHeldAtFirst) {
   }
 }
 
+/// The metro link, a fault in the middle of the first deep press, and 100 s at most.
+Scenario faulty(FaultKind kind, Duration amount) {
+  Scenario scenario = palp::lab::scenario("metro");
+  scenario.bare = true;
+  scenario.depths = false;
+  scenario.duration = std::chrono::seconds{100};
+  for (const surgeon::Stretch& stretch : scenario.script.stretches()) {
+    if (stretch.kind != surgeon::StretchKind::PressHold) continue;
+    scenario.fault = {kind, stretch.began_at + stretch.duration / 2, amount};
+  }
+  return scenario;
+}
+
+void expect_unharmed(const Scenario& scenario) {
+  constexpr double kSlack = 0.05e-3;  // [J], one tick of held force and half an encoder count
+  constexpr double kStepMax = 0.15;   // [N], of 10 ms: below a round trip of 20 ms
+  const TrialResult result = run_trial(scenario);
+  EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Completed);
+  EXPECT_FALSE(result.metrics.unstable) << result.metrics.unstable_reason;
+  EXPECT_LE(result.metrics.energy_operator, scenario.coupling.mmt.tank_start + kSlack);
+  EXPECT_LE(result.metrics.force_step_guarded, kStepMax);
+  EXPECT_LE(result.metrics.force_step_10ms, kStepMax);
+  EXPECT_LE(result.metrics.tap_error[1], 0.05) << "it was felt all the same";
+}
+
+TEST(TrialTest, AProcessThatIsKilledInAPressComesBackWithoutHarm) {
+  for (const Duration dead : {Duration{std::chrono::milliseconds{50}},
+                              Duration{std::chrono::seconds{1}},
+                              Duration{std::chrono::seconds{40}}}) {
+    SCOPED_TRACE(seconds(dead));
+    expect_unharmed(faulty(FaultKind::KillSurgeon, dead));
+    expect_unharmed(faulty(FaultKind::KillPatient, dead));
+  }
+}
+
+TEST(TrialTest, AClockThatJumpsInAPressDoesNoHarm) {
+  for (const int milliseconds : {-40'000, -1000, -50, 50, 1000, 40'000}) {
+    SCOPED_TRACE(milliseconds);
+    expect_unharmed(faulty(FaultKind::StepSurgeonClock, std::chrono::milliseconds{milliseconds}));
+    expect_unharmed(faulty(FaultKind::StepPatientClock, std::chrono::milliseconds{milliseconds}));
+  }
+}
+
+TEST(TrialTest, APedalLiftedInAPressEngagesAgain) {
+  expect_unharmed(faulty(FaultKind::LiftPedal, std::chrono::milliseconds{2}));
+  expect_unharmed(faulty(FaultKind::LiftPedal, std::chrono::seconds{1}));
+}
+
+TEST(TrialTest, AFaultIsAFault) {
+  // Else the tests above would look at runs without any.
+  const Scenario killed = faulty(FaultKind::KillPatient, std::chrono::seconds{1});
+  Scenario whole = killed;
+  whole.fault.at_script_time = whole.script.length();
+  EXPECT_GT(run_trial(killed).virtual_span, run_trial(whole).virtual_span);
+}
+
 TEST(TrialTest, TheSurfaceIsFoundWhereverItLies) {
   const TrialResult result = run_trial(scenario(
       "metro",

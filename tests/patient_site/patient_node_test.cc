@@ -291,7 +291,7 @@ TEST(PatientNodeTest, LeavesStoppedByALocalResetOnly) {
   EXPECT_EQ(world.status().state, SiteState::Parked);
 }
 
-TEST(PatientNodeTest, RefusesToEngageInTissue) {
+TEST(PatientNodeTest, RefusesToEngageInTissueAndWalksOut) {
   World world;
   world.engage();
   world.move(3e-3, milliseconds{800});
@@ -301,9 +301,16 @@ TEST(PatientNodeTest, RefusesToEngageInTissue) {
   world.say.site.state = SiteState::Engaged;
   world.say.site.epoch = 2;
   world.run(milliseconds{10});
-  EXPECT_EQ(world.status().state, SiteState::Clutched);
+  EXPECT_EQ(world.status().state, SiteState::Retract);
   EXPECT_EQ(world.status().epoch, 2U);
   EXPECT_EQ(world.status().refused, NoteCode::EngageRefusedForce);
+  world.say.site.state = SiteState::Clutched;
+  world.run(std::chrono::seconds{2});
+  EXPECT_EQ(world.status().state, SiteState::Clutched);
+  world.say.site.state = SiteState::Engaged;
+  world.say.site.epoch = 3;
+  world.run(milliseconds{10});
+  EXPECT_EQ(world.status().state, SiteState::Engaged);
 }
 
 TEST(PatientNodeTest, ALawThatGivesNoNumberMovesNothing) {

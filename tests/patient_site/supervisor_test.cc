@@ -106,8 +106,8 @@ std::vector<Arrow> arrows() {
       {"clutched_in_tissue",
        S::Clutched,
        changed(pressed(), [](auto& in) { in.free_to_follow = false; }),
-       S::Clutched,
-       NoteCode::None},
+       S::Retract,
+       NoteCode::EngageRefusedForce},
       {"clutched_hold", S::Clutched, with_link(LinkState::Hold), S::Clutched, NoteCode::None},
       {"clutched_lost", S::Clutched, with_link(LinkState::Lost), S::Retract, NoteCode::GapLost},
       {"clutched_down", S::Clutched, with_link(LinkState::Down), S::Retract, NoteCode::LinkDown},
@@ -214,19 +214,25 @@ TEST(PatientSupervisorTest, TakesTheSurgeonsEpochWhenItFollows) {
   EXPECT_FALSE(site.step(pressed(4)).engaged_now) << "one epoch engages once";
 }
 
-TEST(PatientSupervisorTest, StaysClutchedInTheNewEpochWhereTheTipStandsInTissue) {
+TEST(PatientSupervisorTest, WalksOutInTheNewEpochWhereTheTipStandsInTissue) {
   PatientSupervisor site = in_state(SiteState::Clutched);
   SupervisorInput in = pressed(4);
   in.free_to_follow = false;
   in.contact_force = 0.4;
   const SupervisorOutput refused = site.step(in);
-  EXPECT_EQ(refused.state, SiteState::Clutched);
+  EXPECT_EQ(refused.state, SiteState::Retract) << "or nobody could ever engage again";
+  EXPECT_EQ(refused.reason, NoteCode::EngageRefusedForce);
   EXPECT_EQ(refused.epoch, 4U);
   EXPECT_EQ(refused.refused, NoteCode::EngageRefusedForce);
   EXPECT_EQ(refused.detail, 0.4);
   in.free_to_follow = true;
-  EXPECT_EQ(site.step(in).state, SiteState::Clutched) << "the same press does not count later";
-  EXPECT_EQ(site.step(pressed(5)).state, SiteState::Engaged);
+  in.retracted = true;
+  EXPECT_EQ(site.step(in).state, SiteState::Parked);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(site.step(in).state, SiteState::Clutched) << "the same press does not count later";
+  }
+  in.peer.epoch = 5;
+  EXPECT_EQ(site.step(in).state, SiteState::Engaged);
 }
 
 TEST(PatientSupervisorTest, ASiteThatBecomesReadyWaitsForANewPress) {

@@ -147,6 +147,16 @@ TEST(ScriptedOperatorTest, ResumesTheInterruptedPhaseAfterEngagingAgain) {
   EXPECT_EQ(person.progress().outcome, ScriptOutcome::Completed);
 }
 
+TEST(ScriptedOperatorTest, TakesAPersonsTimeToLetGoOfThePedal) {
+  ScriptedOperator person{{}, short_script()};
+  FakeSession session{-10e-3};
+  run(person, session, 20s, [&] { return !person.performing(); });
+  session.state = SiteState::Retract;
+  const Duration reaction = run(person, session, 1s, [&] { return person.pedal_held(); });
+  EXPECT_GE(reaction, 200ms);
+  EXPECT_LE(reaction, 205ms);
+}
+
 TEST(ScriptedOperatorTest, StopsAfterALossWhenToldNotToEngageAgain) {
   OperatorConfig config;
   config.engage_again = false;

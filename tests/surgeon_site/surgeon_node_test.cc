@@ -337,6 +337,17 @@ TEST(SurgeonNodeTest, EachDepthIsRecordedOnce) {
   EXPECT_EQ(bench.status().depth.number, 2U);
 }
 
+TEST(SurgeonNodeTest, AForceFadesNoFasterBecauseTheProcessSlept) {
+  SimulatedHand hand{firm_hand(), short_script()};
+  Bench bench{hand};
+  bench.run(30s, [&] { return bench.status().force < 0.3; });
+  const double before = bench.status().force;
+  bench.now += 40s;  // longer than any session lives
+  bench.run(1ms);
+  EXPECT_NE(bench.status().state, SiteState::Engaged);
+  EXPECT_GT(bench.status().force, 0.9 * before);
+}
+
 TEST(SurgeonNodeTest, LateTickCountsThePeriodsMissed) {
   HeldDevice device;
   Bench bench{device};
