@@ -7,32 +7,14 @@
 #include <numbers>
 
 #include "common/core/check.h"
+#include "common/core/matrix3.h"
 
 namespace palp::fem {
 namespace {
 
 using Blocks = std::array<std::array<double, 9>, 9>;
-using Vector3 = std::array<double, 3>;
 
-std::array<std::array<double, 3>, 3> inverse(const std::array<std::array<double, 3>, 3>& m) {
-  std::array<std::array<double, 3>, 3> out{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const std::size_t a = (j + 1) % 3;
-      const std::size_t b = (j + 2) % 3;
-      const std::size_t c = (i + 1) % 3;
-      const std::size_t d = (i + 2) % 3;
-      out[i][j] = m[a][c] * m[b][d] - m[a][d] * m[b][c];
-    }
-  }
-  const double det = m[0][0] * out[0][0] + m[0][1] * out[1][0] + m[0][2] * out[2][0];
-  for (auto& row : out) {
-    for (double& value : row) value /= det;
-  }
-  return out;
-}
-
-Vector3 times(const std::array<std::array<double, 3>, 3>& m, const Vector3& v) {
+Vector3 times(const Matrix3& m, const Vector3& v) {
   Vector3 out{};
   for (std::size_t i = 0; i < 3; ++i) {
     out[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
@@ -125,7 +107,7 @@ const std::array<QuadraturePoint, 9>& quadrature() noexcept {
 
 ElementGeometry make_geometry(const Mesh& mesh, const Element& element) {
   ElementGeometry geometry;
-  std::array<std::array<double, 3>, 3> mass{};
+  Matrix3 mass{};
   for (std::size_t p = 0; p < 9; ++p) {
     const QuadraturePoint& at = quadrature()[p];
     const Shape shape = shape_at(at.xi, at.eta);
@@ -155,7 +137,7 @@ ElementGeometry make_geometry(const Mesh& mesh, const Element& element) {
       }
     }
   }
-  geometry.mass_inverse = inverse(mass);
+  geometry.mass_inverse = inverse(mass).matrix;
   return geometry;
 }
 

@@ -9,16 +9,10 @@
 #include <Eigen/SparseCholesky>
 
 #include "fem/element.h"
+#include "fem/gauss_rule.h"
 
 namespace palp::fem {
 namespace {
-
-/// Gauss-Legendre, five points: exact errors want more than the elements' own rule.
-constexpr std::array<std::array<double, 2>, 5> kRule{{{-0.9061798459386640, 0.2369268850561891},
-                                                      {-0.5384693101056831, 0.4786286704993665},
-                                                      {0, 0.5688888888888889},
-                                                      {0.5384693101056831, 0.4786286704993665},
-                                                      {0.9061798459386640, 0.2369268850561891}}};
 
 constexpr int kPassesMax = 30;        // of Newton's method
 constexpr double kTolerance = 1e-13;  // of the residual, relative to the largest reaction
@@ -94,7 +88,7 @@ void MappedBody::support(Side side, const VectorField& displacement) {
 void MappedBody::pull(Side side, const VectorField& traction) {
   const std::vector<int> nodes = nodes_of(side);
   for (std::size_t first = 0; first + 2 < nodes.size(); first += 2) {
-    for (const auto& [x, weight] : kRule) {
+    for (const auto& [x, weight] : kGaussFive) {
       const std::array<double, 3> value{0.5 * x * (x - 1), 1 - x * x, 0.5 * x * (x + 1)};
       const std::array<double, 3> slope{x - 0.5, -2 * x, x + 0.5};
       Node place;
@@ -119,8 +113,8 @@ void MappedBody::pull(Side side, const VectorField& traction) {
 
 void MappedBody::fill(const VectorField& body_force) {
   for (const Element& element : mesh_.elements) {
-    for (const auto& [xi, weight] : kRule) {
-      for (const auto& [eta, other_weight] : kRule) {
+    for (const auto& [xi, weight] : kGaussFive) {
+      for (const auto& [eta, other_weight] : kGaussFive) {
         const Sample at = sample(element, prescribed_, xi, eta);
         const Vector2 force = body_force(at.place);
         const double volume =
@@ -214,8 +208,8 @@ MappedBody::Error MappedBody::error_of(const Eigen::VectorXd& found,
   double all = 0;
   double all_slope = 0;
   for (const Element& element : mesh_.elements) {
-    for (const auto& [xi, weight] : kRule) {
-      for (const auto& [eta, other_weight] : kRule) {
+    for (const auto& [xi, weight] : kGaussFive) {
+      for (const auto& [eta, other_weight] : kGaussFive) {
         const Sample at = sample(element, found, xi, eta);
         const double volume = at.place.r * at.measure * weight * other_weight;
         const Vector2 wanted = exact(at.place);

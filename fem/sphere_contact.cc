@@ -4,16 +4,10 @@
 #include <cstddef>
 #include <numbers>
 
+#include "fem/gauss_rule.h"
+
 namespace palp::fem {
 namespace {
-
-/// Gauss-Legendre, five points: the contact's edge lies somewhere inside an element, and the force
-/// must not feel where.
-constexpr std::array<std::array<double, 2>, 5> kRule{{{-0.9061798459386640, 0.2369268850561891},
-                                                      {-0.5384693101056831, 0.4786286704993665},
-                                                      {0, 0.5688888888888889},
-                                                      {0.5384693101056831, 0.4786286704993665},
-                                                      {0.9061798459386640, 0.2369268850561891}}};
 
 // Of Young's modulus over the tip's radius: 15 MPa/mm on the paper's phantom. The mean pressure is
 // a third of E at most, so the overlap stays below 1e-4 radii.
@@ -30,7 +24,8 @@ SphereContact::SphereContact(const Mesh& mesh, const Specimen& specimen)
     if (r(0) > 1.1 * radius_) break;
     const int first = static_cast<int>(nodes_.size()) - (nodes_.empty() ? 0 : 1);
     nodes_.insert(nodes_.end(), edge.begin() + (nodes_.empty() ? 0 : 1), edge.end());
-    for (const auto& [t, weight] : kRule) {
+    // The contact's edge lies somewhere inside an element, and the force must not feel where.
+    for (const auto& [t, weight] : kGaussFive) {
       Point point;
       point.nodes = {first, first + 1, first + 2};
       point.shape = {0.5 * t * (t - 1), 1 - t * t, 0.5 * t * (t + 1)};
