@@ -41,12 +41,6 @@ double uniform_information(double low, double high, double value) {
   return 1 / (stddev * stddev);
 }
 
-struct Motion {
-  double indentation{};  ///< [m], behind the sensor's pole
-  double rate{};         ///< [m/s]
-  bool loading{};
-};
-
 /// The curves at the truth and round it.
 class Curves {
  public:
@@ -97,24 +91,83 @@ void add(Matrix& to, const Vector& x, double weight) {
   }
 }
 
-/// One tap, in the tissue.
-std::vector<Motion> motion_of(const TapPlan& plan) {
-  std::vector<Motion> out;
-  LowPass pole{plan.sensor_cut_off, plan.period};
-  pole.reset(-plan.clearance);
-  const double swing = (plan.indentation + plan.clearance) / 2;
-  double before = -plan.clearance;
-  for (double t = 0; t < plan.tap_time; t += plan.period) {
-    const double tip =
-        -plan.clearance + swing * (1 - std::cos(2 * std::numbers::pi * t / plan.tap_time));
-    const double at = pole.step(tip);
-    if (at > 0) out.push_back({at, (at - before) / plan.period, t < plan.tap_time / 2});
-    before = at;
+/// What the force is at one instant, and how it changes with the unknowns.
+struct Response {
+  double force{};        ///< [N]
+  double plain{};        ///< [N], were there no inclusion
+  Vector along{};        ///< of the force
+  Vector along_plain{};  ///< of the force without
+};
+
+Response respond(const Curves& curves,
+                 const estimator::StiffnessPrior& stiffness,
+                 const TipState& at) {
+  Response out{};
+  const double d = at.indentation;
+  if (!(d > 0)) return out;
+  const double rate = 1 + stiffness.rate_factor * at.rate;
+  const double scale = stiffness.scale;
+  const std::size_t surface = at.over ? 5 : 6;
+  const double without = curves.without(d);
+  out.plain = scale * rate * without;
+  out.along_plain[3] = rate * without;
+  out.along_plain[4] = scale * without * at.rate;
+  out.along_plain[surface] = -scale * rate * curves.slope_without(d);
+  if (!at.over) {
+    out.force = out.plain;
+    out.along = out.along_plain;
+    return out;
   }
+  const double with = curves.with(d);
+  out.force = scale * rate * with;
+  for (std::size_t i = 0; i < 3; ++i) out.along[i] = scale * rate * curves.along(i, d);
+  out.along[3] = rate * with;
+  out.along[4] = scale * with * at.rate;
+  out.along[surface] = -scale * rate * curves.slope_with(d);
   return out;
 }
 
+/// The transducer's pole, of everything.
+class Pole {
+ public:
+  explicit Pole(const ForceSensing& sensing)
+      : gain_{LowPass{sensing.cut_off, sensing.period}.gain()} {}
+  const Response& step(const Response& input) {
+    const auto follow = [&](double& value, double before, double now) {
+      value += gain_ * (0.5 * (before + now) - value);  // between samples it sees both
+    };
+    follow(value_.force, before_.force, input.force);
+    follow(value_.plain, before_.plain, input.plain);
+    for (std::size_t i = 0; i < kUnknowns; ++i) {
+      follow(value_.along[i], before_.along[i], input.along[i]);
+      follow(value_.along_plain[i], before_.along_plain[i], input.along_plain[i]);
+    }
+    before_ = input;
+    return value_;
+  }
+
+ private:
+  double gain_;
+  Response before_{};
+  Response value_{};
+};
+
 }  // namespace
+
+std::vector<TipState> motion_of(const TapPlan& plan) {
+  std::vector<TipState> out;
+  const double swing = (plan.indentation + plan.clearance) / 2;
+  const double omega = 2 * std::numbers::pi / plan.tap_time;
+  for (int tap = 0; tap < plan.reference_taps + plan.taps; ++tap) {
+    const bool last = tap == plan.reference_taps + plan.taps - 1;
+    for (double t = 0; t < (last ? 0.5 : 1) * plan.tap_time; t += plan.sensing.period) {
+      out.push_back({.indentation = -plan.clearance + swing * (1 - std::cos(omega * t)),
+                     .rate = swing * omega * std::sin(omega * t),
+                     .over = tap >= plan.reference_taps});
+    }
+  }
+  return out;
+}
 
 double sample_information(double force, double noise, double quantum) {
   if (!(quantum > 0)) return 1 / (noise * noise);
@@ -139,47 +192,35 @@ DepthBound depth_bound(const fem::DepthDatabase& database,
                        const fem::DepthDatabase::Query& truth,
                        const estimator::DepthPrior& prior,
                        const estimator::StiffnessPrior& stiffness,
-                       const TapPlan& plan) {
+                       const ForceSensing& sensing,
+                       std::span<const TipState> motion) {
   const Curves curves{database, truth};
-  const double scale = stiffness.scale;
   Matrix information{};
   Matrix plain_information{};
   Vector signal_right{};
   double signal_squares = 0;
-  for (const Motion& at : motion_of(plan)) {
-    const double d = at.indentation;
-    if (d > std::min(curves.deepest(), estimator::kDeepestPoint)) continue;
-    const double with = curves.with(d);
-    const double without = curves.without(d);
-    const double rate = 1 + stiffness.rate_factor * at.rate;
-    const auto weight = [&](int strokes, double force) {
-      return strokes * sample_information(force, plan.force_noise, plan.force_quantum);
-    };
-    // The answer is there at the last reversal: of that tap the way back is still to come.
-    const int strokes = at.loading ? plan.taps : plan.taps - 1;
-    const double weight_over = weight(strokes, scale * rate * with);
-    const double weight_beside = weight(plan.reference_taps, scale * rate * without);
-    Vector over{0, 0, 0, rate * with, scale * with * at.rate, -scale * rate * curves.slope_with(d)};
-    for (std::size_t i = 0; i < 3; ++i) over[i] = scale * rate * curves.along(i, d);
-    const double slope = -scale * rate * curves.slope_without(d);
-    const Vector beside{0, 0, 0, rate * without, scale * without * at.rate, 0, slope};
+  Pole pole{sensing};
+  for (const TipState& at : motion) {
+    const Response& sensed = pole.step(respond(curves, stiffness, at));
+    if (!(sensed.force > 0)) continue;
+    const double weight = sample_information(sensed.force, sensing.noise, sensing.quantum);
+    add(information, sensed.along, weight);
     // As if there were no inclusion: what stiffness, rate and surface cannot explain.
-    const Vector blank{0, 0, 0, rate * without, scale * without * at.rate, slope, 0};
-    add(information, over, weight_over);
-    add(information, beside, weight_beside);
-    add(plain_information, blank, weight_over);
-    add(plain_information, beside, weight_beside);
-    const double off = scale * rate * (with - without);
-    for (std::size_t i = 0; i < kUnknowns; ++i) signal_right[i] += weight_over * blank[i] * off;
-    signal_squares += weight_over * off * off;
+    add(plain_information, sensed.along_plain, weight);
+    const double off = sensed.force - sensed.plain;
+    for (std::size_t i = 0; i < kUnknowns; ++i) {
+      signal_right[i] += weight * sensed.along_plain[i] * off;
+    }
+    signal_squares += weight * off * off;
   }
+  constexpr double kSurface = 1 / (estimator::kSurfaceSpread * estimator::kSurfaceSpread);
   const Vector known{uniform_information(prior.depth_min, prior.depth_max, truth.depth),
                      uniform_information(prior.radius_min, prior.radius_max, truth.radius),
                      uniform_information(std::log(prior.ratio_min), std::log(prior.ratio_max), 1),
                      1 / (stiffness.scale_stddev * stiffness.scale_stddev),
                      1 / (stiffness.rate_factor_stddev * stiffness.rate_factor_stddev),
-                     1 / (estimator::kSurfaceSpread * estimator::kSurfaceSpread),
-                     1 / (estimator::kSurfaceSpread * estimator::kSurfaceSpread)};
+                     kSurface,
+                     kSurface};
   for (std::size_t i = 0; i < kUnknowns; ++i) {
     information[i][i] += known[i];
     plain_information[i][i] += known[i];

@@ -118,6 +118,16 @@ estimator::DepthPrior prior_of(const CasePlan& plan) {
           .ratio_max = 900};
 }
 
+/// What the tip did up to `until`, the reversal with which the last answer came.
+std::vector<TipState> motion_of(const TrialResult& result, TimePoint until) {
+  std::vector<TipState> out;
+  for (const TrialTick& tick : result.ticks) {
+    if (result.began_at + from_seconds(tick.at) > until) break;
+    out.push_back({tick.tip, tick.tip_velocity, tick.tip_lateral >= kStage});
+  }
+  return out;
+}
+
 Result<Scenario> scenario_of(const DepthStudy& study,
                              const CasePlan& plan,
                              const Truth& truth,
@@ -189,11 +199,13 @@ Result<DepthCase> run_case(const DepthStudy& study, std::uint32_t index) {
   out.wide = plan.wide;
   out.knowledge = plan.knowledge;
   out.scale = truth.scale;
+  TimePoint answered = TimePoint::max();
   for (const DepthEstimate& estimate : result.depths) {
     if (estimate.lateral < kStage) continue;
     ++out.strokes;
     if (estimate.verdict == DepthVerdict::Invalid) continue;
     out.verdict = estimate.verdict;  // the last one has heard all taps
+    answered = estimate.stroke_ended_at;
     out.estimate = estimate.depth;
     out.low = estimate.depth_low;
     out.high = estimate.depth_high;
@@ -207,16 +219,8 @@ Result<DepthCase> run_case(const DepthStudy& study, std::uint32_t index) {
   out.radius = truth.query.radius;
   out.ratio = truth.query.ratio;
   const estimator::StiffnessPrior stiffness{.scale = truth.scale};
-  const DepthBound bound =
-      depth_bound(*database,
-                  truth.query,
-                  prior_of(plan),
-                  stiffness,
-                  {.taps = study.taps,
-                   .reference_taps = study.reference_taps,
-                   .indentation = out.indentation > 0 ? out.indentation : truth.reach,
-                   .clearance = 3e-3,
-                   .tap_time = truth.tap_time});
+  const DepthBound bound = depth_bound(
+      *database, truth.query, prior_of(plan), stiffness, {}, motion_of(result, answered));
   out.bound = bound.depth_stddev;
   out.signal = bound.signal;
   return out;

@@ -36,6 +36,7 @@ struct TrialTick {
   double contact_force{};        ///< [N], F_c, largest since the last tick
   double tip{};                  ///< [m], x_s
   double tip_velocity{};         ///< [m/s], of the stage
+  double tip_lateral{};          ///< [m], of the stage
   double energy_operator{};      ///< [J], E_op: work of the hand on the device since the start
   double energy_operator_min{};  ///< [J], least E_op so far, at plant steps
   double energy_net_min{};       ///< [J], least (E_op - E_tissue) so far

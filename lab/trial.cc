@@ -134,6 +134,7 @@ class Witness {
     tick.contact_force = tissue.contact_force;
     tick.tip = tissue.position - tissue.surface;
     tick.tip_velocity = tissue.velocity;
+    tick.tip_lateral = tissue.lateral;
     tick.energy_operator = hand.work;
     tick.energy_operator_min = work_min_;
     tick.energy_net_min = net_min_;
@@ -277,6 +278,7 @@ TrialResult run_trial(const Scenario& scenario, const TrialFiles& files) {
 
   TrialResult result;
   result.digest = digest.value();
+  result.began_at = start;
   result.virtual_span = world.now() - start;
   result.outcome = hand.progress().outcome;
   MetricsConfig judging{.force_cap = scenario.hand.force_max, .period = seconds(period)};

@@ -15,6 +15,7 @@ namespace palp::lab {
 /// What came out of one run in virtual time.
 struct TrialResult {
   std::uint64_t digest{};  ///< over every state and output of both nodes at every tick
+  TimePoint began_at{};
   Duration virtual_span{};
   surgeon::ScriptOutcome outcome{};
   TrialMetrics metrics;

@@ -30,9 +30,10 @@ double smallest_seen(const fem::DepthDatabase& database,
                      const TapPlan& plan,
                      double depth,
                      double ratio) {
+  const std::vector<TipState> motion = motion_of(plan);
   const auto seen = [&](double radius) {
     const fem::DepthDatabase::Query query{.depth = depth, .radius = radius, .ratio = ratio};
-    return depth_bound(database, query, {}, {}, plan).signal >= kSeen;
+    return depth_bound(database, query, {}, {}, plan.sensing, motion).signal >= kSeen;
   };
   double low = database.grid().radii.front();
   double high = largest(database, depth, ratio);
@@ -101,7 +102,8 @@ Ending run_visible(const VisibilityFlags& flags) {
   if (!database) return {ExitCode::CannotOpen, "palp-lab: " + database.error().text};
   const TapPlan plan{.taps = static_cast<int>(flags.taps),
                      .reference_taps = static_cast<int>(flags.reference_taps),
-                     .indentation = flags.indentation_mm * kMillimetre};
+                     .indentation = flags.indentation_mm * kMillimetre,
+                     .sensing = {}};
   const Visibility all = visibility(*database, plan);
   if (!flags.report.empty()) {
     nlohmann::ordered_json out;

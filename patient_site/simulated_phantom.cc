@@ -102,6 +102,7 @@ void SimulatedPhantom::integrate_step() noexcept {
 PhantomTruth SimulatedPhantom::truth() const noexcept {
   return {.position = position_,
           .velocity = velocity_,
+          .lateral = lateral_,
           .surface = surface_,
           .contact_force = contact_force_,
           .noisy_force = noisy_force_,

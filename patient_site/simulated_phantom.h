@@ -30,6 +30,7 @@ struct SimulatedPhantomConfig {
 struct PhantomTruth {
   double position{};       ///< [m], tip
   double velocity{};       ///< [m/s]
+  double lateral{};        ///< [m]
   double surface{};        ///< [m], where the surface is now (breathing)
   double contact_force{};  ///< [N]
   double noisy_force{};    ///< [N], the transducer's last reading before its rounding

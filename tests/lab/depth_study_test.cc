@@ -31,7 +31,8 @@ TEST(DepthBoundTest, MoreTapsAndShallowerInclusionsAreKnownBetter) {
                        {.depth = depth, .radius = 15e-3, .ratio = 856},
                        prior,
                        {},
-                       {.taps = taps, .reference_taps = taps});
+                       {},
+                       motion_of({.taps = taps, .reference_taps = taps}));
   };
   EXPECT_LT(bound(10e-3, 8).depth_stddev, bound(10e-3, 4).depth_stddev);
   EXPECT_LT(bound(6e-3, 4).depth_stddev, bound(12e-3, 4).depth_stddev);
