@@ -6,6 +6,8 @@ namespace palp::estimator {
 namespace {
 
 constexpr double kSofter = 4;  // standard deviations from which another place is the reference
+constexpr std::size_t kTouchesFresh = 5;  // of a place, looked at anew with each answer
+constexpr std::size_t kPlacesMax = 32;
 
 }  // namespace
 
@@ -27,10 +29,15 @@ std::optional<DepthEstimate> BayesEstimator::add(const ContactSample& sample) {
 }
 
 void BayesEstimator::judge(DepthEstimate& estimate, const PaperEstimator::PlaceData& place) {
-  DepthModel::Input input{.points = place.points,
+  DepthModel::Input input{.touches = place.touches,
                           .surface = place.surface,
                           .noise = place.noise,
-                          .stiffness = config_.stiffness};
+                          .quantum = config_.strokes.force_quantum,
+                          .cut_off = config_.strokes.sensor_cut_off,
+                          .stiffness = config_.stiffness,
+                          .expected = {}};
+  Settled& settled = settled_at(place);
+  settle(place, input, settled);
   const bool here =
       reference_ && std::abs(reference_->lateral - place.lateral) <= config_.strokes.place_size;
   if (reference_ && !here) {
@@ -39,6 +46,7 @@ void BayesEstimator::judge(DepthEstimate& estimate, const PaperEstimator::PlaceD
         std::hypot(input.stiffness.scale_stddev, config_.reference_spread * input.stiffness.scale);
   }
   posterior_ = model_.update(input);
+  settled.best = posterior_.best;
   const StiffnessPrior& plain = posterior_.plain;
   if (!reference_ || here) {
     reference_ = Reference{place.lateral, plain};
@@ -57,6 +65,38 @@ void BayesEstimator::judge(DepthEstimate& estimate, const PaperEstimator::PlaceD
   estimate.depth_low = found ? posterior_.depth_low : posterior_.excluded;
   estimate.depth_high = found ? posterior_.depth_high : 0;
   estimate.fit_rms = posterior_.misfit;
+}
+
+BayesEstimator::Settled& BayesEstimator::settled_at(const PaperEstimator::PlaceData& place) {
+  for (Settled& one : settled_) {
+    if (one.lateral != place.lateral) continue;
+    if (one.generation != place.generation) {
+      one.generation = place.generation;
+      one.count = 0;
+      one.sums = TouchSums{place.surface};
+    }
+    return one;
+  }
+  if (settled_.size() == kPlacesMax) settled_.erase(settled_.begin());
+  return settled_.emplace_back(Settled{.lateral = place.lateral,
+                                       .generation = place.generation,
+                                       .sums = TouchSums{place.surface},
+                                       .best = {}});
+}
+
+/// All but the last touches: their surface is known, and they need not be looked at again.
+void BayesEstimator::settle(const PaperEstimator::PlaceData& place,
+                            DepthModel::Input& input,
+                            Settled& settled) {
+  if (place.touches.size() > settled.count + kTouchesFresh) {
+    const std::size_t more = place.touches.size() - kTouchesFresh - settled.count;
+    input.touches = place.touches.subspan(settled.count, more);
+    model_.settle(input, settled.best, settled.sums);
+    settled.count += more;
+  }
+  input.touches = place.touches.subspan(settled.count);
+  if (settled.count > 0) input.settled = &settled.sums;
+  if (place.touches.size() > 1) input.expected = settled.best;
 }
 
 }  // namespace palp::estimator

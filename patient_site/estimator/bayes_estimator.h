@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "patient_site/estimator/depth_posterior.h"
 #include "patient_site/estimator/paper_estimator.h"
@@ -36,7 +39,18 @@ class BayesEstimator {
   [[nodiscard]] const DepthPosterior& posterior() const noexcept { return posterior_; }
 
  private:
+  /// Touches of one place that were added up and need not be looked at again.
+  struct Settled {
+    double lateral{};  ///< [m]
+    std::uint64_t generation{};
+    std::size_t count{};
+    TouchSums sums{0};
+    TouchModel best;
+  };
+
   void judge(DepthEstimate& estimate, const PaperEstimator::PlaceData& place);
+  [[nodiscard]] Settled& settled_at(const PaperEstimator::PlaceData& place);
+  void settle(const PaperEstimator::PlaceData& place, DepthModel::Input& input, Settled& settled);
 
   struct Reference {
     double lateral{};  ///< [m]
@@ -47,6 +61,7 @@ class BayesEstimator {
   PaperEstimator strokes_;
   DepthModel model_;
   std::optional<Reference> reference_;
+  std::vector<Settled> settled_;  ///< the places touched last
   DepthPosterior posterior_;
 };
 

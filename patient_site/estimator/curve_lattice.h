@@ -27,7 +27,7 @@ using CurveTerms = std::array<double, kCurveTerms>;
 /// The curve of the block without inclusion.
 inline constexpr CurveTerms kPlainTerms{1};
 
-inline constexpr double kCurveReach = 4.4e-3;  ///< [m], to where the terms are fitted
+inline constexpr double kCurveReach = 4.6e-3;  ///< [m], to where the terms are fitted
 
 /// P_m at an indentation [m]: Chebyshev's polynomials over 0 to kCurveReach; P_0 = 1.
 [[nodiscard]] CurveTerms curve_polynomials(double indentation) noexcept;

@@ -1,13 +1,10 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
-#include <span>
-#include <vector>
 
-#include "fem/depth_database.h"
-#include "patient_site/estimator/contact_curve.h"
+#include "common/core/matrix3.h"
 #include "patient_site/estimator/curve_lattice.h"
+#include "patient_site/estimator/touch_sums.h"
 
 namespace palp::estimator {
 
@@ -17,52 +14,26 @@ struct StiffnessPrior {
   double scale_stddev{0.1};        ///< [-]
   double rate_factor{0.5};         ///< [s/m]
   double rate_factor_stddev{0.5};  ///< [s/m]
+  double correlation{0};           ///< [-], between the two
 };
 
 /// How far off the surface may be that a place's strokes were cut with.
 inline constexpr double kSurfaceSpread = 0.3e-3;  // [m]
-/// The points of a stroke count to here: what the filters did is known to there.
-inline constexpr double kDeepestPoint = 4.05e-3;  // [m]
 
-/// How a curve fits the points of one place. Stiffness, surface and rate factor, in which the force
-/// is linear, are integrated out.
+/// How a curve fits the samples of one place. Stiffness, surface and rate factor, in which the
+/// force is linear, are integrated out.
 struct CurveMatch {
-  double log_likelihood{};      ///< [-]
-  double misfit{};              ///< [-], sum of weighted squares
-  double scale{};               ///< [-]
-  double scale_stddev{};        ///< [-]
-  double rate_factor{};         ///< [s/m]
-  double rate_factor_stddev{};  ///< [s/m]
-  double shift{};               ///< [m], of the surface, into the tissue
+  double log_likelihood{};   ///< [-]
+  double misfit{};           ///< [-], sum of weighted squares
+  StiffnessPrior stiffness;  ///< as the samples leave it
+  double shift{};            ///< [m], of the surface, into the tissue
 };
 
-/// The force of the block without inclusion, tabulated, times the polynomials of CurveTerms.
-/// A value, immutable after construction.
-class CurveBasis {
- public:
-  explicit CurveBasis(const fem::DepthDatabase& database);
-  struct Row {
-    CurveTerms force{};  ///< [N]
-    CurveTerms slope{};  ///< [N/m]
-  };
-  [[nodiscard]] Row at(double indentation) const noexcept;  ///< [m]; zero in the air
-
- private:
-  std::vector<Row> rows_;
-};
-
-/// The points of one place seen from one surface, reduced to what every curve needs of them: a
-/// match then costs some hundred multiplications, however many points there are.
-/// A value. Thread: estimator.
+/// Compares curves with what was felt at one place. A value. Thread: estimator.
 class CurveMatcher {
  public:
-  struct Input {
-    std::span<const ContactPoint> points;
-    double surface{};  ///< [m], near it
-    double noise{};    ///< [N], rms of one sample
-    StiffnessPrior stiffness;
-  };
-  CurveMatcher(const CurveBasis& basis, const Input& input);
+  /// `surface`: where it is expected [m].
+  CurveMatcher(const TouchSums& sums, const StiffnessPrior& stiffness, double surface);
 
   [[nodiscard]] CurveMatch match(const CurveTerms& curve) const noexcept;
 
@@ -72,18 +43,16 @@ class CurveMatcher {
   [[nodiscard]] Information information(const CurveTerms& curve,
                                         const std::array<CurveTerms, 3>& along) const noexcept;
 
-  [[nodiscard]] double weights() const noexcept { return weights_; }  ///< [1/N^2], of all points
+  [[nodiscard]] double weights() const noexcept { return sums_.weights(); }  ///< [1/N^2]
 
  private:
-  using Form = std::array<CurveTerms, kCurveTerms>;
-  void add(const CurveBasis& basis, const ContactPoint& point, double indentation);
+  [[nodiscard]] Matrix3 normal_matrix(const CurveTerms& curve) const noexcept;
 
-  double noise_;  ///< [N]
-  StiffnessPrior stiffness_;
-  double weights_{};                            ///< [1/N^2]
-  double squares_{};                            ///< [-], of the measured force
-  std::array<std::array<Form, 3>, 3> forms_{};  ///< by unknown and unknown
-  std::array<CurveTerms, 3> right_{};
+  TouchSums sums_;
+  double scale_;         ///< [-]
+  Matrix3 known_{};      ///< of (e, e s, e v) beforehand: information
+  Vector3 right_{};      ///< and that times the mean
+  double known_square_;  ///< [-]
 };
 
 }  // namespace palp::estimator

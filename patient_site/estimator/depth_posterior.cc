@@ -22,11 +22,10 @@ constexpr std::size_t kMany = 60;       // cells, of which those narrower in the
 constexpr double kNarrow = 0.03;        // [-] need not be summed: the posterior is made of many
 constexpr double kNormalReach = 3.5;    // [-], standard deviations
 constexpr int kNormalParts = 7;
-constexpr std::size_t kDepths = 21;  // of one line, summed
-constexpr double kShift = 0.5;       // [-], of the posterior's width, within a cell
-constexpr double kAbove = 0.015;     // [-], of the posterior, less deep than the interval: the
-constexpr double kBelow = 0.035;     // end that is met first has the smaller share of the 5 %
-constexpr int kPasses = 2;           // from cells to the posterior's width and back
+constexpr std::size_t kDepths = 21;        // of one line, summed
+constexpr double kShift = 0.5;             // [-], of the posterior's width, within a cell
+constexpr double kTail = 0.025;            // [-], of the posterior, on each side of the interval
+constexpr int kPasses = 2;                 // from cells to the posterior's width and back
 constexpr std::size_t kShowingStride = 4;  // of the radii
 constexpr double kExcluded = 3;            // [-], log of 20
 
@@ -267,8 +266,9 @@ void DepthModel::integrate(const CurveMatcher& points,
 }
 
 /// Coarsely first; then cells within which the depth moves little against what is known of it.
-std::vector<DepthModel::Cell> DepthModel::cells_of(const CurveMatcher& points) const {
-  std::vector<Cell> cells = refine(points, first_cells(), std::numeric_limits<double>::infinity());
+std::vector<DepthModel::Cell> DepthModel::cells_of(const CurveMatcher& points,
+                                                   std::vector<Cell> cells) const {
+  cells = refine(points, std::move(cells), std::numeric_limits<double>::infinity());
   for (int pass = 0; pass < kPasses; ++pass) {
     std::vector<DepthMass> masses;
     for (const Cell& cell : cells) {
@@ -300,24 +300,61 @@ double DepthModel::log_prior_total() const {
   return std::log(total);
 }
 
+TouchSums DepthModel::sums(const Input& input,
+                           double surface,
+                           const std::optional<TouchModel>& expected) const {
+  const SensorSteps steps{input.noise, input.quantum};
+  TouchSums out{surface};
+  if (input.settled != nullptr) {
+    out = *input.settled;
+    out.move_to(surface);
+  }
+  for (const Touch& touch : input.touches) {
+    out.add(touch,
+            {.basis = basis_,
+             .steps = steps,
+             .cut_off = input.cut_off,
+             .noise = input.noise,
+             .expected = expected});
+  }
+  return out;
+}
+
+void DepthModel::settle(const Input& input, const TouchModel& expected, TouchSums& to) const {
+  to.move_to(expected.surface);
+  to.add(sums(input, expected.surface, expected));
+}
+
 DepthPosterior DepthModel::update(const Input& input) const {
   DepthPosterior posterior;
-  Input here = input;
-  CurveMatcher points{basis_, here};
+  posterior.best.surface = input.surface;
+  std::optional<TouchModel> expected = input.expected;
+  double surface = expected ? expected->surface : input.surface;
+  CurveMatcher points{sums(input, surface, expected), input.stiffness, input.surface};
   CurveMatch plain = points.match(kPlainTerms);
-  // The surface enters the model to first order: again from where the best curve puts it.
-  constexpr int kMoves = 2;
-  for (int move = 0; move < kMoves; ++move) {
+  // The surface enters the model to first order, and what the steps make of a force is computed
+  // with the force expected: again from what fitted best.
+  const int moves = input.expected ? 1 : 2;
+  std::vector<Cell> cells = first_cells();
+  for (int move = 0; move < moves; ++move) {
     CurveMatch best = plain;
-    for (Cell& cell : first_cells()) {
+    posterior.best.curve = kPlainTerms;
+    for (Cell& cell : cells) {
       look(points, cell);
-      if (cell.best.log_likelihood > best.log_likelihood) best = cell.best;
+      cell.looked = false;  // the next look begins where this one ended
+      if (cell.best.log_likelihood < best.log_likelihood) continue;
+      best = cell.best;
+      posterior.best.curve =
+          lattice_.at(cell.log_depth, cell.radius, effect_of(std::exp(cell.log_ratio)));
     }
-    here.surface += std::clamp(best.shift, -kSurfaceSpread, kSurfaceSpread);
-    points = CurveMatcher{basis_, here};
+    surface += std::clamp(best.shift, -kSurfaceSpread, kSurfaceSpread);
+    posterior.best.surface = surface;
+    posterior.best.scale = best.stiffness.scale;
+    posterior.best.rate_factor = best.stiffness.rate_factor;
+    points = CurveMatcher{sums(input, surface, posterior.best), input.stiffness, input.surface};
     plain = points.match(kPlainTerms);
   }
-  const std::vector<Cell> cells = cells_of(points);
+  cells = cells_of(points, std::move(cells));
   std::vector<DepthMass> masses;
   double most = -std::numeric_limits<double>::infinity();
   double least = plain.misfit;
@@ -329,16 +366,13 @@ DepthPosterior DepthModel::update(const Input& input) const {
   }
   posterior.misfit = points.weights() > 0 ? std::sqrt(std::max(0.0, least) / points.weights()) : 0;
   posterior.gain = 2 * (most - plain.log_likelihood);
-  posterior.plain = {.scale = plain.scale,
-                     .scale_stddev = plain.scale_stddev,
-                     .rate_factor = plain.rate_factor,
-                     .rate_factor_stddev = plain.rate_factor_stddev};
+  posterior.plain = plain.stiffness;
   const DepthDistribution depth{masses, prior_.depth_min, prior_.depth_max};
   posterior.log_evidence = depth.log_total() - log_prior_total() - plain.log_likelihood;
-  posterior.depth = depth.mean();
+  posterior.depth = depth.quantile(0.5);
   posterior.depth_stddev = depth.stddev();
-  posterior.depth_low = depth.quantile(kAbove);
-  posterior.depth_high = depth.quantile(1 - kBelow);
+  posterior.depth_low = depth.quantile(kTail);
+  posterior.depth_high = depth.quantile(1 - kTail);
   posterior.excluded = excluded(points, plain.log_likelihood);
   return posterior;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,20 +16,21 @@ namespace palp::estimator {
 inline constexpr double kShowingRadius = 5e-3;  // [m]
 inline constexpr double kShowingRatio = 10;
 
-/// What the points of one place say.
+/// What the strokes at one place say.
 struct DepthPosterior {
-  double depth{};         ///< [m], mean, given that there is an inclusion
+  double depth{};         ///< [m], median, given that there is an inclusion
   double depth_stddev{};  ///< [m]
-  double depth_low{};     ///< [m], 95 % interval
+  double depth_low{};     ///< [m], 95 % interval, 2.5 % on each side
   double depth_high{};    ///< [m]
   double log_evidence{};  ///< [-], of an inclusion over none
   double gain{};          ///< [-], twice the log-likelihood the best inclusion gains over none
-  double misfit{};        ///< [N], rms of the points, each weighted by its samples
+  double misfit{};        ///< [N], rms of the samples, weighted
   double excluded{};      ///< [m]: an inclusion of kShowingRadius or more above would have shown
-  StiffnessPrior plain;   ///< what the points say of the block if there is no inclusion
+  StiffnessPrior plain;   ///< what the samples say of the block if there is no inclusion
+  TouchModel best;        ///< what fits best, inclusion or not
 };
 
-/// Compares the binned strokes of one place with every curve of the database; for each curve the
+/// Compares the strokes of one place with every curve of the database; for each curve the
 /// stiffness, the surface and the rate factor are integrated out (CurveMatcher).
 ///
 /// The likelihood of a strong signal is a ridge through depth, radius and ratio that is far
@@ -41,8 +43,20 @@ class DepthModel {
  public:
   DepthModel(const fem::DepthDatabase& database, const DepthPrior& prior);
 
-  using Input = CurveMatcher::Input;
+  struct Input {
+    std::span<const Touch> touches;
+    double surface{};                    ///< [m], near it
+    double noise{};                      ///< [N], rms of one sample, the steps' share included
+    double quantum{};                    ///< [N], of the transducer; 0: no steps
+    double cut_off{};                    ///< [Hz], of its pole; 0: none
+    StiffnessPrior stiffness;            ///< before this place was touched
+    std::optional<TouchModel> expected;  ///< what the touches will show, if that is known
+    const TouchSums* settled{};          ///< earlier touches, nullptr: none
+  };
   [[nodiscard]] DepthPosterior update(const Input& input) const;
+
+  /// What the touches leave of themselves once the surface is known.
+  void settle(const Input& input, const TouchModel& expected, TouchSums& to) const;
 
  private:
   /// A range of radius and ratio, and the best depth at its middle.
@@ -67,13 +81,17 @@ class DepthModel {
   [[nodiscard]] std::vector<Cell> refine(const CurveMatcher& points,
                                          std::vector<Cell> cells,
                                          double shift_max) const;
-  [[nodiscard]] std::vector<Cell> cells_of(const CurveMatcher& points) const;
+  [[nodiscard]] std::vector<Cell> cells_of(const CurveMatcher& points,
+                                           std::vector<Cell> cells) const;
   void measure(const CurveMatcher& points, const CurveTerms& best, bool pinned, Cell& cell) const;
   [[nodiscard]] static double blur(const Cell& cell) noexcept;
   [[nodiscard]] static double share(const Cell& cell) noexcept;  ///< [m], if there is a range
   void spread(const Cell& cell, std::vector<DepthMass>& out) const;
   void integrate(const CurveMatcher& points, const Cell& cell, std::vector<DepthMass>& out) const;
   [[nodiscard]] double log_prior_total() const;
+  [[nodiscard]] TouchSums sums(const Input& input,
+                               double surface,
+                               const std::optional<TouchModel>& expected) const;
   [[nodiscard]] double excluded(const CurveMatcher& points, double plain) const;
 
   DepthPrior prior_;

@@ -8,6 +8,7 @@
 #include "common/core/check.h"
 #include "patient_site/estimator/cubic_fit.h"
 #include "patient_site/estimator/paper_hash.h"
+#include "patient_site/estimator/sensor_steps.h"
 
 namespace palp::estimator {
 namespace {
@@ -16,27 +17,10 @@ constexpr std::size_t kPlacesMax = 32;
 constexpr int kStrokesMax = 32;  // of one place; then the older ones are half forgotten
 constexpr int kPassesFirst = 4;  // a place's first law corrects itself from nothing
 constexpr int kPassesLater = 2;
-constexpr double kNoiseFloor = 1e-5;      // [N]
+constexpr double kNoiseFloor = 1e-5;    // [N]
+constexpr double kAirOfTouch = 0.6e-3;  // [m]: no model puts the surface farther out
+constexpr std::size_t kTouchSamplesMax = 2000;
 constexpr double kRateFactorWidth = 0.5;  // [s/m], what may be expected of silicone
-
-/// Mean of round(force + noise) to steps of `quantum`, minus force: the noise dithers the steps but
-/// does not quite remove them. Fourier series of the sawtooth, damped by the noise.
-double quantiser_bias(double force, double quantum, double noise) noexcept {
-  const double damping = std::exp(-2 * std::pow(std::numbers::pi * noise / quantum, 2));
-  const double phase = 2 * std::numbers::pi * force / quantum;
-  const double second = std::pow(damping, 4);
-  const double third = std::pow(damping, 9);
-  return quantum / std::numbers::pi *
-         (-damping * std::sin(phase) + second / 2 * std::sin(2 * phase) -
-          third / 3 * std::sin(3 * phase));
-}
-
-/// The noise before the steps were cut, or 0 where the data show no steps.
-double dither(double noise, double quantum) noexcept {
-  const double steps = quantum / std::sqrt(12.0);
-  if (quantum <= 0 || noise < steps / 2) return 0;
-  return std::max(0.2 * quantum, std::sqrt(std::max(0.0, noise * noise - steps * steps)));
-}
 
 /// rms of one sample's noise, from neighbouring samples; steep contact raises it a little.
 double neighbour_noise(std::span<const StrokeSample> samples) noexcept {
@@ -131,8 +115,8 @@ std::optional<PaperEstimator::PlaceData> PaperEstimator::place() const {
       .noise = place.contact_count > 0
                    ? std::max(kNoiseFloor, std::sqrt(place.contact_squares / place.contact_count))
                    : noise_,
-      .points = place.curve.points(),
-      .strokes = place.strokes};
+      .touches = place.touches,
+      .generation = place.generation};
 }
 
 StrokeSample PaperEstimator::filter(const ContactSample& sample) noexcept {
@@ -178,6 +162,8 @@ std::size_t PaperEstimator::find_place(double lateral, double first_contact) {
               .curve = ContactCurve{first_contact},
               .law = std::nullopt,
               .strokes = 0,
+              .touches = {},
+              .generation = ++generations_,
               .contact_squares = 0,
               .contact_count = 0,
               .used = uses_};
@@ -206,7 +192,10 @@ DepthEstimate PaperEstimator::estimate_stroke() {
     estimate.reason = reason;
     return estimate;
   };
-  if (cutter_.pressed_again()) return invalid(DepthReason::StrokeNotMonotone);
+  if (cutter_.pressed_again()) {
+    if (learning_) keep_touch(places_[*learning_]);
+    return invalid(DepthReason::StrokeNotMonotone);
+  }
   if (measured.saturated) return invalid(DepthReason::ForceSaturated);
   if (measured.noise > config_.noise_max) return invalid(DepthReason::TooNoisy);
   if (measured.in_contact < config_.samples_min) return invalid(DepthReason::StrokeTooFewSamples);
@@ -238,6 +227,8 @@ bool PaperEstimator::learn_loading(Place& place,
     place.first_contact = measured.first_contact;
     place.law.reset();
     place.strokes = 0;
+    place.touches.clear();
+    place.generation = ++generations_;
     place.contact_squares = place.contact_count = 0;
     law.reset();
     own = branch_curve(place, ContactCurve::Branch::Loading, law, noise_);
@@ -259,11 +250,14 @@ bool PaperEstimator::learn_loading(Place& place,
   }
   place.law = law;
   place.curve.add(own.curve);
+  place.touches.push_back(touch_of(place));
   place.contact_squares += own.contact_squares;
   place.contact_count += own.contact_count;
   if (++place.strokes == kStrokesMax) {
     place.curve.scale(0.5);
     place.strokes /= 2;
+    place.touches.erase(place.touches.begin(), place.touches.begin() + place.strokes);
+    place.generation = ++generations_;
   }
   describe(estimate, *law, own.curve, measured.position_max);
   return true;
@@ -290,6 +284,7 @@ void PaperEstimator::learn_unloading() {
   if (!learning_) return;
   Place& place = places_[*learning_];
   learning_.reset();
+  keep_touch(place);
   if (!place.law || cutter_.pressed_again()) return;
   place.curve.add(branch_curve(place, ContactCurve::Branch::Unloading, place.law, noise_).curve);
   const std::vector<ContactPoint> points = place.curve.points();
@@ -307,6 +302,31 @@ void PaperEstimator::learn_unloading() {
   }
 }
 
+/// The present stroke as far as it has come. One that is not monotone says nothing of h, but its
+/// samples say as much of the tissue as any.
+void PaperEstimator::keep_touch(Place& place) const {
+  if (place.law && !place.touches.empty()) place.touches.back() = touch_of(place);
+}
+
+/// From a little above the surface to where the force saturates, if it does; thinned if it is a
+/// long one.
+Touch PaperEstimator::touch_of(const Place& place) const {
+  const std::span<const StrokeSample> samples = cutter_.samples();
+  const double begin = place.law->surface - kAirOfTouch;
+  std::size_t first = 1;
+  while (first < samples.size() && samples[first].tip < begin) ++first;
+  const std::size_t stride = 1 + (samples.size() - first) / kTouchSamplesMax;
+  Touch out;
+  for (std::size_t i = first; i < samples.size(); i += stride) {
+    if (std::abs(samples[i].measured.force) >= config_.force_range) break;
+    const std::size_t before = i < first + stride ? i - 1 : i - stride;
+    out.push_back({.tip = samples[i].tip,
+                   .force = samples[i].measured.force,
+                   .span = seconds(samples[i].measured.at - samples[before].measured.at)});
+  }
+  return out;
+}
+
 PaperEstimator::Branch PaperEstimator::branch_curve(const Place& place,
                                                     ContactCurve::Branch branch,
                                                     const std::optional<ContactLaw>& law,
@@ -316,7 +336,7 @@ PaperEstimator::Branch PaperEstimator::branch_curve(const Place& place,
              .contact_squares = 0,
              .contact_count = 0};
   const std::span<const StrokeSample> samples = cutter_.samples();
-  const double dithered = dither(noise, config_.force_quantum);
+  const SensorSteps steps{noise, config_.force_quantum};
   double sensed = 0;    // [N], the law behind the transducer's pole
   double filtered = 0;  // [N], and behind the low pass
   double bias = 0;      // [N], of the steps, behind the low pass
@@ -337,13 +357,12 @@ PaperEstimator::Branch PaperEstimator::branch_curve(const Place& place,
       sensed += pole_gain_ * ((modelled + modelled_before) / 2 - sensed);
       modelled_before = modelled;
       filtered += filter_gain_ * (sensed - filtered);
-      const double steps =
-          dithered > 0 ? quantiser_bias(sensed, config_.force_quantum, dithered) : 0;
-      bias += filter_gain_ * (steps - bias);
+      const double offset = steps.at(sensed).offset;
+      bias += filter_gain_ * (offset - bias);
       correction = filtered -
                    law->force(sample.position - law->surface) * (1 + law->rate_factor * rate) +
                    bias;
-      const double rest = sample.measured.force - sensed - steps;
+      const double rest = sample.measured.force - sensed - offset;
       if (loading) squares += rest * rest;
       // In the air the steps hide most of the noise.
       if (loading && sensed > config_.force_quantum) {

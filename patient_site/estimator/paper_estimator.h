@@ -11,6 +11,7 @@
 #include "patient_site/estimator/contact_curve.h"
 #include "patient_site/estimator/stroke_cutter.h"
 #include "patient_site/estimator/surface.h"
+#include "patient_site/estimator/touch.h"
 
 namespace palp::estimator {
 
@@ -50,15 +51,15 @@ class PaperEstimator {
   /// @returns the estimate when a stroke's reversal was seen.
   [[nodiscard]] std::optional<DepthEstimate> add(const ContactSample& sample);
 
-  /// What is known of the place of the last estimate: its strokes, binned, with what the filters
-  /// did to them taken back. Static force; the rate's share is still in it.
+  /// What is known of the place of the last estimate, and its strokes as they were measured. The
+  /// last of them ends at its reversal, and grows until it is released.
   struct PlaceData {
-    double lateral{};                  ///< [m]
-    double surface{};                  ///< [m], as found
-    double rate_factor{};              ///< [s/m], as found
-    double noise{};                    ///< [N], of one sample
-    std::vector<ContactPoint> points;  ///< all strokes of this place
-    int strokes{};
+    double lateral{};                ///< [m]
+    double surface{};                ///< [m], as found
+    double rate_factor{};            ///< [s/m], as found
+    double noise{};                  ///< [N], of one sample
+    std::span<const Touch> touches;  ///< valid until the next add()
+    std::uint64_t generation{};      ///< another one: touches were forgotten
   };
   /// nullopt: the last estimate found no contact.
   [[nodiscard]] std::optional<PlaceData> place() const;
@@ -74,9 +75,11 @@ class PaperEstimator {
     ContactCurve curve;
     std::optional<ContactLaw> law;
     int strokes{};
-    double contact_squares{};  ///< [N^2], measured force minus law, in contact
-    double contact_count{};    ///< [-]
-    std::uint64_t used{};      ///< for replacing the one that was not used for longest
+    std::vector<Touch> touches;  ///< one a stroke
+    std::uint64_t generation{};  ///< of the touches
+    double contact_squares{};    ///< [N^2], measured force minus law, in contact
+    double contact_count{};      ///< [-]
+    std::uint64_t used{};        ///< for replacing the one that was not used for longest
   };
 
   struct Measured {
@@ -105,6 +108,8 @@ class PaperEstimator {
                                     ContactCurve::Branch branch,
                                     const std::optional<ContactLaw>& law,
                                     double noise) const;
+  [[nodiscard]] Touch touch_of(const Place& place) const;
+  void keep_touch(Place& place) const;
   [[nodiscard]] bool learn_loading(Place& place, const Measured& measured, DepthEstimate& estimate);
   void learn_unloading();
   void describe(DepthEstimate& estimate,
@@ -123,6 +128,7 @@ class PaperEstimator {
   std::optional<std::size_t> learning_;  ///< place whose unloading branch is still to come
   double noise_{};                       ///< [N], of one sample, of the last stroke
   std::uint64_t uses_{};
+  std::uint64_t generations_{};
   std::uint32_t number_{};
 };
 

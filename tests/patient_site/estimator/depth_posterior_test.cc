@@ -3,6 +3,8 @@
 #include "patient_site/estimator/depth_posterior.h"
 
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -48,21 +50,31 @@ TEST(CurveLatticeTest, GivesBackTheCurvesOfTheDatabase) {
   }
 }
 
+/// A slow stroke of 4 mm and back, without pole and steps.
+Touch press(const fem::DepthDatabase& database,
+            const fem::DepthDatabase::Curve& curve,
+            double surface,
+            double noise) {
+  Touch touch;
+  constexpr int kSamples = 1500;
+  for (int i = 0; i < kSamples; ++i) {
+    const double d = 4e-3 - 4.5e-3 * std::abs(1 - 2.0 * i / kSamples);
+    const double error = noise * random_normal(1, 1, static_cast<std::uint64_t>(i));
+    touch.push_back({.tip = surface + d, .force = database.force(curve, d) + error, .span = 1e-3});
+  }
+  return touch;
+}
+
 TEST(DepthModelTest, TheRangeOfSizesMakesTheIntervalWiderAndStillHoldsTheTruth) {
   const auto database = fem::default_database();
   ASSERT_TRUE(database);
   const auto curve = database->curve({.depth = 8e-3, .radius = 10e-3, .ratio = 100});
-  std::vector<ContactPoint> points;
   constexpr double kNoise = 0.02;  // [N]
-  constexpr double kCount = 40;
-  for (int i = -20; i < 80; ++i) {
-    const double d = i * 50e-6;
-    const double noise =
-        kNoise / std::sqrt(kCount) * random_normal(1, 1, static_cast<std::uint64_t>(i + 20));
-    points.push_back({d, database->force(curve, d) + noise, 0, kCount});
-  }
-  const CurveMatcher::Input input{
-      .points = points, .surface = 0, .noise = kNoise, .stiffness = {.scale_stddev = 0.003}};
+  const Touch touch = press(*database, curve, 0, kNoise);
+  const DepthModel::Input input{.touches = std::span{&touch, 1},
+                                .noise = kNoise,
+                                .stiffness = {.scale_stddev = 0.003, .rate_factor = 0},
+                                .expected = {}};
   const DepthPosterior known =
       DepthModel{*database,
                  {.radius_min = 10e-3, .radius_max = 10e-3, .ratio_min = 100, .ratio_max = 100}}
@@ -73,6 +85,50 @@ TEST(DepthModelTest, TheRangeOfSizesMakesTheIntervalWiderAndStillHoldsTheTruth) 
   EXPECT_LT(range.depth_low, 8e-3);
   EXPECT_GT(range.depth_high, 8e-3);
   EXPECT_GT(range.log_evidence, 5);
+}
+
+TEST(DepthModelTest, TheSurfaceIsFoundFromAWrongGuess) {
+  const auto database = fem::default_database();
+  ASSERT_TRUE(database);
+  const auto curve = database->curve({.depth = 8e-3, .radius = 10e-3, .ratio = 100});
+  const Touch touch = press(*database, curve, 1.7e-3, 1e-4);
+  const DepthModel model{
+      *database, {.radius_min = 10e-3, .radius_max = 10e-3, .ratio_min = 100, .ratio_max = 100}};
+  for (const double off : {-0.1e-3, 0.1e-3}) {
+    const DepthPosterior posterior =
+        model.update({.touches = std::span{&touch, 1},
+                      .surface = 1.7e-3 + off,
+                      .noise = 1e-4,
+                      .stiffness = {.scale_stddev = 0.1, .rate_factor = 0},
+                      .expected = {}});
+    EXPECT_NEAR(posterior.best.surface, 1.7e-3, 5e-6) << off;
+    EXPECT_NEAR(posterior.depth, 8e-3, 0.05e-3) << off;
+  }
+}
+
+/// What was settled and what is looked at anew say together what all say at once.
+TEST(DepthModelTest, SettledTouchesCountLikeOthers) {
+  const auto database = fem::default_database();
+  ASSERT_TRUE(database);
+  const auto curve = database->curve({.depth = 8e-3, .radius = 10e-3, .ratio = 100});
+  constexpr double kNoise = 0.02;  // [N]
+  const std::vector<Touch> touches(3, press(*database, curve, 0, kNoise));
+  const DepthModel model{*database, {}};
+  DepthModel::Input input{
+      .touches = touches, .noise = kNoise, .stiffness = {.rate_factor = 0}, .expected = {}};
+  const DepthPosterior all = model.update(input);
+  DepthModel::Input early = input;
+  early.touches = input.touches.first(2);
+  TouchSums settled{0};
+  TouchModel near = all.best;
+  near.surface += 20e-6;
+  model.settle(early, near, settled);
+  input.touches = input.touches.last(1);
+  input.settled = &settled;
+  const DepthPosterior parts = model.update(input);
+  EXPECT_NEAR(parts.depth, all.depth, 0.05 * all.depth_stddev);
+  EXPECT_NEAR(parts.depth_stddev, all.depth_stddev, 0.02 * all.depth_stddev);
+  EXPECT_NEAR(parts.best.surface, all.best.surface, 3e-6);
 }
 
 }  // namespace
