@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace palp::netem {
 namespace {
 
-/// Slots that are walked through one by one in a gap; then the grid is entered afresh.
-constexpr int kSlotsPerGapMax = 256;
 constexpr std::uint8_t kEcnMask = 3;  ///< RFC 3168: 0: cannot be marked, 3: is marked
 
 /// 0 .. count - 1, evenly.
@@ -49,8 +46,7 @@ ExactFates::ExactFates(const PreparedLaw& law, const Streams& streams, TimePoint
       delay_stream_{streams.of(Stage::Delay)},
       stay_loss_stream_{streams.of(Stage::StayLoss)},
       gemodel_loss_stream_{streams.of(Stage::GemodelLoss)},
-      slot_stream_{streams.of(Stage::Slot)},
-      slot_at_{start} {
+      slots_{streams.of(Stage::Slot), start} {
   change(law);
 }
 
@@ -66,7 +62,7 @@ void ExactFates::change(const PreparedLaw& law) noexcept {
   reorder_.change(impairment.reorder.chance);
   swap_.change(impairment.swap);
   bottleneck_.change(impairment);
-  trace_at_ = 0;
+  trace_.rewind();
   calm_until_ = TimePoint::min();
   mean_ = law.curve.mean();
   jitter_ = law.curve.jitter();
@@ -77,14 +73,7 @@ void ExactFates::change(const PreparedLaw& law) noexcept {
   fresh_ = std::sqrt(1 - carry_ * carry_);
   carry_gap_ = Duration{-1};
   ahead_end_ = 0;
-  const SlotLaw& slot = impairment.slot;
-  constexpr auto kEndless = std::numeric_limits<std::uint64_t>::max();
-  slotted_ = slot.max > Duration{};
-  slot_min_ = static_cast<double>(slot.min.count());
-  slot_width_ = static_cast<double>((slot.max - slot.min).count());
-  slot_counts_ = slot.packets > 0 || slot.bytes > 0;
-  slot_packets_max_ = slot.packets > 0 ? slot.packets : kEndless;
-  slot_bytes_max_ = slot.bytes > 0 ? slot.bytes : kEndless;
+  slots_.change(law);
 }
 
 void ExactFates::choose_draw(bool random) noexcept {
@@ -123,11 +112,12 @@ void ExactFates::lean(const Impairment& towards, double share) noexcept {
 
 std::span<const CopyFate> ExactFates::next(const Arrival& arrival) noexcept {
   const TimePoint at = first_ ? arrival.at : std::max(arrival.at, last_at_);
-  if (!law_->impairment.replay.rows.empty()) return replay(arrival);
   if (draw_ == Draw::Correlated) correlate(first_ ? Duration{} : at - last_at_);
   last_at_ = at;
   std::size_t count = 1;
-  if (index_ < quiet_end_ && at < calm_until_) {
+  if (!law_->impairment.replay.rows.empty()) {
+    count = recording_.fates(law_->impairment.replay, index_, at, arrival, copies_);
+  } else if (index_ < quiet_end_ && at < calm_until_) {
     copies_[0] = untouched(arrival);
     go_on(copies_[0], 0, std::max(at, arrival.held_until), arrival.room > 0);
   } else {
@@ -344,7 +334,7 @@ inline void ExactFates::correlate(Duration gap) noexcept {
   } else if (order == Order::Swap && !fate.immediate) {
     release = swap_order(release, copy == 0 && chances_.swaps);
   }
-  if (slotted_) release = fit_slot(release, fate.length + kFrameHeaders);
+  if (slots_.on()) release = slots_.fit(release, fate.length + kFrameHeaders);
   fate.release = release;
 }
 
@@ -375,35 +365,10 @@ inline double ExactFates::correlated(double normal, std::size_t copy) noexcept {
   return z;
 }
 
-/// The arrival time, sent + delay, is interpolated, not the delay: so a stall keeps its shape, hold
-/// and then a bunch, and order is kept.
 Duration ExactFates::traced_delay(TimePoint onward, std::size_t copy) noexcept {
-  const auto& points = law_->impairment.trace.points;
-  const Duration since = onward - start_ - points.front().sent;
-  const Duration step = points.back().sent - points[points.size() - 2].sent;
-  const Duration turn = points.back().sent - points.front().sent + step;
-  Duration inside = since;
-  if (law_->impairment.trace.loop && since > Duration{}) inside = since % turn;
-  inside += points.front().sent;
-  if (trace_at_ >= points.size() || points[trace_at_].sent > inside) trace_at_ = 0;
-  const auto after = std::upper_bound(
-      points.begin() + static_cast<std::ptrdiff_t>(trace_at_),
-      points.end(),
-      inside,
-      [](Duration time, const DelayTrace::Point& point) { return time < point.sent; });
-  Duration delay = points.front().delay;
-  if (after != points.begin()) {
-    const DelayTrace::Point& left = *(after - 1);
-    trace_at_ = static_cast<std::size_t>(after - points.begin()) - 1;
-    delay = left.delay;
-    if (after != points.end() && inside > left.sent) {
-      const double part = seconds(inside - left.sent) / seconds(after->sent - left.sent);
-      const Duration arrives = after->sent + after->delay - left.sent - left.delay;
-      delay =
-          left.delay + rounded(part * static_cast<double>(arrives.count())) - (inside - left.sent);
-    }
-  }
-  if (law_->impairment.trace.dither) {
+  const DelayTrace& trace = law_->impairment.trace;
+  Duration delay = trace_.delay(trace, onward - start_);
+  if (trace.dither) {
     delay += rounded((streams_.of(Stage::Dither, copy).uniform(index_) - 0.5) * 1e6 + 1e9) -
              Duration{1'000'000'000};
   }
@@ -419,65 +384,6 @@ TimePoint ExactFates::swap_order(TimePoint release, bool swaps) noexcept {
   last_release_ = std::max(release, last_release_);
   releases_[released_++ % kSwapDepthMax] = last_release_;
   return last_release_;
-}
-
-/// The slot that has room for it. Slots lie on a grid of their own, drawn by their number; nothing
-/// overtakes.
-inline TimePoint ExactFates::fit_slot(TimePoint release, std::uint64_t length) noexcept {
-  const auto full = [&] {
-    return slot_counts_ && (slot_packets_ >= slot_packets_max_ ||
-                            (slot_bytes_ > 0 && slot_bytes_ + length > slot_bytes_max_));
-  };
-  for (int walked = 0; slot_at_ < release || full(); ++walked) {
-    next_slot(walked < kSlotsPerGapMax ? slot_at_ : std::max(slot_at_, release));
-  }
-  if (slot_counts_) {
-    ++slot_packets_;
-    slot_bytes_ += length;
-  }
-  return slot_at_;
-}
-
-inline void ExactFates::next_slot(TimePoint from) noexcept {
-  const double draw = random_middle(slot_stream_.bits(slot_number_++));
-  double span = slot_min_ + draw * slot_width_;
-  if (law_->impairment.slot.spacing) {
-    span += law_->slot_curve.jitter() * law_->slot_curve.at_share(draw);
-  }
-  slot_at_ = from + rounded(std::max(span, 1.0));
-  slot_packets_ = 0;
-  slot_bytes_ = 0;
-}
-
-std::span<const CopyFate> ExactFates::replay(const Arrival& arrival) noexcept {
-  const TimePoint at = first_ ? arrival.at : std::max(arrival.at, last_at_);
-  const auto& rows = law_->impairment.replay.rows;
-  first_ = false;
-  last_at_ = at;
-  while (replay_at_ < rows.size() && rows[replay_at_].index < index_) ++replay_at_;
-  std::size_t count = 0;
-  std::size_t room = arrival.room;
-  for (; replay_at_ < rows.size() && rows[replay_at_].index == index_ && count < kCopiesMax;
-       ++replay_at_, ++count) {
-    const Recording::Row& row = rows[replay_at_];
-    copies_[count] = {.verdict = static_cast<Verdict>(row.verdict),
-                      .tos = arrival.tos,
-                      .flipped_bit = row.flipped_bit,
-                      .length = static_cast<std::uint32_t>(arrival.length),
-                      .delay = row.delay,
-                      .release = at + row.delay};
-    if (copies_[count].verdict != Verdict::Delivered) continue;
-    if (room == 0) copies_[count].verdict = Verdict::OverLimit;
-    if (room > 0) --room;
-  }
-  if (count == 0) {  // beyond the recording a perfect link
-    copies_[count++] = {.verdict = room > 0 ? Verdict::Delivered : Verdict::OverLimit,
-                        .tos = arrival.tos,
-                        .length = static_cast<std::uint32_t>(arrival.length),
-                        .release = at};
-  }
-  ++index_;
-  return std::span{copies_}.first(count);
 }
 
 }  // namespace palp::netem

@@ -13,6 +13,9 @@
 #include "netem/impairment.h"
 #include "netem/loss_laws.h"
 #include "netem/prepared_law.h"
+#include "netem/recording_reader.h"
+#include "netem/slot_grid.h"
+#include "netem/trace_reader.h"
 
 namespace palp::netem {
 
@@ -84,9 +87,6 @@ class ExactFates {
   void correlate(Duration gap) noexcept;
   void leave(CopyFate& fate, std::size_t copy, TimePoint onward) noexcept;
   [[nodiscard]] TimePoint swap_order(TimePoint release, bool swaps) noexcept;
-  [[nodiscard]] TimePoint fit_slot(TimePoint release, std::uint64_t length) noexcept;
-  void next_slot(TimePoint from) noexcept;
-  std::span<const CopyFate> replay(const Arrival& arrival) noexcept;
 
   const PreparedLaw* law_;
   Streams streams_;
@@ -120,35 +120,24 @@ class ExactFates {
   RandomStream delay_stream_;
   RandomStream stay_loss_stream_;
   RandomStream gemodel_loss_stream_;
-  RandomStream slot_stream_;
+  SlotGrid slots_;
   TimePoint calm_until_{TimePoint::min()};  ///< until then common_fate() has nothing to say
   Draw draw_{Draw::Mean};
   static constexpr std::size_t kAhead = 32;
-  std::array<double, kAhead> ahead_{};  ///< draw() of the next datagrams, by index, a ring ...
+  std::array<double, kAhead> ahead_{};  ///< [-], draw() of the next datagrams, a ring ...
   std::uint64_t ahead_end_{};           ///< ... below this index
   double carry_{};                      ///< [1], a of z_n = a z_(n-1) + sqrt(1 - a^2) e_n
   double fresh_{1};                     ///< [1], sqrt(1 - a^2)
   Duration carry_gap_{-1};              ///< the gap that carry_ belongs to
   double z_before_{};                   ///< [1], z_(n-1)
   double z_{};                          ///< [1], z_n, once drawn
-  std::size_t trace_at_{};              ///< the segment of the trace looked up last
-  std::size_t replay_at_{};
+  TraceReader trace_;
+  RecordingReader recording_;
   std::uint32_t since_reorder_{};
 
   TimePoint last_release_{};
   std::array<TimePoint, kSwapDepthMax> releases_{};  ///< of the last ones, a ring
   std::uint64_t released_{};
-
-  bool slotted_{};
-  double slot_min_{};    ///< [ns], from one slot to the next
-  double slot_width_{};  ///< [ns], from the least to the most of it
-  bool slot_counts_{};   ///< a slot has not room for all
-  std::uint64_t slot_packets_max_{};
-  std::uint64_t slot_bytes_max_{};  ///< [bytes]
-  std::uint64_t slot_number_{};
-  TimePoint slot_at_;
-  std::uint64_t slot_packets_{};
-  std::uint64_t slot_bytes_{};  ///< [bytes]
 };
 
 }  // namespace palp::netem

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "common/core/time.h"
+#include "netem/fate_types.h"
+#include "netem/impairment.h"
+
+namespace palp::netem {
+
+/// Gives each datagram the fate that a recording had for its number. Thread: its owner's, fit for
+/// rt.
+class RecordingReader {
+ public:
+  /// The fates of datagram `index`, which comes at `at`, and its copies; beyond the recording those
+  /// of a perfect link. Numbers rise. @returns how many were put in front of `into`.
+  [[nodiscard]] std::size_t fates(const Recording& recording,
+                                  std::uint64_t index,
+                                  TimePoint at,
+                                  const Arrival& arrival,
+                                  std::span<CopyFate> into) noexcept;
+
+ private:
+  std::size_t at_{};  ///< the next row
+};
+
+}  // namespace palp::netem

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "common/core/random.h"
+#include "common/core/time.h"
+#include "netem/prepared_law.h"
+
+namespace palp::netem {
+
+/// The instants at which datagrams may leave: a grid of its own, each step drawn by its number.
+/// Thread: its owner's, fit for rt.
+class SlotGrid {
+ public:
+  SlotGrid(RandomStream stream, TimePoint start) noexcept : stream_{stream}, at_{start} {}
+
+  void change(const PreparedLaw& law) noexcept {
+    const SlotLaw& slot = law.impairment.slot;
+    curve_ = slot.spacing ? &law.slot_curve : nullptr;
+    on_ = slot.max > Duration{};
+    least_ = static_cast<double>(slot.min.count());
+    width_ = static_cast<double>((slot.max - slot.min).count());
+    counts_ = slot.packets > 0 || slot.bytes > 0;
+    packets_max_ = slot.packets > 0 ? slot.packets : kEndless;
+    bytes_max_ = slot.bytes > 0 ? slot.bytes : kEndless;
+  }
+  [[nodiscard]] bool on() const noexcept { return on_; }
+
+  /// The slot that has room for a frame of `length` bytes that could leave at `release`; never one
+  /// before the last one's.
+  [[nodiscard]] TimePoint fit(TimePoint release, std::uint64_t length) noexcept {
+    const auto full = [&] {
+      return counts_ && (packets_ >= packets_max_ || (bytes_ > 0 && bytes_ + length > bytes_max_));
+    };
+    for (int walked = 0; at_ < release || full(); ++walked) {
+      step(walked < kStepsPerGapMax ? at_ : std::max(at_, release));
+    }
+    if (counts_) {
+      ++packets_;
+      bytes_ += length;
+    }
+    return at_;
+  }
+
+ private:
+  static constexpr auto kEndless = std::numeric_limits<std::uint64_t>::max();
+  /// Slots that are walked through one by one in a gap; then the grid is entered afresh.
+  static constexpr int kStepsPerGapMax = 256;
+
+  void step(TimePoint from) noexcept {
+    const double draw = random_middle(stream_.bits(number_++));
+    double span = least_ + draw * width_;
+    if (curve_ != nullptr) span += curve_->jitter() * curve_->at_share(draw);
+    at_ = from + Duration{static_cast<std::int64_t>(std::max(span, 1.0) + 0.5)};
+    packets_ = 0;
+    bytes_ = 0;
+  }
+
+  RandomStream stream_;
+  const DelayCurve* curve_{};  ///< of the steps, on top of the least; null: even
+  bool on_{};
+  bool counts_{};   ///< a slot has not room for all
+  double least_{};  ///< [ns], from one slot to the next
+  double width_{};  ///< [ns], from the least to the most of it
+  std::uint64_t packets_max_{};
+  std::uint64_t bytes_max_{};  ///< [bytes]
+  std::uint64_t number_{};
+  TimePoint at_;
+  std::uint64_t packets_{};
+  std::uint64_t bytes_{};  ///< [bytes]
+};
+
+}  // namespace palp::netem
