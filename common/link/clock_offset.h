@@ -24,14 +24,17 @@ struct ClockOffset {
 };
 
 /// Offset and skew of the peer's clock from the four times of each exchange. Queues only lengthen a
-/// way, so the least of each second in each direction is nearly free of them; over the last 16 s a
+/// way, so the least of each second in each direction is nearly free of them; over the last 32 s a
 /// straight line is laid through those of each direction, rising in one as it falls in the other.
 /// Seconds above the lines, whose least was queued as well, count for less (minima and lines as in
 /// Paxson, "On calibrating measurements of packet transit times", 1998).
-/// A value. Thread: its Link's.
+/// Where a way's least is hardly ever reached, as where its jitter has no edge, the middle of all
+/// ways of a second scatters less: lines through those are laid as well, and what both say counts
+/// by how well it is known. Of the middles this includes by how much more one direction is spread
+/// than the other, because that is what they would be wrong by. A value. Thread: its Link's.
 class ClockOffsetEstimator {
  public:
-  static constexpr std::int64_t kSeconds = 16;
+  static constexpr std::int64_t kSeconds = 32;
 
   /// One exchange. `there`: arrival at the peer, on its clock, less our send, on ours; `here`: our
   /// arrival less the peer's send. Both contain the offset, with opposite signs.
@@ -45,19 +48,34 @@ class ClockOffsetEstimator {
   [[nodiscard]] Duration way_here() const noexcept;
 
  private:
-  struct Least {
+  struct Way {
     double value{};  ///< [s]
     double at{};     ///< [s]
   };
-  struct Bin {
-    std::int64_t second{};
-    bool used{};
-    Least there{};
-    Least here{};
+  /// Of both directions.
+  struct Ways {
+    Way there{};
+    Way here{};
   };
+  struct Second {
+    std::int64_t number{};
+    bool used{};
+    Ways least{};
+    Ways middle{};
+  };
+  /// Some of the second that runs, from which its middle will be taken.
+  struct Kept {
+    static constexpr std::size_t kMax = 256;
+    std::array<double, kMax> there{};  ///< [s]
+    std::array<double, kMax> here{};   ///< [s]
+    std::size_t count{};
+    double newest_at{};  ///< [s]
+  };
+  void end_second() noexcept;
   void fit(std::int64_t until) noexcept;
 
-  std::array<Bin, kSeconds> bins_{};
+  std::array<Second, kSeconds> seconds_{};
+  Kept kept_;
   std::int64_t newest_{};  ///< [s]
   bool begun_{};
   TimePoint origin_{};  ///< the first exchange; near it doubles are exact enough

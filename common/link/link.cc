@@ -167,6 +167,7 @@ Arrivals Link::receive(TimePoint now) noexcept {
   samples_.clear();
   accepted_now_ = 0;
   if (transport_) drain(now);
+  note_exchange();
   if (session_id_ != 0) {
     if (gap(now) > config_.closed_after) {
       end_session();
@@ -316,13 +317,21 @@ void Link::accept(const WireTelegram& wire, std::uint64_t number, TimePoint arri
   const TimePoint echo = conversation.began_at + as_duration(wire.echo_ns);
   const microseconds hold{wire.hold_us};
   if (!conversation.clock.add_round_trip(echo, hold, arrived_at)) return;
+  if (conversation.echo_ns != kNothingHeard && wire.echo_ns <= conversation.echo_ns) return;
+  conversation.echo_ns = wire.echo_ns;
+  ++conversation.exchanges;
   const Duration sent_at = as_duration(wire.sent_at_ns);
-  conversation.offset.add(sent_at - hold - as_duration(wire.echo_ns),
-                          arrived_at - conversation.began_at - sent_at,
-                          arrived_at);
-  if (conversation.echo_ns == kNothingHeard || wire.echo_ns > conversation.echo_ns) {
-    conversation.echo_ns = wire.echo_ns;
-    ++conversation.exchanges;
+  conversation.exchange = Exchange{.there = sent_at - hold - as_duration(wire.echo_ns),
+                                   .here = arrived_at - conversation.began_at - sent_at,
+                                   .arrived_at = arrived_at};
+}
+
+/// The peer's echo tells of the newest telegram it had in a tick, not of those that came in a bunch
+/// with it and had waited longer; so of ours only the newest of a tick may count as well, or the
+/// way here would seem longer than the way there.
+void Link::note_exchange() noexcept {
+  if (const auto exchange = std::exchange(conversation_.exchange, std::nullopt)) {
+    conversation_.offset.add(exchange->there, exchange->here, exchange->arrived_at);
   }
 }
 

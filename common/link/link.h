@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -65,6 +66,13 @@ class Link {
     PortSample sample;  ///< with wave sums as payload or none
   };
 
+  /// What one telegram tells of the ways there and here.
+  struct Exchange {
+    Duration there{};
+    Duration here{};
+    TimePoint arrived_at{};
+  };
+
   /// All that begins anew with a session.
   struct Conversation {
     TimePoint began_at{};
@@ -77,7 +85,8 @@ class Link {
     ReplayWindow handed_over;   ///< samples, repaired ones included
     PeerClock clock;
     ClockOffsetEstimator offset;
-    bool heard{};  ///< the next four speak of the newest accepted telegram
+    std::optional<Exchange> exchange;  ///< the newest of this tick
+    bool heard{};                      ///< the next four speak of the newest accepted telegram
     std::uint64_t newest_number{};
     std::uint64_t newest_sent_at_ns{};
     TimePoint newest_arrived_at{};
@@ -101,6 +110,7 @@ class Link {
   void count(Rejection rejection) noexcept;
   void take(const WireTelegram& wire, std::uint64_t number, TimePoint arrived_at) noexcept;
   void accept(const WireTelegram& wire, std::uint64_t number, TimePoint arrived_at) noexcept;
+  void note_exchange() noexcept;
   void hand_over(const Incoming& incoming, std::uint32_t epoch) noexcept;
   void synchronise(TimePoint now) noexcept;
   [[nodiscard]] std::uint32_t epoch_wanted() const noexcept;

@@ -1,6 +1,7 @@
 #include "common/link/clock_offset.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -104,6 +105,52 @@ TEST(ClockOffsetTest, QueuesWithAFloorLeaveMicroseconds) {
     EXPECT_LE(errors[errors.size() / 2], 20e-6);
     EXPECT_LE(errors[errors.size() * 99 / 100], 100e-6);
   }
+}
+
+/// As above, with normal jitter of `spread` that remembers itself for 40 ms, and no edge.
+std::vector<double> errors_over_normal_jitter(Duration spread, std::uint64_t seeds) {
+  constexpr Duration kStep = 4ms;
+  const double memory = std::exp(-seconds(kStep) / 0.04);
+  std::vector<double> errors;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    Peer peer{1234567us, 20e-6};
+    ClockOffsetEstimator estimator;
+    std::array<double, 2> state{};
+    for (std::uint64_t k = 0; k < 7500; ++k) {
+      for (std::uint64_t way = 0; way < 2; ++way) {
+        state[way] =
+            memory * state[way] + std::sqrt(1 - memory * memory) * random_normal(seed, 10 + way, k);
+      }
+      const TimePoint now{kStep * static_cast<std::int64_t>(k)};
+      peer.exchange(estimator,
+                    now,
+                    40ms + from_seconds(seconds(spread) * state[0]),
+                    40ms + from_seconds(seconds(spread) * state[1]));
+      if (k > 5000 && k % 100 == 0) {
+        errors.push_back(std::abs(seconds(estimator.estimate()->offset_at(now) - peer.ahead(now))));
+      }
+    }
+  }
+  std::sort(errors.begin(), errors.end());
+  return errors;
+}
+
+TEST(ClockOffsetTest, JitterWithoutAnEdgeLeavesWhatItsMeanLeaves) {
+  const auto errors = errors_over_normal_jitter(300us, 20);
+  // A mean of 25 s, and the line's end: 300 us / sqrt(2 * 25 s / 80 ms) * 2 is 24 us.
+  EXPECT_LE(errors[errors.size() / 2], 24e-6);
+  EXPECT_LE(errors[errors.size() * 9 / 10], 60e-6);
+}
+
+TEST(ClockOffsetTest, MiddlesThatOneDirectionsQueueLiftsAreNotBelieved) {
+  Peer peer{1s, 0};
+  ClockOffsetEstimator estimator;
+  for (std::uint64_t k = 0; k < 2500; ++k) {
+    // One in twenty goes through at once; the others wait 4 ms, there only.
+    const Duration there = k % 20 == 0 ? 20ms : 24ms;
+    peer.exchange(estimator, TimePoint{10ms * static_cast<std::int64_t>(k)}, there, 20ms);
+  }
+  EXPECT_NEAR(seconds(estimator.estimate()->offset), 1, 20e-6);
 }
 
 TEST(ClockOffsetTest, SecondsThatWereQueuedAsAWholeCountForLittle) {
