@@ -22,6 +22,7 @@ constexpr double kTolerance = 1e-5;    // of the residual, relative to the conta
 constexpr double kSlow = 0.3;          // of the residual before: new factors are worth it
 constexpr double kNear = 0.3;          // residual from which a state's own tangent is sound
 constexpr double kSound = 1e-2;        // residual after one pass above which new factors pay
+constexpr double kStuck = 0.01;        // change of the residual in two passes that is none
 constexpr double kShift = 1e-6;        // of the surface's tangent where it is indefinite
 constexpr double kSettled = 1e-12;     // of the penalty's energy: the contact has settled
 constexpr double kShareMin = 1e-4;     // of a contact step: rounding is all that is left
@@ -40,7 +41,7 @@ FiniteContact::FiniteContact(const Mesh& mesh, const Specimen& specimen)
   factor_.analyzePattern(tangent_);
   solved_.displacement = Eigen::VectorXd::Zero(assembler_.components());
   solved_.residual = Eigen::VectorXd::Zero(assembler_.equations());
-  solved_.pressures.resize(mesh.elements.size());
+  solved_.before = solved_.displacement;
   for (std::size_t i = 0; i < contact_.nodes().size(); ++i) {
     for (const int axis : {0, 1}) {
       if (assembler_.equation(r_of(contact_.nodes()[i]) + axis) < 0) continue;
@@ -104,10 +105,20 @@ bool FiniteContact::solve(State& state) {
     residuals_.push_back(balance.norm() / std::max(load.force, 1e-300));
     if (!std::isfinite(residuals_.back())) return false;
     if (load.touching > 0 && residuals_.back() < kTolerance) return true;
+    if (stuck()) return false;
     if (!choose_factors(state)) return false;
     if (!improve(state)) return false;
   }
   return false;
+}
+
+/// Passes that were shortened until they changed nothing: the next would do the same. A smaller
+/// step of indentation is cheaper.
+bool FiniteContact::stuck() const {
+  const std::size_t passes = residuals_.size();
+  if (!cut_ || passes < 3) return false;
+  const auto [low, high] = std::minmax_element(residuals_.end() - 3, residuals_.end());
+  return *high - *low < kStuck * *high;
 }
 
 /// One pass by the factors there are, of a step ago, brings the last state near the new
@@ -124,9 +135,12 @@ bool FiniteContact::choose_factors(const State& state) {
   return factorize(solved_);
 }
 
+/// With the pressures that the last pass, linear in the displacements, led to.
 bool FiniteContact::factorize(const State& state) {
   Eigen::VectorXd force;
-  assembler_.assemble(state.displacement, state.pressures, tangent_, force);
+  const std::vector<Pressure> pressures =
+      assembler_.pressures_after(state.before, state.displacement - state.before);
+  assembler_.assemble(state.displacement, pressures, tangent_, force);
   factor_.factorize(tangent_);
   ++factorizations_;
   if (factor_.info() != Eigen::Success) return false;
@@ -179,8 +193,7 @@ bool FiniteContact::improve(State& state) {
     }
     if (!possible) return false;
     cut_ = share < 1;
-    trial.pressures =
-        assembler_.pressures_after(state.displacement, trial.displacement - state.displacement);
+    trial.before = std::move(state.displacement);
     state = std::move(trial);
     return true;
   }

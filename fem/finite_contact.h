@@ -43,16 +43,17 @@ class FiniteContact {
   using Factor = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::NaturalOrdering<int>>;
 
   struct State {
-    double indentation{};             ///< [m]
-    Eigen::VectorXd displacement;     ///< [m], all components
-    Eigen::VectorXd residual;         ///< [N], elastic, all equations; empty: not known
-    double elastic{};                 ///< [J]
-    std::vector<Pressure> pressures;  ///< [Pa], of the elements: unknowns of their own
+    double indentation{};          ///< [m]
+    Eigen::VectorXd displacement;  ///< [m], all components
+    Eigen::VectorXd residual;      ///< [N], elastic, all equations; empty: not known
+    double elastic{};              ///< [J]
+    Eigen::VectorXd before;        ///< [m], displacement a pass ago
   };
   /// Fills in residual and elastic energy; false where the state is impossible.
   [[nodiscard]] bool measure(State& state) const;
   /// True if `state`, which holds a first guess, now solves its indentation.
   [[nodiscard]] bool solve(State& state);
+  [[nodiscard]] bool stuck() const;
   [[nodiscard]] bool choose_factors(const State& state);
   [[nodiscard]] bool factorize(const State& state);
   /// By the present factors; false if the state cannot be improved.
