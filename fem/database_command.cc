@@ -1,13 +1,16 @@
 #include "fem/database_command.h"
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <optional>
 #include <set>
 #include <tuple>
 
 #include <nlohmann/json.hpp>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -26,6 +29,9 @@ using config::Ending;
 using config::ExitCode;
 
 constexpr int kSaveEvery = 4;  // cells
+constexpr int kStartsMax = 3;  // of one process
+constexpr int kRefused = 1;    // exit codes of such a process
+constexpr int kStopped = 2;
 constexpr std::uint64_t kCheckSeed = 1;
 
 struct Shard {
@@ -121,28 +127,80 @@ Result<DepthTable> start_table(const DatabaseFlags& flags) {
   return table;
 }
 
+/// One share of the work, and the process that does it.
+struct Share {
+  Shard cells;
+  std::string part;
+  bool shows_progress{};
+  pid_t process{};
+  int starts{};
+};
+
+/// Goes on from what its part file holds. Ends when its parent does, however that ends.
+[[noreturn]] void work_on(DepthTable table, const Share& share, pid_t parent) {
+  if (::prctl(PR_SET_PDEATHSIG, SIGTERM) != 0 || ::getppid() != parent) std::_Exit(kStopped);
+  if (::access(share.part.c_str(), F_OK) == 0) {
+    if (const auto part = load(share.part); part) {
+      static_cast<void>(merge_table(table, *part));
+    }
+  }
+  const auto done = solve_share(std::move(table), share.cells, share.part, share.shows_progress);
+  if (!done) std::fprintf(stderr, "palp-fem: %s\n", done.error().text.c_str());
+  std::_Exit(done ? 0 : kRefused);
+}
+
+Result<void> start(const DepthTable& table, Share& share) {
+  ++share.starts;
+  const pid_t parent = ::getpid();
+  share.process = ::fork();
+  if (share.process < 0) return fail("cannot start a process for each core");
+  if (share.process == 0) work_on(table, share, parent);
+  return {};
+}
+
+std::string ending_of(int status) {
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    return "was ended by signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
+  }
+  return "ended with code " + std::to_string(WEXITSTATUS(status));
+}
+
+/// A process that was ended from outside is started again; one that refuses its work is not.
 Result<void> solve_on_all_cores(const DepthTable& table,
                                 const Shard& shard,
                                 const DatabaseFlags& flags) {
-  std::vector<pid_t> children;
+  std::vector<Share> shares;
   for (std::size_t core = 0; core < flags.cores; ++core) {
-    const pid_t child = ::fork();
-    if (child < 0) return fail("cannot start a process for each core");
-    if (child > 0) {
-      children.push_back(child);
+    shares.push_back({.cells = {shard.index + shard.count * core, shard.count * flags.cores},
+                      .part = part_name(flags.out, core),
+                      .shows_progress = core == 0});
+    if (auto started = start(table, shares.back()); !started) return started;
+  }
+  std::string failed;
+  for (std::size_t running = shares.size(); running > 0;) {
+    int status = 0;
+    const pid_t ended = ::waitpid(-1, &status, 0);
+    if (ended < 0) return fail("lost sight of the processes; start again to go on");
+    const auto share = std::find_if(
+        shares.begin(), shares.end(), [&](const Share& one) { return one.process == ended; });
+    if (share == shares.end()) continue;
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+      --running;
       continue;
     }
-    const Shard share{shard.index + shard.count * core, shard.count * flags.cores};
-    const auto done = solve_share(table, share, part_name(flags.out, core), core == 0);
-    if (!done) std::fprintf(stderr, "palp-fem: %s\n", done.error().text.c_str());
-    std::_Exit(done ? 0 : 1);
+    const std::string sentence = "process " + std::to_string(share - shares.begin() + 1) + " of " +
+                                 std::to_string(shares.size()) + " " + ending_of(status);
+    const bool refused = WIFEXITED(status) && WEXITSTATUS(status) == kRefused;
+    if (!refused && share->starts < kStartsMax) {
+      std::fprintf(stderr, "\npalp-fem: %s; it is started again\n", sentence.c_str());
+      if (auto started = start(table, *share); !started) return started;
+      continue;
+    }
+    failed = sentence;
+    --running;
   }
-  bool all = true;
-  for (const pid_t child : children) {
-    int status = 0;
-    all &= ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  }
-  if (!all) return fail("a process ended before its share was done; start again to go on");
+  if (!failed.empty()) return fail(failed + "; what was solved is kept, start again to go on");
   return {};
 }
 
