@@ -264,7 +264,7 @@ int run(int argc, char** argv) {
   std::string report_file;
   declare_flags(line, document, report_file);
   line.verbs_optional();
-  const site_program::CheckCommand check{line};
+  const site_program::CheckCommand check{line, link::Role::Patient};
   site_program::SiteReport report;
   report.site = "patient";
   if (const auto ending = line.parse(argc, argv)) {

@@ -242,7 +242,7 @@ int run(int argc, char** argv) {
   declare_flags(line, document, report_file);
   line.verbs_optional();
   const site_program::CertificatesCommand certificates{line};
-  const site_program::CheckCommand check{line};
+  const site_program::CheckCommand check{line, link::Role::Surgeon};
   site_program::SiteReport report;
   report.site = "surgeon";
   if (const auto ending = line.parse(argc, argv)) {

@@ -2,19 +2,36 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
 #include "common/config/report.h"
+#include "common/core/host_and_port.h"
+#include "common/io/path_check.h"
 #include "common/settings/site_settings.h"
 
 namespace palp::site_program {
 
-CheckCommand::CheckCommand(config::CommandLine& line) {
+CheckCommand::CheckCommand(config::CommandLine& line, link::Role role) {
   config::CommandLine& verb = line.verb(
       "check", "Looks whether this machine can run a site on time, and says what to change.");
   verb.number("--seconds", seconds_, {.min = 0.1, .max = 3600, .unit = "s"}, "of an idle loop");
   verb.text("--report", report_, "FILE", "JSON report");
+  if (role != link::Role::Surgeon) return;
+  verb.text("--peer", peer_, "HOST:PORT", "also the way to the patient site, which runs there");
+  verb.text("--identity", identity_, "FOLDER", "this site's, for --peer");
+}
+
+Result<io::MachineFinding> CheckCommand::way_to_peer() const {
+  if (identity_.empty()) return fail("--peer needs --identity: strangers are not answered");
+  const auto place = parse_host_and_port(peer_, 1);
+  if (!place) return fail("--peer: " + place.error().text);
+  const auto credentials = io::Credentials::read(identity_, link::Role::Surgeon);
+  if (!credentials) return fail(credentials.error().text);
+  const auto facts = io::read_path(*place, **credentials);
+  if (!facts) return fail(facts.error().text);
+  return io::judge_path(*facts);
 }
 
 Ending CheckCommand::run() const {
@@ -23,8 +40,14 @@ Ending CheckCommand::run() const {
                             .spin = site.spin,
                             .priority = site.priority,
                             .lock_memory = site.lock_memory};
-  const auto findings =
-      io::judge_machine(io::read_machine(loop, from_seconds(seconds_)), loop.period);
+  std::optional<io::MachineFinding> way;
+  if (!peer_.empty()) {
+    const auto found = way_to_peer();
+    if (!found) return bad_input(found.error().text);
+    way = *found;
+  }
+  auto findings = io::judge_machine(io::read_machine(loop, from_seconds(seconds_)), loop.period);
+  if (way) findings.push_back(*way);
   std::fputs(check_text(findings).c_str(), stdout);
   if (!report_.empty()) {
     const auto written = config::write_whole_file(report_, check_json(findings));

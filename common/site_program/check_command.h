@@ -5,6 +5,7 @@
 
 #include "common/config/command_line.h"
 #include "common/io/machine_check.h"
+#include "common/link/telegram.h"
 #include "common/site_program/ending.h"
 
 namespace palp::site_program {
@@ -12,14 +13,19 @@ namespace palp::site_program {
 /// The verb `check`: can this machine run a site on time, and what should be changed?
 class CheckCommand {
  public:
-  /// Declares the verb; this object outlives the line's parse().
-  explicit CheckCommand(config::CommandLine& line);
+  /// Declares the verb; this object outlives the line's parse(). Only a surgeon can look at the way
+  /// to its peer: the patient is called.
+  CheckCommand(config::CommandLine& line, link::Role role);
   /// After the line was parsed with this verb: an idle loop with the default settings of a site's.
   /// Prints a line for each thing looked at. Missed where something should be changed.
   [[nodiscard]] Ending run() const;
 
  private:
+  [[nodiscard]] Result<io::MachineFinding> way_to_peer() const;
+
   double seconds_{5};  ///< [s]
+  std::string peer_;
+  std::string identity_;
   std::string report_;
 };
 

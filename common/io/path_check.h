@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "common/core/result.h"
+#include "common/core/time.h"
+#include "common/io/credentials.h"
+#include "common/io/endpoint.h"
+#include "common/io/machine_check.h"
+
+/// How far the peer is, before a session.
+namespace palp::io {
+
+struct PathFacts {
+  int asked{};
+  std::vector<Duration> round_trips;  ///< of the questions that were answered
+};
+
+struct PathCheckConfig {
+  int questions{10};
+  Duration pause{std::chrono::milliseconds{50}};      ///< between an answer and the next question
+  Duration patience{std::chrono::milliseconds{500}};  ///< then a question counts as lost
+};
+
+/// Asks a patient site that runs at `peer`, in a session or not, for cookies: each is the first
+/// word of a handshake and its answer, and leaves nothing behind there. `credentials` are a
+/// surgeon's. Blocks. Refusal: the peer cannot be found, or there is no socket.
+[[nodiscard]] Result<PathFacts> read_path(const HostAndPort& peer,
+                                          const Credentials& credentials,
+                                          const PathCheckConfig& config = {});
+
+/// What that means for a session.
+[[nodiscard]] MachineFinding judge_path(const PathFacts& facts);
+
+}  // namespace palp::io
