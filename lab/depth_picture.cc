@@ -77,7 +77,14 @@ class Picture {
       words(x({0, at}) - 8, y({0, at}) + 5, "end", std::to_string(mm));
     }
     line({0, 0}, {kRange, kRange}, "black", 1, 1);
-    words(kSize / 2, kSize - 12, "middle", "true depth, mm");
+    words(kSize / 2, kSize - 12, "middle", "true depth of the inclusion's top, mm");
+    char upright[160];
+    std::snprintf(upright,
+                  sizeof upright,
+                  "<text transform=\"translate(18 %.0f) rotate(-90)\" text-anchor=\"middle\">"
+                  "estimated depth, mm</text>\n",
+                  kSize / 2);
+    text_ += upright;
   }
   [[nodiscard]] std::string finish() { return std::move(text_) + "</svg>\n"; }
 
@@ -96,10 +103,13 @@ std::string depth_svg(const DepthStudy& study, const std::vector<DepthCase>& cas
   picture.words(kMargin,
                 22,
                 "start",
-                random ? "Estimates and 95 % intervals, mm; faint: phantoms wider than the prior."
-                       : "Estimates and 95 % intervals, mm; left of each line the ball is known, "
-                         "right a range.");
-  picture.words(kMargin, 42, "start", "Red: the truth is outside. On the black line all is right.");
+                random
+                    ? "Dots: estimated depth. Lines: 95 % intervals. Faint: phantoms from a wider "
+                      "range than assumed."
+                    : "Dots: estimated depth. Lines: 95 % intervals. Left of each depth the "
+                      "ball's size is known, right only a range.");
+  picture.words(
+      kMargin, 42, "start", "Red: the interval misses the truth. Black line: estimate = truth.");
   for (const DepthCase& one : cases) {
     if (!one.inclusion || one.verdict != DepthVerdict::Found) continue;
     const bool inside = one.low <= one.depth && one.depth <= one.high;

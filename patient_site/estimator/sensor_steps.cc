@@ -17,11 +17,11 @@ double density(double z) noexcept {
 
 /// By summing over the codes within reach.
 SensorSteps::Reading reading(double force, double noise, double quantum) noexcept {
-  const double reach = 1 + std::ceil(6 * noise / quantum);
+  const int reach = 1 + static_cast<int>(std::ceil(6 * noise / quantum));
   double mean = 0;
   double square = 0;
   double slope = 0;
-  for (double code = -reach; code <= reach + 1; ++code) {
+  for (int code = -reach; code <= reach + 1; ++code) {
     const double low = ((code - 0.5) * quantum - force) / noise;
     const double high = ((code + 0.5) * quantum - force) / noise;
     const double share = normal_cdf(high) - normal_cdf(low);

@@ -182,19 +182,19 @@ void TouchSums::add(const TouchSums& other) noexcept {
 void TouchSums::move_to(double surface) noexcept {
   const double step = surface - surface_;
   surface_ = surface;
-  constexpr std::size_t n = kCurveTerms;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) {
-      matrix_[i][j] +=
-          step * (matrix_[i][n + j] + matrix_[j][n + i] + step * matrix_[n + i][n + j]);
+  constexpr std::size_t kNext = kCurveTerms;
+  for (std::size_t i = 0; i < kCurveTerms; ++i) {
+    for (std::size_t j = 0; j < kCurveTerms; ++j) {
+      matrix_[i][j] += step * (matrix_[i][kNext + j] + matrix_[j][kNext + i] +
+                               step * matrix_[kNext + i][kNext + j]);
     }
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) {
-      matrix_[i][n + j] += step * matrix_[n + i][n + j];
-      matrix_[i][2 * n + j] += step * matrix_[n + i][2 * n + j];
+  for (std::size_t i = 0; i < kCurveTerms; ++i) {
+    for (std::size_t j = 0; j < kCurveTerms; ++j) {
+      matrix_[i][kNext + j] += step * matrix_[kNext + i][kNext + j];
+      matrix_[i][2 * kNext + j] += step * matrix_[kNext + i][2 * kNext + j];
     }
-    right_[i] += step * right_[n + i];
+    right_[i] += step * right_[kNext + i];
   }
 }
 

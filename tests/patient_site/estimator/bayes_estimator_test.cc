@@ -59,6 +59,58 @@ TEST(BayesEstimatorTest, EveryTapMakesItSurer) {
   EXPECT_LT(estimates.back().depth_stddev, estimates.front().depth_stddev);
 }
 
+/// A tap of 4 mm; hesitant: it goes back by more than 1 mm near its end, and on again.
+double tap_position(double t, bool hesitant) {
+  const double smooth = -3e-3 + 3.4e-3 * (1 - std::cos(2 * std::numbers::pi * t));
+  if (!hesitant || t < 0.36 || t > 0.56) return smooth;
+  return smooth - 1.25e-3 * (1 - std::cos(2 * std::numbers::pi * (t - 0.36) / 0.2));
+}
+
+/// The last estimate after `before` taps, hesitant ones, and a smooth one, all over the inclusion.
+DepthEstimate after_hesitant(int before, int* refused) {
+  const auto phantom = make_phantom("ball depth=9 radius=8 ratio=200");
+  EXPECT_TRUE(phantom);
+  estimator::DepthEstimatorConfig config;
+  config.bayes.prior.radius_min = config.bayes.prior.radius_max = 8e-3;
+  config.bayes.prior.ratio_min = config.bayes.prior.ratio_max = 200;
+  config.bayes.stiffness.scale_stddev = 2e-3;
+  estimator::DepthEstimator estimator{config};
+  SimulatedPhantomConfig place;
+  place.start_position = -3e-3;
+  place.start_lateral = 20e-3;
+  SimulatedPhantom site{*phantom, place};
+  LowPass co_filter{20, 1e-3};
+  co_filter.reset(-3e-3);
+  DepthEstimate last;
+  TimePoint now{};
+  for (int i = 0; i < (before + 1) * 1200; ++i) {
+    now += std::chrono::milliseconds{1};
+    const StageState stage = site.read(now);
+    const auto force = site.sample(now);
+    const auto estimate = estimator.add({.at = now,
+                                         .position = co_filter.step(stage.position),
+                                         .force = force->force,
+                                         .lateral = 20e-3});
+    if (estimate && estimate->reason == DepthReason::StrokeNotMonotone) ++*refused;
+    if (estimate) last = *estimate;
+    const double t = std::min(i % 1200 * 1e-3, 1.0);
+    site.move_to({tap_position(t, i / 1200 < before), 20e-3});
+  }
+  return last;
+}
+
+TEST(BayesEstimatorTest, AStrokeThatIsNotMonotoneCountsForTheNext) {
+  int refused = 0;
+  const DepthEstimate alone = after_hesitant(0, &refused);
+  ASSERT_EQ(refused, 0);
+  const DepthEstimate last = after_hesitant(3, &refused);
+  EXPECT_EQ(refused, 3);
+  ASSERT_EQ(last.verdict, DepthVerdict::Found);
+  EXPECT_NEAR(last.depth, 9e-3, 4 * last.depth_stddev);
+  // Four strokes know twice as well as one, were they alike and nothing known beforehand.
+  EXPECT_LT(last.depth_stddev, 0.65 * alone.depth_stddev);
+}
+
 TEST(BayesEstimatorTest, WithoutInclusionItSaysWhatIsExcluded) {
   const auto estimates = palpate("none", {});
   ASSERT_EQ(estimates.size(), 4U);
