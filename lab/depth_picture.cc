@@ -76,7 +76,6 @@ class Picture {
       words(x({at, 0}), y({at, 0}) + 20, "middle", std::to_string(mm));
       words(x({0, at}) - 8, y({0, at}) + 5, "end", std::to_string(mm));
     }
-    line({0, 0}, {kRange, kRange}, "black", 1, 1);
     words(kSize / 2, kSize - 12, "middle", "true depth of the inclusion's top, mm");
     char upright[160];
     std::snprintf(upright,
@@ -100,16 +99,17 @@ std::string depth_svg(const DepthStudy& study, const std::vector<DepthCase>& cas
   Picture picture;
   picture.axes();
   const bool random = study.depths.empty();
-  picture.words(kMargin,
-                22,
-                "start",
-                random
-                    ? "Dots: estimated depth. Lines: 95 % intervals. Faint: phantoms from a wider "
-                      "range than assumed."
-                    : "Dots: estimated depth. Lines: 95 % intervals. Left of each depth the "
-                      "ball's size is known, right only a range.");
   picture.words(
-      kMargin, 42, "start", "Red: the interval misses the truth. Black line: estimate = truth.");
+      kMargin,
+      22,
+      "start",
+      "Dots: estimated depth. Lines: 95 % intervals, red if they miss the truth (black).");
+  picture.words(kMargin,
+                42,
+                "start",
+                random ? "Faint: phantoms from a wider range than the estimator assumes."
+                       : "Left of each depth the ball's size is known, right only a range.");
+  if (random) picture.line({0, 0}, {kRange, kRange}, "black", 1, 1);
   for (const DepthCase& one : cases) {
     if (!one.inclusion || one.verdict != DepthVerdict::Found) continue;
     const bool inside = one.low <= one.depth && one.depth <= one.high;
@@ -123,6 +123,10 @@ std::string depth_svg(const DepthStudy& study, const std::vector<DepthCase>& cas
     const double opacity = one.wide ? 0.15 : 0.45;
     picture.line({at, one.low / kMillimetre}, {at, one.high / kMillimetre}, colour, 1, opacity);
     picture.dot({at, one.estimate / kMillimetre}, colour);
+  }
+  for (const double depth : study.depths) {
+    const double at = depth / kMillimetre;
+    picture.line({at - kSpread, at}, {at + kSpread, at}, "black", 1, 1);
   }
   return picture.finish();
 }
