@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/metric_table.h"
+#include "lab/observer.h"
 
 namespace palp::lab {
 namespace {
@@ -60,6 +61,25 @@ Json worst_of(const std::vector<CaseResult>& results) {
   return worst;
 }
 
+/// The link of the set `inc` for which the target is set.
+const std::vector<Setting> kObserved{{"rtt_ms", "500"}, {"loss", "0.05"}};
+
+Json observer_rows(const Plan& plan, const std::vector<ObserverRow>& rows) {
+  Json json = Json::array();
+  for (const ObserverRow& row : rows) {
+    Json one;
+    for (std::size_t i = 0; i < plan.label_names.size(); ++i) {
+      one[plan.label_names[i]] = row.labels[i];
+    }
+    one["weber"] = row.weber;
+    one["right_true"] = number(row.right_true);
+    one["right_felt"] = number(row.right_felt);
+    one["loss"] = number(row.loss());
+    json.push_back(one);
+  }
+  return json;
+}
+
 std::uint64_t unstable_count(const std::vector<CaseResult>& results) {
   return static_cast<std::uint64_t>(
       std::count_if(results.begin(), results.end(), [](const auto& r) { return r.unstable; }));
@@ -99,9 +119,15 @@ std::string batch_report(const Plan& plan,
   json["undefined"] = undefined;
   json["metrics"] = metrics;
   json["worst"] = worst_of(results);
-  json["cores"] = account.cores;
-  json["cpu_s"] = account.cpu;
-  json["wall_s"] = account.wall;
+  if (plan.name == "inc") {
+    const auto rows = observe(results);
+    json["observer_loss_max"] = number(worst_loss(plan, rows, kObserved));
+    json["observer"] = observer_rows(plan, rows);
+  }
+  const bool merged = account.cores == 0;
+  json["cores"] = merged ? Json(nullptr) : Json(account.cores);
+  json["cpu_s"] = merged ? Json(nullptr) : Json(account.cpu);
+  json["wall_s"] = merged ? Json(nullptr) : Json(account.wall);
   json["cases_csv"] = account.cases_csv.empty() ? Json(nullptr) : Json(account.cases_csv);
   return json.dump(2) + "\n";
 }
@@ -143,16 +169,30 @@ std::string batch_summary(const Plan& plan,
                   static_cast<unsigned long long>(spread.undefined));
     text += line.data();
   }
+  if (plan.name == "inc") {
+    std::snprintf(line.data(),
+                  line.size(),
+                  "a person loses at most %.2f of 100 right answers (worst link, 500 ms)\n",
+                  100 * worst_loss(plan, observe(results), kObserved));
+    text += line.data();
+  }
   std::snprintf(line.data(),
                 line.size(),
-                "digest %s; %.0f s of virtual time in %.1f s on %llu cores: %.0f times per core\n",
+                "digest %s; %.0f s of virtual time",
                 hexadecimal(digest_of(results)).c_str(),
-                virtual_span,
-                account.wall,
-                static_cast<unsigned long long>(account.cores),
-                virtual_span / account.cpu);
+                virtual_span);
   text += line.data();
-  return text;
+  // Rows that were merged have no machine of their own.
+  if (account.cores > 0) {
+    std::snprintf(line.data(),
+                  line.size(),
+                  " in %.1f s on %llu cores: %.0f times per core",
+                  account.wall,
+                  static_cast<unsigned long long>(account.cores),
+                  virtual_span / account.cpu);
+    text += line.data();
+  }
+  return text + "\n";
 }
 
 std::string cases_csv(const Plan& plan, const std::vector<CaseResult>& results) {

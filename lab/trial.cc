@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 
+#include "common/config/number.h"
+#include "common/core/conventions.h"
 #include "common/core/denormals.h"
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
@@ -31,6 +33,15 @@ constexpr std::size_t kInFlightMax = 4096;
 constexpr std::size_t kContactQueue = 4096;
 constexpr std::uint64_t kTissueStream = 0x7469737375650000;  ///< keeps the sensor's noise apart
 
+/// The truth about the tissue, for whoever judges the session afterwards, as palp-patient says it.
+record::SessionInfo with_tissue(record::SessionInfo info, const Scenario& scenario) {
+  info.metadata.emplace_back("surface_offset_mm",
+                             config::number_text(scenario.tissue.surface_offset / kMillimetre));
+  info.metadata.emplace_back("phantom_name", scenario.phantom.name);
+  info.attachments.push_back({"tissue.csv", "text/csv", patient::tissue_csv(scenario.phantom)});
+  return info;
+}
+
 /// Both session files of a run, or none.
 class Files final {
  public:
@@ -43,7 +54,7 @@ class Files final {
     surgeon_.emplace(files.surgeon != nullptr ? *files.surgeon : null_surgeon_,
                      record::SessionInfo{link::Role::Surgeon, metadata, {}, now});
     patient_.emplace(files.patient != nullptr ? *files.patient : null_patient_,
-                     record::SessionInfo{link::Role::Patient, metadata, {}, now});
+                     with_tissue({link::Role::Patient, metadata, {}, now}, scenario));
   }
   [[nodiscard]] record::SessionWriter* surgeon() { return surgeon_ ? &*surgeon_ : nullptr; }
   [[nodiscard]] record::SessionWriter* patient() { return patient_ ? &*patient_ : nullptr; }

@@ -58,6 +58,18 @@ TEST(BatchTest, MergedShardsAreTheWholeSet) {
   }
 }
 
+TEST(BatchReportTest, MergedRowsHaveNoMachine) {
+  Plan plan = small_plan(1);
+  const std::vector<CaseResult> none;
+  const std::string merged = batch_summary(plan, none, {});
+  EXPECT_EQ(merged.find("cores"), std::string::npos) << merged;
+  BatchAccount account;
+  account.cores = 2;
+  account.cpu = account.wall = 1;
+  EXPECT_NE(batch_summary(plan, none, account).find("on 2 cores"), std::string::npos);
+  EXPECT_NE(batch_report(plan, none, {}).find("\"cores\": null"), std::string::npos);
+}
+
 TEST(PlanTest, TheFirstCasesOfALargerSetAreThoseOfASmallerOne) {
   const Plan small = small_plan(5);
   const Plan large = small_plan(50);
