@@ -187,6 +187,7 @@ Ending Program::run(io::Terminal& terminal) {
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
   while (true) {
     const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
+    node_.commands().put({.emergency_stop = false, .resets = terminal.resets()});
     const TimePoint now = clock_.now();
     look(now);
     if (stop) return end(runner_.sessions() > 0 ? "completed" : "no session");

@@ -17,7 +17,10 @@ bool PatientSupervisor::engagement(const SupervisorInput& in) const noexcept {
 PatientSupervisor::Arrow PatientSupervisor::stop(const SupervisorInput& in) const noexcept {
   if (in.emergency_stop) return {SiteState::Stopped, NoteCode::EmergencyStop};
   if (in.device_faulted) return {SiteState::Stopped, NoteCode::DeviceFault};
-  if (in.force_exceeded) return {SiteState::Stopped, NoteCode::ForceLimit};
+  // A stage that can only move out is not held in the tissue, nor kept from a reset, by its force.
+  const bool may_press =
+      state_ != SiteState::Parked && state_ != SiteState::Retract && state_ != SiteState::Stopped;
+  if (in.force_exceeded && may_press) return {SiteState::Stopped, NoteCode::ForceLimit};
   if (in.peer_heard && in.peer.state == SiteState::Stopped && !peer_was_stopped_) {
     return {SiteState::Stopped, NoteCode::PeerStopped};
   }

@@ -173,9 +173,11 @@ class Program {
 
 Ending Program::run(io::Terminal& terminal) {
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
-  line_.info("calling " + settings_.peer + (terminal.reads_keys() ? "; any key stops" : ""));
+  line_.info("calling " + settings_.peer +
+             (terminal.reads_keys() ? "; r resets a stop, any other key ends" : ""));
   while (true) {
     const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
+    node_.commands().put({.emergency_stop = false, .resets = terminal.resets()});
     if (const auto ending = look(clock_.now())) return *ending;
     if (stop) return {ExitCode::CutShort, "aborted", "aborted by the user"};
   }

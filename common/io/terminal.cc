@@ -1,5 +1,6 @@
 #include "common/io/terminal.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -96,8 +97,11 @@ std::optional<StopCause> Terminal::wait_for_stop(Duration span) {
   }
   std::array<char, 64> typed{};
   if (!cause_ && watched[1].revents != 0) {
-    if (read(STDIN_FILENO, typed.data(), typed.size()) > 0) {
-      cause_ = StopCause::Key;
+    const ssize_t count = read(STDIN_FILENO, typed.data(), typed.size());
+    if (count > 0) {
+      const auto resets = std::count(typed.begin(), typed.begin() + count, 'r');
+      resets_ += static_cast<std::uint32_t>(resets);
+      if (resets < count) cause_ = StopCause::Key;
     } else {
       keys_ = false;  // the terminal went away
     }

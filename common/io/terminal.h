@@ -13,11 +13,11 @@ namespace palp::io {
 
 enum class StopCause : std::uint8_t { Key, Signal };
 
-/// The person at the terminal: any key, ^C, SIGTERM or the terminal's own end asks the program to
-/// stop; a second signal ends it hard. That nobody reads its output any more does not end it. Make
-/// it first in main, before any thread: threads inherit that the signals wait. Keys are read one by
-/// one and without echo while standard input is a terminal and the program in its foreground. One
-/// to a process. Thread: main.
+/// The person at the terminal: r asks for a reset; any other key, ^C, SIGTERM or the terminal's own
+/// end asks the program to stop; a second signal ends it hard. That nobody reads its output any
+/// more does not end it. Make it first in main, before any thread: threads inherit that the signals
+/// wait. Keys are read one by one and without echo while standard input is a terminal and the
+/// program in its foreground. One to a process. Thread: main.
 class Terminal {
  public:
   Terminal();
@@ -29,6 +29,8 @@ class Terminal {
   /// Waits up to `span` for a key or a signal. Once there was one it answers at once, and a
   /// further signal ends the program.
   [[nodiscard]] std::optional<StopCause> wait_for_stop(Duration span);
+  /// How often r was pressed.
+  [[nodiscard]] std::uint32_t resets() const noexcept { return resets_; }
   /// Whether standard output is one (and a line may be written over).
   [[nodiscard]] static bool output_is_terminal() noexcept;
   /// How wide it is now; 0: unknown, or standard output is none.
@@ -43,6 +45,7 @@ class Terminal {
   termios before_{};
   bool keys_{};
   bool restored_{};
+  std::uint32_t resets_{};
   std::optional<StopCause> cause_;
 };
 

@@ -258,6 +258,19 @@ TEST(PatientSupervisorTest, ANewSessionCountsEpochsFromZero) {
   EXPECT_EQ(site.step(in).state, SiteState::Engaged);
 }
 
+TEST(PatientSupervisorTest, AResetLetsTheStageOutOfTissueThatStillPresses) {
+  PatientSupervisor site = in_state(SiteState::Engaged);
+  SupervisorInput in = pressed();
+  in.force_exceeded = true;
+  in.retracted = false;
+  EXPECT_EQ(site.step(in).state, SiteState::Stopped);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(site.step(in).state, SiteState::Stopped) << "it is latched";
+  in.local_reset = true;
+  EXPECT_EQ(site.step(in).state, SiteState::Parked) << "where the gate moves the stage out";
+  in.local_reset = false;
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(site.step(in).state, SiteState::Parked);
+}
+
 TEST(PatientSupervisorTest, APeerThatStaysStoppedDoesNotStopASiteAgain) {
   PatientSupervisor site = in_state(SiteState::Engaged);
   SupervisorInput in = pressed();
