@@ -6,7 +6,8 @@
 namespace palp::coupling {
 namespace {
 
-constexpr double kStill = 1e-4;  // [m/s], a slower port dissipates nothing
+constexpr double kLow = 0.5;
+constexpr double kContact = 0.1;  // [N], two steps of the transducer
 
 /// The newest sum that arrived: late, lost or repeated samples can only make it too small.
 void take_largest(double& known, std::span<const Incoming> arrived) noexcept {
@@ -27,7 +28,7 @@ void TdpaSurgeon::begin_epoch(double position) noexcept {
   velocity_.reset();
   position_before_ = position;
   energy_in_ = energy_out_ = energy_remote_ = 0;
-  tip_force_ = force_ = 0;
+  tip_force_ = reserve_ = pull_ = drag_ = 0;
   heard_ = false;
   fade_.set(1);
 }
@@ -40,44 +41,59 @@ void TdpaSurgeon::hear(std::span<const Incoming> arrived) noexcept {
   }
 }
 
-/// What is dissipated here pays for what came out too much, or the controller would never stop.
-void TdpaSurgeon::account(double work) noexcept {
-  if (work <= 0) {
-    energy_out_ -= work;
-    return;
-  }
-  const double debt = std::max(0.0, energy_out_ - energy_remote_);
-  const double pay = std::min(work, debt);
-  energy_out_ -= pay;
-  energy_in_ += work - pay;
+double TdpaSurgeon::stored() const noexcept { return 0.5 * pull_ * pull_ / config_.spring; }
+
+/// The hand's way moves its end of the spring; its work pays for that and fills the reserve.
+void TdpaSurgeon::account(double work, double way) noexcept {
+  const double before = stored();
+  pull_ = std::max(0.0, pull_ + config_.spring * way);
+  reserve_ += work - (stored() - before);
 }
 
-/// The tip's force, of which on the way out only so much comes back as has been paid for.
-double TdpaSurgeon::passive_force(double speed) const noexcept {
-  const double budget = energy_remote_ - energy_out_;
-  const double outwards = std::clamp(-speed / config_.direction_speed, 0.0, 1.0);
-  const double share = std::clamp(budget / config_.energy_soft, 0.0, 1.0);
-  double force = tip_force_ * (1 - outwards * (1 - share)) + config_.damping * speed;
-  if (budget < 0 && std::abs(speed) > kStill) {
-    const double needed = -budget / (config_.period * speed * speed);
-    force += std::min(needed, config_.damping_max) * speed;
-  }
-  return force;
+/// Letting go of the spring gives energy back, pulling it costs: first of the reserve, then of what
+/// entered at the other end. What the reserve cannot hold goes on to there.
+void TdpaSurgeon::approach_tip_force(double wanted) noexcept {
+  const double remote = std::max(0.0, energy_remote_ - energy_out_);
+  const double whole = std::max(0.0, stored() + reserve_ + remote);
+  const double before = stored();
+  pull_ = std::min(wanted, std::sqrt(2 * config_.spring * whole));
+  reserve_ -= stored() - before;
+  const double drawn = std::clamp(kLow * config_.reserve - reserve_, 0.0, remote);
+  energy_out_ += drawn;
+  reserve_ += drawn;
+  const double surplus = std::max(0.0, reserve_ - config_.reserve);
+  energy_in_ += surplus;
+  reserve_ -= surplus;
+}
+
+/// More on the way back only: on the way in stiffness is judged, and damping that falls
+/// with speed would be felt as softness.
+double TdpaSurgeon::damping(double speed) const noexcept {
+  if (speed >= 0) return config_.damping;
+  const double contact = std::clamp(tip_force_ / kContact, 0.0, 1.0);
+  return config_.damping_back + contact * (config_.damping_out - config_.damping_back);
 }
 
 SurgeonOutput TdpaSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   hear(in.arrived);
   const double speed = velocity_.step(in.position);
-  account(in.force_applied * (in.position - position_before_));
+  const double way = in.position - position_before_;
   position_before_ = in.position;
+  const double pulled = pull_;
+  account(in.force_applied * way, way);
   if (in.state == SiteState::Engaged) {
     fade_.rise(seconds(dt), config_.fade_in);
   } else {
     fade_.fall(seconds(dt), config_.fade_out);
   }
-  const double wanted = heard_ ? fade_.value() * passive_force(speed) : 0;
-  force_ = step_towards(force_, wanted, config_.slew * seconds(dt));
-  return {force_, {in.position, in.velocity, force_, TdpaPayload{energy_in_}}};
+  const double change = config_.slew * seconds(dt);
+  const double wanted = heard_ ? fade_.value() * tip_force_ : 0;
+  approach_tip_force(std::max(0.0, std::clamp(wanted, pulled - change, pulled + change)));
+  drag_ = step_towards(drag_, heard_ ? damping(speed) * speed : 0, change);
+  // After a turn drag points the wrong way until the filter has followed: not at others' cost.
+  if (reserve_ < 0 && drag_ * way < 0) drag_ = 0;
+  const double force = pull_ + drag_;
+  return {force, {in.position, in.velocity, force, TdpaPayload{energy_in_}}};
 }
 
 TdpaPatient::TdpaPatient(const TdpaConfig& config) noexcept

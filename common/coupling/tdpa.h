@@ -10,32 +10,43 @@
 namespace palp::coupling {
 
 struct TdpaConfig {
-  double damping{1.5};           ///< [N s/m], deliberate: it feeds energy forward
-  double damping_max{20};        ///< [N s/m], of the controller
-  double velocity_cut_off{60};   ///< [Hz]
-  double direction_speed{0.03};  ///< [m/s], outwards: here the limit on what comes back is in full
-  double energy_soft{0.1e-3};    ///< [J], below it what comes back fades, so that it never snaps
-  double slew{25};               ///< [N/s], of the force
-  double drift_rate{20};         ///< [1/s], of what the controller kept the stage from doing
-  double speed_max{0.15};        ///< [m/s], of the target
-  double sensor_cut_off{20};     ///< [Hz], the transducer's pole: the tip is given the same
-  double fade_out{0.2};          ///< [s], in Hold
-  double fade_in{0.5};           ///< [s]
-  double period{1e-3};           ///< [s]
+  double damping{1.5};          ///< [N s/m], on the way in; deliberate: it feeds energy forward
+  double damping_back{2.4};     ///< [N s/m], the same on the way back in the air ...
+  double damping_out{10};       ///< [N s/m], ... and in contact
+  double velocity_cut_off{60};  ///< [Hz]
+  /// [N/m], of the spring through which the hand is given the tip's force; > tissue's. With the
+  /// damping above half of stiffness times period, holding the force for a period costs nothing.
+  double spring{650};
+  double reserve{0.04e-3};    ///< [J], kept here of what the hand puts in; the rest goes on
+  double slew{25};            ///< [N/s], of the force
+  double drift_rate{20};      ///< [1/s], of what the controller kept the stage from doing
+  double speed_max{0.15};     ///< [m/s], of the target
+  double sensor_cut_off{20};  ///< [Hz], the transducer's pole: the tip is given the same
+  double fade_out{0.2};       ///< [s], in Hold
+  double fade_in{0.5};        ///< [s]
+  double period{1e-3};        ///< [s]
 };
 
+/// The hand holds one end of a spring; at its other end is what the tip feels. The spring makes the
+/// controller exact and smooth: whatever raises its force costs energy that is known to be there,
+/// and where there is none left the force falls along the spring, not at once. At every tick:
+/// reserve + stored = work of the hand + energy out - energy in, energy out <= energy known to have
+/// entered at the other end, reserve >= 0 up to what holding the force for a tick may cost.
 class TdpaSurgeon {
  public:
   explicit TdpaSurgeon(const TdpaConfig& config) noexcept;
   void begin_epoch(double position) noexcept;
   SurgeonOutput step(const SurgeonInput& in, Duration dt) noexcept;
 
-  [[nodiscard]] double energy_out() const noexcept { return energy_out_; }  ///< [J]
+  [[nodiscard]] double energy_out() const noexcept { return energy_out_; }        ///< [J]
+  [[nodiscard]] double energy_remote() const noexcept { return energy_remote_; }  ///< [J]
 
  private:
   void hear(std::span<const Incoming> arrived) noexcept;
-  void account(double work) noexcept;
-  [[nodiscard]] double passive_force(double speed) const noexcept;
+  [[nodiscard]] double stored() const noexcept;
+  void account(double work, double way) noexcept;
+  [[nodiscard]] double damping(double speed) const noexcept;
+  void approach_tip_force(double wanted) noexcept;
 
   TdpaConfig config_;
   VelocityEstimate velocity_;
@@ -44,7 +55,9 @@ class TdpaSurgeon {
   double energy_in_{};        ///< [J], that entered here
   double energy_out_{};       ///< [J], that left here
   double energy_remote_{};    ///< [J], known to have entered there
-  double force_{};            ///< [N], of the last tick
+  double reserve_{};          ///< [J], entered here and not yet sent on
+  double pull_{};             ///< [N], of the spring
+  double drag_{};             ///< [N], of the damping
   bool heard_{};
   Ramp fade_{1};
 };

@@ -15,6 +15,8 @@ coupling::MmtConfig make_mmt(const proto::config::Mmt& message) {
   config.tank_max = 3 * config.tank_start;
   config.contact_damping = message.contact_damping_n_s_per_m();
   config.air_damping = message.air_damping_n_s_per_m();
+  config.repay_contact = message.repay_contact_n_s_per_m();
+  config.repay_air = message.repay_air_n_s_per_m();
   config.stage_lag = message.stage_lag_ms() * 1e-3;
   config.estimator.sensor_cut_off = message.sensor_pole_hz();
   config.estimator.sensor_quantum = message.sensor_quantum_mn() * 1e-3;
@@ -34,9 +36,11 @@ coupling::WaveConfig make_wave(const proto::config::Wave& message) {
 coupling::TdpaConfig make_tdpa(const proto::config::Tdpa& message) {
   coupling::TdpaConfig config;
   config.damping = message.damping_n_s_per_m();
+  config.damping_back = message.damping_back_n_s_per_m();
+  config.damping_out = message.damping_out_n_s_per_m();
   config.slew = message.slew_n_per_s();
-  config.energy_soft = message.soft_mj() * 1e-3;
-  config.direction_speed = message.outward_m_per_s();
+  config.reserve = message.reserve_mj() * 1e-3;
+  config.spring = message.spring_n_per_m();
   return config;
 }
 
