@@ -10,8 +10,9 @@ namespace {
 
 constexpr std::uint64_t kLieStream = 0x6c69'6500'0000ULL;  // "lie"
 constexpr Duration kLieLength = std::chrono::milliseconds{50};
-constexpr double kSurfaceMax = 3e-3;                                      // [m]
-constexpr std::array<double, kModelTerms> kTermMax{0.3, 0.1, 0.02, 0.1};  // [N]
+constexpr double kSurfaceMax = 3e-3;                                            // [m]
+constexpr std::array<double, kModelTerms> kTermMax{0.1, 0.3, 0.1, 0.02, 1e-4};  // [N]
+constexpr double kShareMax = 0.3;  // [-], of what relaxes
 
 }  // namespace
 
@@ -33,6 +34,9 @@ std::size_t LyingCodec::encode(const link::WireTelegram& telegram,
   model.surface = kSurfaceMax * (2 * uniform(0) - 1);
   for (std::size_t term = 0; term < kModelTerms; ++term) {
     model.c[term] = kTermMax[term] * uniform(1 + term);
+  }
+  for (std::size_t k = 0; k < model.relaxing.size(); ++k) {
+    model.relaxing[k] = kShareMax * uniform(1 + kModelTerms + k);
   }
   model.depth_max = 5e-3;
   lying.telegram.port.payload = model;

@@ -30,9 +30,10 @@ void fold_port(Digest& digest, const PortSample& port) noexcept {
   } else if (const auto* tdpa = std::get_if<TdpaPayload>(&port.payload)) {
     fold(digest, tdpa->energy_in);
   } else if (const auto* model = std::get_if<ModelPayload>(&port.payload)) {
-    fold_all(digest, model->version, model->c[0], model->c[1], model->c[2], model->c[3]);
+    fold_all(digest, model->version);
+    for (const double c : model->c) fold(digest, c);
+    for (const double share : model->relaxing) fold(digest, share);
     fold_all(digest, model->swing, model->swing_quadrature, model->swing_rate);
-    fold_all(digest, model->relaxing_share, model->relaxing_time);
     fold_all(digest, model->surface, model->depth_max, model->residual);
   }
 }

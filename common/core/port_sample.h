@@ -24,13 +24,15 @@ struct TdpaPayload {
 
 inline constexpr double kModelDepthScale = 1e-3;  ///< [m], L0: a constant of the protocol
 
-/// [L0]: where the fourth term bends. A round tip of 5 mm radius that goes in by millimetres meets
+/// [L0]: where the second term bends. A round tip of 5 mm radius that goes in by millimetres meets
 /// less new tissue than Hertz's parabola: its force grows more slowly than xi^1.5.
 inline constexpr double kModelBend = 10;
-inline constexpr std::size_t kModelTerms = 4;
+inline constexpr std::size_t kModelTerms = 5;
+/// [s]: what tissues relax by within seconds, as shares of two times (a Prony series).
+inline constexpr std::array<double, 2> kModelTimes{0.5, 2.5};
 
-/// mmt, patient to surgeon: F = c1*xi^1.5 + c2*xi^2 + c3*xi^3 + c4*xi^1.5/sqrt(1 + xi/10) [N],
-/// xi = max(0, d)/L0.
+/// mmt, patient to surgeon: f = c1*xi + c2*xi^1.5/sqrt(1 + xi/10) + c3*xi^2 + c4*xi^3 + c5*xi^5
+/// [N], xi = max(0, d)/L0.
 struct ModelPayload {
   std::uint32_t version{};              ///< 0: none yet
   std::array<double, kModelTerms> c{};  ///< [N], each >= 0
@@ -42,9 +44,9 @@ struct ModelPayload {
   double swing{};             ///< [m]
   double swing_quadrature{};  ///< [m]
   double swing_rate{};        ///< [rad/s]
-  /// Tissue that relaxes answers f + share (f - z), z' = (f - z)/time: f is what it comes to.
-  double relaxing_share{};  ///< [-], >= 0
-  double relaxing_time{};   ///< [s]
+  /// Tissue that relaxes answers f + sum of share (f - z), z' = (f - z)/time, never below 0: f is
+  /// what it comes to.
+  std::array<double, kModelTimes.size()> relaxing{};  ///< [-], the shares, each >= 0
 };
 
 using CouplingPayload = std::variant<std::monostate, WavePayload, TdpaPayload, ModelPayload>;

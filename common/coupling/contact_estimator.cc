@@ -12,6 +12,8 @@ namespace {
 
 using std::numbers::pi;
 
+constexpr double kClosed = 1e-3;       // [-], of the spread of what is not open to the data
+constexpr double kPullMost = 5;        // [-], of the elastic force
 constexpr double kGridStep = 0.05e-3;  // [m]
 constexpr std::size_t kMiddle = 32;
 constexpr double kMeanGain = 0.1;              // per tick: 10 ms
@@ -27,16 +29,19 @@ constexpr double kBreathSpeed = 10e-3;       // [m/s], the same where the surfac
 constexpr double kBreathWeightMin = 0.4;     // [-], and what is too slow to say anything there
 constexpr double kStillWeight = 0.2;         // [-], of an equation that repeats the last one
 constexpr std::size_t kNear = 4;             // candidates around the best that are always judged
-constexpr std::size_t kStride = 6;           // of the others, one in so many
+constexpr std::size_t kStride = 12;          // of the others, one in so many
 constexpr std::size_t kEdge = 3;             // so near the grid's end it is moved
-// Spread of the prior in [N]: in the order of the terms. The orders of a 5 mm ball on tissue of
-// tens of kPa, with an inclusion 5 mm deep; wide against what one tap tells.
-constexpr std::array<double, kModelTerms> kSpread{0.06, 0.02, 0.004, 0.06};
+// Spread of the prior, in the order of the terms: the shapes in [N], of the orders of a 5 mm ball
+// on tissue of tens of kPa with an inclusion 5 mm deep, wide against what one tap tells; the shares
+// that relax [-]; the damping [s/m]. The linear shape is held closer: a little of it and a surface
+// a little higher look alike.
+constexpr std::array<double, kModelTerms + kModelTimes.size() + 1> kSpread{
+    0.02, 0.03, 0.02, 0.004, 1e-4, 0.02, 0.02, 1};
 
 /// Index of (row, column >= row) of a symmetric matrix kept by rows.
-constexpr std::size_t pair(std::size_t row, std::size_t column) noexcept {
+constexpr std::size_t pair(std::size_t terms, std::size_t row, std::size_t column) noexcept {
   if (row > column) std::swap(row, column);
-  return row * kModelTerms - row * (row + 1) / 2 + column;
+  return row * terms - row * (row + 1) / 2 + column;
 }
 
 }  // namespace
@@ -46,10 +51,7 @@ ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcep
       gain_{LowPass{config.sensor_cut_off, config.period}.gain()},
       tip_{config.sensor_cut_off, config.period},
       swing_{config.period} {
-  // Between Hertz's law and the one for a tip that is not a parabola.
-  const double hertz = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
-  expected_[0] = 0.5 * hertz;
-  expected_[3] = 0.5 * hertz;
+  expected_[1] = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
 }
 
 double ContactEstimator::surface_of(std::size_t candidate) const noexcept {
@@ -66,10 +68,8 @@ void ContactEstimator::sense_noise(double force) noexcept {
 
 void ContactEstimator::place_grid(double centre) noexcept {
   centre_ = centre;
-  for (std::size_t term = 0; term < kModelTerms; ++term) {
-    right_[term].fill(0);
-    box_[term].fill(0);
-  }
+  for (Lane& lane : right_) lane.fill(0);
+  for (Lane& lane : box_) lane.fill(0);
   for (Lane& lane : normal_) lane.fill(0);
   square_ = 0;
   box_force_ = 0;
@@ -77,8 +77,8 @@ void ContactEstimator::place_grid(double centre) noexcept {
   box_tip_ = tip_.value();
   for (std::size_t i = 0; i < kCandidates; ++i) {
     const double xi = std::max(0.0, tip_.value() - surface_of(i)) / kModelDepthScale;
-    const ModelShapes shapes = model_shapes(xi);
-    for (std::size_t term = 0; term < kModelTerms; ++term) shapes_[term][i] = shapes.force[term];
+    const auto shapes = model_shapes(xi);
+    for (std::size_t term = 0; term < kModelTerms; ++term) shapes_[term][i] = shapes[term];
     found_[i] = expected_;
   }
   best_ = kMiddle;
@@ -91,7 +91,8 @@ void ContactEstimator::new_place() noexcept {
   contact_here_ = false;
   deepest_ = -1;
   if (!placed_) return;
-  expected_ = model_.c;
+  std::copy(model_.c.begin(), model_.c.end(), expected_.begin());
+  std::copy(model_.relaxing.begin(), model_.relaxing.end(), expected_.begin() + kModelTerms);
   place_grid(model_.surface);
 }
 
@@ -112,18 +113,40 @@ void ContactEstimator::filter_shapes(double position) noexcept {
   for (std::size_t i = 0; i < kCandidates; ++i) {
     const double xi = std::max(0.0, scaled - kStep * static_cast<double>(static_cast<int>(i)));
     const double square = xi * xi;
-    const double hertz = xi * std::sqrt(xi);
-    shapes_[0][i] += gain_ * (hertz - shapes_[0][i]);
-    shapes_[1][i] += gain_ * (square - shapes_[1][i]);
-    shapes_[2][i] += gain_ * (square * xi - shapes_[2][i]);
-    shapes_[3][i] += gain_ * (hertz / std::sqrt(1 + xi * kUnbend) - shapes_[3][i]);
+    const double cube = square * xi;
+    const double bent = xi * std::sqrt(xi / (1 + xi * kUnbend));
+    shapes_[0][i] += gain_ * (xi - shapes_[0][i]);
+    shapes_[1][i] += gain_ * (bent - shapes_[1][i]);
+    shapes_[2][i] += gain_ * (square - shapes_[2][i]);
+    shapes_[3][i] += gain_ * (cube - shapes_[3][i]);
+    shapes_[4][i] += gain_ * (cube * square - shapes_[4][i]);
   }
 }
 
-double ContactEstimator::predicted() const noexcept {
+double ContactEstimator::elastic() const noexcept {
   double force = 0;
   for (std::size_t term = 0; term < kModelTerms; ++term) {
     force += found_[best_][term] * shapes_[term][best_];
+  }
+  return force;
+}
+
+/// What lags is seen through the best model so far: it is a small part of the force, and that model
+/// becomes better.
+void ContactEstimator::relax() noexcept {
+  const double now = elastic();
+  for (std::size_t k = 0; k < past_.size(); ++k) {
+    past_[k] += config_.period / kModelTimes[k] * (now - past_[k]);
+    // Tissue does not pull.
+    beside_[k] = std::max(now - past_[k], -kPullMost * now);
+  }
+  beside_.back() = now * tip_speed_;
+}
+
+double ContactEstimator::predicted() const noexcept {
+  double force = elastic();
+  for (std::size_t k = 0; k < beside_.size(); ++k) {
+    force += found_[best_][kModelTerms + k] * beside_[k];
   }
   return force;
 }
@@ -141,18 +164,25 @@ void ContactEstimator::collect(double force) noexcept {
     return;
   }
   if (box_count_ == 0) {
-    box_ = shapes_;
+    for (Lane& lane : box_) lane.fill(0);
     box_force_ = 0;
-  } else {
-    for (std::size_t term = 0; term < kModelTerms; ++term) {
-      for (std::size_t i = 0; i < kCandidates; ++i) box_[term][i] += shapes_[term][i];
-    }
+  }
+  for (std::size_t term = 0; term < kModelTerms; ++term) {
+    for (std::size_t i = 0; i < kCandidates; ++i) box_[term][i] += shapes_[term][i];
+  }
+  for (std::size_t k = 0; k < beside_.size(); ++k) {
+    for (double& sum : box_[kModelTerms + k]) sum += beside_[k];
   }
   box_force_ += force - (model_.version > 0 ? rounding_bias(predicted()) : 0);
   if (++box_count_ < kBox) return;
   box_count_ = 0;
   absorb();
   search();
+}
+
+/// [N^2], of the mean over a box.
+double ContactEstimator::equation_noise() const noexcept {
+  return std::max(noise_square_, config_.sensor_quantum * config_.sensor_quantum / 12) / kBox;
 }
 
 void ContactEstimator::absorb() noexcept {
@@ -172,8 +202,8 @@ void ContactEstimator::absorb() noexcept {
   }
   square_ = keep * square_ + weight * force * force;
   std::size_t at = 0;
-  for (std::size_t row = 0; row < kModelTerms; ++row) {
-    for (std::size_t column = row; column < kModelTerms; ++column, ++at) {
+  for (std::size_t row = 0; row < kTerms; ++row) {
+    for (std::size_t column = row; column < kTerms; ++column, ++at) {
       for (std::size_t i = 0; i < kCandidates; ++i) {
         normal_[at][i] = keep * normal_[at][i] + weight * box_[row][i] * box_[column][i];
       }
@@ -185,32 +215,35 @@ void ContactEstimator::absorb() noexcept {
 }
 
 /// Coefficients >= 0 of least cost: an active set that starts from the last solution and grows or
-/// shrinks by one term at a time (Lawson and Hanson, NNLS), at most 12 times.
+/// shrinks by one term at a time (Lawson and Hanson, NNLS), at most 16 times.
 ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate) noexcept {
-  const double noise =
-      std::max(noise_square_, config_.sensor_quantum * config_.sensor_quantum / 12) / kBox;
-  std::array<std::array<double, kModelTerms>, kModelTerms> a{};
+  const double noise = equation_noise();
+  std::array<std::array<double, kTerms>, kTerms> a{};
   Terms b{};
-  for (std::size_t row = 0; row < kModelTerms; ++row) {
-    for (std::size_t column = 0; column < kModelTerms; ++column) {
-      a[row][column] = normal_[pair(row, column)][candidate];
+  for (std::size_t row = 0; row < kTerms; ++row) {
+    for (std::size_t column = 0; column < kTerms; ++column) {
+      a[row][column] = normal_[pair(kTerms, row, column)][candidate];
     }
-    const double prior = noise / (kSpread[row] * kSpread[row]);
+    // What relaxes and what swings with a breath look alike: until the surface is known to stand
+    // still nothing relaxes.
+    const bool closed = !swing_.still() && row >= kModelTerms && row + 1 < kTerms;
+    const double spread = closed ? kClosed * kSpread[row] : kSpread[row];
+    const double prior = noise / (spread * spread);
     a[row][row] += prior;
-    b[row] = right_[row][candidate] + prior * expected_[row];
+    b[row] = right_[row][candidate] + (closed ? 0 : prior * expected_[row]);
   }
 
   Terms c = found_[candidate];
-  std::array<bool, kModelTerms> used{};
-  for (std::size_t row = 0; row < kModelTerms; ++row) used[row] = c[row] > 0;
-  for (int round = 0; round < 12; ++round) {
+  std::array<bool, kTerms> used{};
+  for (std::size_t row = 0; row < kTerms; ++row) used[row] = c[row] > 0;
+  for (int round = 0; round < 16; ++round) {
     // Least squares over the terms in use: elimination in place.
-    std::array<std::size_t, kModelTerms> map{};
+    std::array<std::size_t, kTerms> map{};
     std::size_t count = 0;
-    for (std::size_t row = 0; row < kModelTerms; ++row) {
+    for (std::size_t row = 0; row < kTerms; ++row) {
       if (used[row]) map[count++] = row;
     }
-    std::array<std::array<double, kModelTerms>, kModelTerms> m{};
+    std::array<std::array<double, kTerms>, kTerms> m{};
     Terms y{};
     for (std::size_t r = 0; r < count; ++r) {
       y[r] = b[map[r]];
@@ -230,7 +263,7 @@ ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate) noexce
     }
     // A negative one leaves; as far as the way there allows.
     double way = 1;
-    std::size_t leaves = kModelTerms;
+    std::size_t leaves = kTerms;
     for (std::size_t r = 0; r < count; ++r) {
       if (y[r] > 0) continue;
       const double from = c[map[r]];
@@ -241,35 +274,33 @@ ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate) noexce
       }
     }
     for (std::size_t r = 0; r < count; ++r) c[map[r]] += way * (y[r] - c[map[r]]);
-    if (leaves < kModelTerms) {
+    if (leaves < kTerms) {
       c[leaves] = 0;
       used[leaves] = false;
       continue;
     }
     // One that would help joins.
     double steepest = 1e-12;
-    std::size_t joins = kModelTerms;
-    for (std::size_t row = 0; row < kModelTerms; ++row) {
+    std::size_t joins = kTerms;
+    for (std::size_t row = 0; row < kTerms; ++row) {
       if (used[row]) continue;
       double gain = b[row];
-      for (std::size_t column = 0; column < kModelTerms; ++column)
-        gain -= a[row][column] * c[column];
+      for (std::size_t column = 0; column < kTerms; ++column) gain -= a[row][column] * c[column];
       const double relative = gain * kSpread[row];
       if (relative > steepest) {
         steepest = relative;
         joins = row;
       }
     }
-    if (joins == kModelTerms) break;
+    if (joins == kTerms) break;
     used[joins] = true;
   }
 
   found_[candidate] = c;
   double cost = square_;
-  for (std::size_t row = 0; row < kModelTerms; ++row) {
+  for (std::size_t row = 0; row < kTerms; ++row) {
     double product = 0;
-    for (std::size_t column = 0; column < kModelTerms; ++column)
-      product += a[row][column] * c[column];
+    for (std::size_t column = 0; column < kTerms; ++column) product += a[row][column] * c[column];
     cost += c[row] * (product - 2 * b[row]);
     cost += noise * (expected_[row] / kSpread[row]) * (expected_[row] / kSpread[row]);
   }
@@ -306,7 +337,8 @@ void ContactEstimator::search() noexcept {
 
 void ContactEstimator::publish(const Solution& solution) noexcept {
   ++model_.version;
-  model_.c = solution.c;
+  std::copy_n(solution.c.begin(), kModelTerms, model_.c.begin());
+  std::copy_n(solution.c.begin() + kModelTerms, model_.relaxing.size(), model_.relaxing.begin());
   model_.surface = surface_of(best_);
   model_.depth_max = std::max(0.0, deepest_ - model_.surface);
 }
@@ -318,11 +350,18 @@ void ContactEstimator::watch_surface(double position) noexcept {
   swing_.step();
   if (++swing_ticks_ % kBox != 0 || model_.version == 0 || force_mean_ < kSwingForce) return;
   const ContactModel believed = contact_model(model_);
+  double gain = 1;
+  double elastic = force_mean_;
+  for (std::size_t k = 0; k < past_.size(); ++k) {
+    gain += model_.relaxing[k];
+    elastic += model_.relaxing[k] * past_[k];
+  }
+  elastic /= gain;
   double depth = 0;
   double step = 8e-3;
   for (int i = 0; i < 14; ++i) {
     step *= 0.5;
-    if (believed.force(depth + step) < force_mean_) depth += step;
+    if (believed.force(depth + step) < elastic) depth += step;
   }
   const double slope = believed.slope(depth) / kSwingSlope;
   swing_.see(raw_tip_mean_ - depth, std::min(1.0, slope * slope));
@@ -344,7 +383,9 @@ void ContactEstimator::step(double position, double force) noexcept {
   model_.swing_quadrature = swing.quadrature;
   model_.swing_rate = swing.rate;
   const double halfway = moving - swing.now;  // as if the surface stood still
+  const double tip_before = tip_.value();
   tip_.step(halfway);
+  tip_speed_ = (tip_.value() - tip_before) / config_.period;
   force_mean_ += kMeanGain * (force - force_mean_);
   tip_mean_ += kMeanGain * (tip_.value() - tip_mean_);
 
@@ -378,6 +419,7 @@ void ContactEstimator::step(double position, double force) noexcept {
     deepest_ = std::max(deepest_, tip_.value());
   }
   filter_shapes(halfway);
+  relax();
   collect(force);
   if (model_.version > 0) model_.residual = force - predicted();
 }

@@ -25,8 +25,10 @@ struct ContactEstimatorConfig {
 /// Fits c and the surface of a ModelPayload: for each of 64 candidate surfaces the coefficients
 /// >= 0 of least squares with a broad prior, then the best surface. The shapes pass the
 /// transducer's pole before they meet the force, which has passed it too: a filter on one side
-/// only looks like hysteresis. What is known before the data is a prior, not a sample: it gives way
-/// to the first of them. Thread: rt; constant memory, bounded work. A value.
+/// only looks like hysteresis. What relaxes and what moves against the tip are found beside the
+/// shapes, so that they do not pass for stiffness; the second is not told. What is known before the
+/// data is a prior, not a sample: it gives way to the first of them. Thread: rt; constant memory,
+/// bounded work. A value.
 class ContactEstimator {
  public:
   explicit ContactEstimator(const ContactEstimatorConfig& config) noexcept;
@@ -40,9 +42,11 @@ class ContactEstimator {
 
  private:
   static constexpr std::size_t kCandidates = 64;
-  static constexpr std::size_t kPairs = kModelTerms * (kModelTerms + 1) / 2;
+  /// The shapes, what relaxes, and damping.
+  static constexpr std::size_t kTerms = kModelTerms + kModelTimes.size() + 1;
+  static constexpr std::size_t kPairs = kTerms * (kTerms + 1) / 2;
   using Lane = std::array<double, kCandidates>;
-  using Terms = std::array<double, kModelTerms>;
+  using Terms = std::array<double, kTerms>;
 
   struct Solution {
     Terms c{};
@@ -60,6 +64,9 @@ class ContactEstimator {
   [[nodiscard]] Solution solve(std::size_t candidate) noexcept;
   [[nodiscard]] double surface_of(std::size_t candidate) const noexcept;
   [[nodiscard]] double rounding_bias(double force) const noexcept;
+  [[nodiscard]] double equation_noise() const noexcept;
+  void relax() noexcept;
+  [[nodiscard]] double elastic() const noexcept;
   [[nodiscard]] double predicted() const noexcept;
 
   ContactEstimatorConfig config_;
@@ -69,6 +76,7 @@ class ContactEstimator {
   bool started_{};
   double position_before_{};  ///< [m]
   LowPass tip_;               ///< [m], behind the transducer's pole
+  double tip_speed_{};        ///< [m/s]
   double force_mean_{};       ///< [N], over 10 ms
   double tip_mean_{};         ///< [m], over 10 ms
   double noise_square_{};     ///< [N^2], of a reading in the air
@@ -81,11 +89,15 @@ class ContactEstimator {
   double centre_{};  ///< [m]
   std::uint32_t ticks_outside_{};
   alignas(64) std::array<Lane, kModelTerms> shapes_{};  ///< [-], filtered
-  alignas(64) std::array<Lane, kModelTerms> box_{};     ///< sum over the box
+  alignas(64) std::array<Lane, kTerms> box_{};          ///< sum over the box
   alignas(64) std::array<Lane, kPairs> normal_{};       ///< [-]
-  alignas(64) std::array<Lane, kModelTerms> right_{};   ///< [N]
+  alignas(64) std::array<Lane, kTerms> right_{};        ///< [N]
   double square_{};                                     ///< [N^2]
   double box_force_{};                                  ///< [N]
+  std::array<double, kModelTimes.size()> past_{};       ///< [N], elastic force, averaged
+  /// What comes beside the shapes: for each time the elastic force less its past [N], and the
+  /// elastic force times the tip's speed [N m/s].
+  std::array<double, kTerms - kModelTerms> beside_{};
   std::uint32_t box_count_{};
   double box_tip_{};  ///< [m], where the last box ended
 

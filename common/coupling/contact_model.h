@@ -7,16 +7,12 @@
 /// The passive contact law that the coupling `mmt` sends instead of delayed forces.
 namespace palp::coupling {
 
-/// The four shapes at a scaled depth xi [-] >= 0, in the order of ModelPayload::c.
-struct ModelShapes {
-  std::array<double, kModelTerms> force{};   ///< [-]
-  std::array<double, kModelTerms> energy{};  ///< [-], their integrals from 0
-};
-[[nodiscard]] ModelShapes model_shapes(double xi) noexcept;
+/// The shapes [-] at a scaled depth xi [-] >= 0, in the order of ModelPayload::c.
+[[nodiscard]] std::array<double, kModelTerms> model_shapes(double xi) noexcept;
 
-/// A spring without memory: with coefficients >= 0 its force is convex and rising in the depth and
-/// 0 at the surface, so that whatever is sent is passive. Deeper than `reach` it goes on along its
-/// tangent: what nobody measured is not extrapolated. A value.
+/// The elastic part, a spring without memory: with coefficients >= 0 its force is convex and rising
+/// in the depth and 0 at the surface, so that whatever is sent is passive. Deeper than `reach` it
+/// goes on along its tangent: what nobody measured is not extrapolated. A value.
 struct ContactModel {
   double surface{};                     ///< [m]
   std::array<double, kModelTerms> c{};  ///< [N], each >= 0
@@ -27,8 +23,38 @@ struct ContactModel {
   [[nodiscard]] double slope(double depth) const noexcept;   ///< [m] -> [N/m]
 };
 
-/// What a receiver may believe: numbers, c >= 0, a surface within `travel` [m] of 0, and no slope
-/// above `slope_max` [N/m] down to 5 mm.
+/// The elastic spring and what it was lately: a tissue that relaxes (quasi-linear, Fung 1993). With
+/// a past that stands still its force is convex and rising in the depth, like the elastic one's,
+/// and what it stores is the integral of it. A value.
+class RelaxingContact {
+ public:
+  using Shares = std::array<double, kModelTimes.size()>;
+
+  /// Another tissue with the same past. `relaxing` [-], each >= 0.
+  void become(const ContactModel& elastic, const Shares& relaxing) noexcept;
+  void forget() noexcept;
+  /// `span` [s] at `depth` [m].
+  void age(double depth, double span) noexcept;
+
+  [[nodiscard]] double force(double depth) const noexcept;   ///< [m] -> [N]
+  [[nodiscard]] double energy(double depth) const noexcept;  ///< [m] -> [J], integral of force
+  [[nodiscard]] const ContactModel& elastic() const noexcept { return elastic_; }
+  [[nodiscard]] const Shares& relaxing() const noexcept { return relaxing_; }
+
+ private:
+  void find_onset() noexcept;
+
+  ContactModel elastic_;
+  Shares relaxing_{};
+  Shares past_{};          ///< [N], elastic force on exponential averages
+  double gain_{1};         ///< [-], of the elastic force
+  double pull_{};          ///< [N], what the past takes away
+  double onset_{};         ///< [m], where a force begins: tissue does not pull
+  double onset_energy_{};  ///< [J], elastic, there
+};
+
+/// What a receiver may believe: numbers, c >= 0, shares between 0 and 1, a surface within `travel`
+/// [m] of 0, and no slope above `slope_max` [N/m] down to 5 mm, however fast.
 [[nodiscard]] bool is_sound(const ModelPayload& model, double travel, double slope_max) noexcept;
 
 /// How far beyond the deepest data a model is trusted [m].

@@ -36,9 +36,12 @@ void MmtSurgeon::begin_epoch(double position) noexcept {
 void MmtSurgeon::drop_model() noexcept {
   showing_ = false;
   stored_ = 0;
-  elastic_ = 0;
+  shown_force_ = 0;
   offset_ = 0;
-  shown_.c = {};
+  ContactModel nothing = shown_.elastic();
+  nothing.c = {};
+  shown_.become(nothing, {});
+  shown_.forget();
 }
 
 void MmtSurgeon::hear(std::span<const Incoming> arrived, Duration round_trip) noexcept {
@@ -53,6 +56,7 @@ void MmtSurgeon::hear(std::span<const Incoming> arrived, Duration round_trip) no
   version_ = model->version;
   if (model->version == 0) return;
   candidate_ = contact_model(*model);
+  candidate_relaxing_ = model->relaxing;
   swing_ = {model->swing, model->swing_quadrature, model->swing_rate};
   swing_age_ = 0.5 * seconds(round_trip);
 }
@@ -64,29 +68,35 @@ void MmtSurgeon::approach_candidate(double position, double depth, double dt) no
   for (double& coefficient : aim.c) coefficient *= presence_.value();
   // The surface swings on by itself; what is blended is the rest.
   const double swung = swing_.after(swing_age_);
-  shown_.surface += swung - swung_;
+  ContactModel elastic = shown_.elastic();
+  elastic.surface += swung - swung_;
   aim.surface += swung;
   swung_ = swung;
   if (!showing_ || (depth <= 0 && position <= aim.surface)) {
-    shown_ = aim;
+    shown_.become(aim, candidate_relaxing_);
     showing_ = true;
     return;
   }
   const double share = -std::expm1(-dt / config_.blend);
-  shown_.surface += share * (aim.surface - shown_.surface);
-  shown_.reach += share * (aim.reach - shown_.reach);
+  elastic.surface += share * (aim.surface - elastic.surface);
+  elastic.reach += share * (aim.reach - elastic.reach);
   for (std::size_t term = 0; term < kModelTerms; ++term) {
-    shown_.c[term] += share * (aim.c[term] - shown_.c[term]);
+    elastic.c[term] += share * (aim.c[term] - elastic.c[term]);
   }
+  RelaxingContact::Shares relaxing = shown_.relaxing();
+  for (std::size_t k = 0; k < relaxing.size(); ++k) {
+    relaxing[k] += share * (candidate_relaxing_[k] - relaxing[k]);
+  }
+  shown_.become(elastic, relaxing);
 }
 
 /// The least offset with which energy and force stay below their limits.
 void MmtSurgeon::choose_offset(double position, double energy_max, double force_max) noexcept {
-  const double whole = position - shown_.surface;
+  const double whole = depth_at(position);
   const auto fits = [&](double offset) {
     const double depth = whole - offset;
-    return shown_.energy(depth) <= energy_max + kEnergyTolerance &&
-           shown_.force(depth) <= force_max + kForceTolerance;
+    return shown_.force(depth) <= force_max + kForceTolerance &&
+           shown_.energy(depth) <= energy_max + kEnergyTolerance;
   };
   offset_ = 0;
   if (whole <= 0 || fits(0)) return;
@@ -101,7 +111,7 @@ void MmtSurgeon::choose_offset(double position, double energy_max, double force_
 
 /// How fast a new model may come in. A large force that appears under a light hand throws it back.
 double MmtSurgeon::slew_for(double position, Duration round_trip) const noexcept {
-  const double missing = shown_.force(position - shown_.surface) - elastic_;
+  const double missing = shown_.force(depth_at(position)) - shown_force_;
   const double room = (config_.gap_large - missing) / (config_.gap_large - config_.gap_small);
   const double small =
       round_trip < config_.round_trip_short ? config_.slew_short : config_.slew_small;
@@ -143,23 +153,24 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   }
   if (in.state == SiteState::Retract) presence_.fall(span, config_.fade);
 
-  const double depth_before = in.position - shown_.surface - offset_;
+  const double depth_before = depth_at(in.position) - offset_;
   const double moved = shown_.energy(depth_before);
   const double force_before = shown_.force(depth_before);
   tank_ = std::min(config_.tank_max, tank_ + work - (moved - stored_));
 
+  shown_.age(depth_before, span);
   approach_candidate(in.position, depth_before, span);
   const double slew = slew_for(in.position, in.round_trip);
   const double force_max =
-      std::max(force_before + config_.slew_beside * span, elastic_ + slew * span);
+      std::max(force_before + config_.slew_beside * span, shown_force_ + slew * span);
   choose_offset(in.position, std::max(0.0, moved + tank_), force_max);
 
-  const double depth = in.position - shown_.surface - offset_;
+  const double depth = depth_at(in.position) - offset_;
   stored_ = shown_.energy(depth);
   tank_ -= stored_ - moved;
 
-  elastic_ = shown_.force(depth);
-  const double force = damp(elastic_, depth, speed);
+  shown_force_ = shown_.force(depth);
+  const double force = damp(shown_force_, depth, speed);
   return {force, {in.position, in.velocity, force, std::monostate{}}};
 }
 

@@ -54,7 +54,7 @@ class MmtSurgeon {
 
   [[nodiscard]] double tank() const noexcept { return tank_; }      ///< [J]
   [[nodiscard]] double stored() const noexcept { return stored_; }  ///< [J], in the shown model
-  [[nodiscard]] const ContactModel& shown() const noexcept { return shown_; }
+  [[nodiscard]] const RelaxingContact& shown() const noexcept { return shown_; }
   [[nodiscard]] double offset() const noexcept {
     return offset_;
   }  ///< [m], shown surface above x_c
@@ -64,6 +64,9 @@ class MmtSurgeon {
   void hear(std::span<const Incoming> arrived, Duration round_trip) noexcept;
   void drop_model() noexcept;
   void approach_candidate(double position, double depth, double dt) noexcept;
+  [[nodiscard]] double depth_at(double position) const noexcept {
+    return position - shown_.elastic().surface;
+  }
   [[nodiscard]] double slew_for(double position, Duration round_trip) const noexcept;
   void choose_offset(double position, double energy_max, double force_max) noexcept;
   [[nodiscard]] double debt() const noexcept;
@@ -74,14 +77,15 @@ class MmtSurgeon {
   double position_before_{};  ///< [m]
   double tank_;               ///< [J]
   double stored_{};           ///< [J]
-  double elastic_{};          ///< [N], of the shown model, last tick
+  double shown_force_{};      ///< [N], of the shown model, last tick
   double offset_{};           ///< [m]
-  ContactModel shown_;
+  RelaxingContact shown_;
   bool showing_{};
-  Swing swing_;                            ///< of the newest model, when it was sent
-  double swing_age_{};                     ///< [s], since then
-  double swung_{};                         ///< [m], of the shown surface
-  std::optional<ContactModel> candidate_;  ///< none: nothing was learned yet
+  Swing swing_;                                   ///< of the newest model, when it was sent
+  double swing_age_{};                            ///< [s], since then
+  double swung_{};                                ///< [m], of the shown surface
+  std::optional<ContactModel> candidate_;         ///< none: nothing was learned yet
+  RelaxingContact::Shares candidate_relaxing_{};  ///< [-]
   std::uint32_t version_{};
   Ramp presence_{1};
   std::uint64_t refused_{};

@@ -16,6 +16,7 @@ constexpr double kMemory = 8;               // [s] of contact
 constexpr double kJudgeEvery = 0.05;        // [s]
 constexpr double kSeenFor = 2.5;            // [s], since the first sight
 constexpr double kAmplitudeMin = 0.2e-3;    // [m]
+constexpr double kStillBelow = 0.35e-3;     // [m]
 constexpr double kAmplitudeMax = 4e-3;      // [m]
 constexpr double kExplainedMin = 0.6;       // [-], to begin believing
 constexpr double kExplainedLeast = 0.3;     // [-], to go on
@@ -133,6 +134,7 @@ void SurfaceSwing::judge() noexcept {
   const double explained = best.explained / spread;
   believed_ = amplitude > kAmplitudeMin && amplitude < kAmplitudeMax &&
               explained > (believed_ ? kExplainedLeast : kExplainedMin);
+  still_ = !believed_ && (still_ || amplitude < kStillBelow);
   if (!believed_) return;
   // Between the frequencies tried: the top of the parabola through the best and its neighbours.
   double between = 0;

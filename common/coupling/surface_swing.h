@@ -27,6 +27,8 @@ class SurfaceSwing {
   void new_mean() noexcept;
 
   [[nodiscard]] Swing swing() const noexcept;
+  /// Seen for long enough to say that it does not breathe.
+  [[nodiscard]] bool still() const noexcept { return still_; }
 
  private:
   static constexpr std::size_t kFrequencies = 32;
@@ -75,6 +77,7 @@ class SurfaceSwing {
   Swing last_;         ///< as judged last, `judged_` ago
   double presence_{};  ///< [-], fades in and out
   bool believed_{};
+  bool still_{};
 };
 
 }  // namespace palp::coupling

@@ -26,10 +26,12 @@ bool well_formed(const ModelPayload& model) noexcept {
   for (const double c : model.c) {
     if (!within(c, kForceMax)) return false;
   }
+  for (const double share : model.relaxing) {
+    if (!within(share, kForceMax)) return false;
+  }
   return within(model.surface, kLengthMax) && within(model.depth_max, kLengthMax) &&
          within(model.residual, kForceMax) && within(model.swing, kLengthMax) &&
-         within(model.swing_quadrature, kLengthMax) && within(model.swing_rate, kSpeedMax) &&
-         within(model.relaxing_share, kForceMax) && within(model.relaxing_time, kSpeedMax);
+         within(model.swing_quadrature, kLengthMax) && within(model.swing_rate, kSpeedMax);
 }
 
 /// A raw copy may hold any index: then none of these, and not well formed.

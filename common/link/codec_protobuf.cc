@@ -35,15 +35,16 @@ void write(const CouplingPayload& payload, wire::Sample& out) {
     target.set_c1_n(static_cast<float>(model->c[0]));
     target.set_c2_n(static_cast<float>(model->c[1]));
     target.set_c3_n(static_cast<float>(model->c[2]));
+    target.set_c4_n(static_cast<float>(model->c[3]));
+    target.set_c5_n(static_cast<float>(model->c[4]));
     target.set_surface_m(static_cast<float>(model->surface));
     target.set_depth_max_m(static_cast<float>(model->depth_max));
     target.set_residual_n(static_cast<float>(model->residual));
-    target.set_c4_n(static_cast<float>(model->c[3]));
     target.set_swing_m(static_cast<float>(model->swing));
     target.set_swing_quadrature_m(static_cast<float>(model->swing_quadrature));
     target.set_swing_rad_per_s(static_cast<float>(model->swing_rate));
-    target.set_relaxing_share(static_cast<float>(model->relaxing_share));
-    target.set_relaxing_s(static_cast<float>(model->relaxing_time));
+    target.set_relaxing_fast(static_cast<float>(model->relaxing[0]));
+    target.set_relaxing_slow(static_cast<float>(model->relaxing[1]));
   }
   static_assert(std::variant_size_v<CouplingPayload> == 4, "a new payload needs its line here");
 }
@@ -80,19 +81,20 @@ CouplingPayload read_payload(const wire::Sample& sample) {
       return TdpaPayload{sample.tdpa().energy_in_j()};
     case wire::Sample::kModel: {
       const wire::Model& model = sample.model();
-      return ModelPayload{.version = model.version(),
-                          .c = {double{model.c1_n()},
-                                double{model.c2_n()},
-                                double{model.c3_n()},
-                                double{model.c4_n()}},
-                          .surface = double{model.surface_m()},
-                          .depth_max = double{model.depth_max_m()},
-                          .residual = double{model.residual_n()},
-                          .swing = double{model.swing_m()},
-                          .swing_quadrature = double{model.swing_quadrature_m()},
-                          .swing_rate = double{model.swing_rad_per_s()},
-                          .relaxing_share = double{model.relaxing_share()},
-                          .relaxing_time = double{model.relaxing_s()}};
+      return ModelPayload{
+          .version = model.version(),
+          .c = {double{model.c1_n()},
+                double{model.c2_n()},
+                double{model.c3_n()},
+                double{model.c4_n()},
+                double{model.c5_n()}},
+          .surface = double{model.surface_m()},
+          .depth_max = double{model.depth_max_m()},
+          .residual = double{model.residual_n()},
+          .swing = double{model.swing_m()},
+          .swing_quadrature = double{model.swing_quadrature_m()},
+          .swing_rate = double{model.swing_rad_per_s()},
+          .relaxing = {double{model.relaxing_fast()}, double{model.relaxing_slow()}}};
     }
     case wire::Sample::PAYLOAD_NOT_SET:
       break;

@@ -31,15 +31,14 @@ CouplingPayload payload_of(const Message& in) {
   if (in.has_model()) {
     const auto& model = in.model();
     return ModelPayload{.version = model.version(),
-                        .c = {model.c1_n(), model.c2_n(), model.c3_n(), model.c4_n()},
+                        .c = {model.c1_n(), model.c2_n(), model.c3_n(), model.c4_n(), model.c5_n()},
                         .surface = model.surface_m(),
                         .depth_max = model.depth_max_m(),
                         .residual = model.residual_n(),
                         .swing = model.swing_m(),
                         .swing_quadrature = model.swing_quadrature_m(),
                         .swing_rate = model.swing_rad_per_s(),
-                        .relaxing_share = model.relaxing_share(),
-                        .relaxing_time = model.relaxing_s()};
+                        .relaxing = {model.relaxing_fast(), model.relaxing_slow()}};
   }
   return {};
 }

@@ -45,15 +45,16 @@ void put_payload(const CouplingPayload& payload, Message& out) {
                           to.set_c1_n(model.c[0]);
                           to.set_c2_n(model.c[1]);
                           to.set_c3_n(model.c[2]);
+                          to.set_c4_n(model.c[3]);
+                          to.set_c5_n(model.c[4]);
                           to.set_surface_m(model.surface);
                           to.set_depth_max_m(model.depth_max);
                           to.set_residual_n(model.residual);
-                          to.set_c4_n(model.c[3]);
                           to.set_swing_m(model.swing);
                           to.set_swing_quadrature_m(model.swing_quadrature);
                           to.set_swing_rad_per_s(model.swing_rate);
-                          to.set_relaxing_share(model.relaxing_share);
-                          to.set_relaxing_s(model.relaxing_time);
+                          to.set_relaxing_fast(model.relaxing[0]);
+                          to.set_relaxing_slow(model.relaxing[1]);
                         }},
              payload);
 }

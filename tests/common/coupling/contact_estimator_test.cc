@@ -64,6 +64,49 @@ TEST(ContactEstimatorTest, FindsALawThatIsNotOneOfItsOwn) {
   EXPECT_NEAR(secant(felt) / secant(over_inclusion), 1, 2e-3);
 }
 
+TEST(ContactEstimatorTest, FindsTissuesThatStiffenExponentially) {
+  for (const double per_mm : {0.3, 0.45, 0.7}) {
+    const auto tissue = [per_mm](double depth) {
+      return depth > 0 ? 0.036 / per_mm * std::expm1(1e3 * per_mm * depth) : 0;
+    };
+    const ContactModel found = contact_model(learn(tissue));
+    for (const double depth : {2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3}) {
+      const double slope = 36 * std::exp(1e3 * per_mm * depth);
+      EXPECT_NEAR(found.slope(depth - found.surface) / slope, 1, 0.03) << per_mm << ' ' << depth;
+    }
+  }
+}
+
+TEST(ContactEstimatorTest, FindsWhatATissueThatRelaxesComesTo) {
+  for (const double time : {0.4, 1.0, 2.5}) {
+    double past = 0;
+    const auto tissue = [&](double depth) {  // called every 0.1 ms
+      const double elastic = hertz(depth);
+      past += 1e-4 / time * (elastic - past);
+      return std::max(0.0, 1.1 * elastic - 0.1 * past);
+    };
+    const ModelPayload model = learn(tissue);
+    const ContactModel found = contact_model(model);
+    const auto felt = [&](double x) { return found.force(x - found.surface); };
+    EXPECT_NEAR(secant(felt) / secant(hertz), 1, 0.03) << time;
+    EXPECT_GT(model.relaxing[0] + model.relaxing[1], 0) << time;
+  }
+}
+
+TEST(ContactEstimatorTest, DampingIsNoStiffnessAndDoesNotRelax) {
+  double before = 0;
+  const auto tissue = [&](double depth) {
+    const double rate = (depth - before) / 1e-4;
+    before = depth;
+    return std::max(0.0, hertz(depth) * (1 + 1.5 * rate));
+  };
+  const ModelPayload model = learn(tissue);
+  const ContactModel found = contact_model(model);
+  const auto felt = [&](double x) { return found.force(x - found.surface); };
+  EXPECT_NEAR(secant(felt) / secant(hertz), 1, 0.01);
+  EXPECT_LT(model.relaxing[0] + model.relaxing[1], 0.02);
+}
+
 TEST(ContactEstimatorTest, FindsASurfaceThatIsNotWhereTheAxisBegins) {
   for (const double surface : {-2e-3, 0.7e-3}) {
     EXPECT_NEAR(learn(hertz, surface).surface, surface, 0.051e-3);

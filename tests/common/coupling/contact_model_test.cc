@@ -11,7 +11,7 @@ namespace {
 ContactModel some_model() {
   const auto share = [] { return *rc::gen::inRange(0, 1000) * 1e-3; };
   return {1e-3 * (share() - 0.5),
-          {0.3 * share(), 0.1 * share(), 0.02 * share(), 0.3 * share()},
+          {0.3 * share(), 0.3 * share(), 0.1 * share(), 0.02 * share(), 1e-4 * share()},
           7e-3 * share()};
 }
 
@@ -43,13 +43,13 @@ RC_GTEST_PROP(ContactModelTest, ForceIsConvexAndRisesFromZeroAtTheSurface, ()) {
 }
 
 TEST(ContactModelTest, GoesOnAlongItsTangentBeyondWhatWasMeasured) {
-  const ContactModel model{0, {0.06, 0.01, 0.005, 0.02}, 4e-3};
+  const ContactModel model{0, {0.02, 0.06, 0.01, 0.005, 1e-4}, 4e-3};
   EXPECT_NEAR(model.force(6e-3), model.force(4e-3) + 2e-3 * model.slope(4e-3), 1e-12);
   EXPECT_EQ(model.slope(6e-3), model.slope(4e-3));
 }
 
 TEST(ContactModelTest, IsNotBelievedWithNumbersThatNoPassiveTissueHas) {
-  const ModelPayload good{.version = 1, .c = {0.06, 0, 0, 0}};
+  const ModelPayload good{.version = 1, .c = {0, 0.06, 0, 0, 0}};
   const auto with = [&](auto change) {
     ModelPayload model = good;
     change(model);
@@ -63,9 +63,78 @@ TEST(ContactModelTest, IsNotBelievedWithNumbersThatNoPassiveTissueHas) {
   EXPECT_FALSE(with([](ModelPayload& m) { m.c[0] = -1e-9; }));
   EXPECT_FALSE(with([](ModelPayload& m) { m.c[2] = std::nan(""); }));
   EXPECT_FALSE(with([](ModelPayload& m) { m.c[3] = INFINITY; }));
-  // 2 c xi/L0 at xi = 5: 2,000 N/m is c2 = 0.2 N.
-  EXPECT_TRUE(with([](ModelPayload& m) { m.c = {0, 0.2, 0, 0}; }));
-  EXPECT_FALSE(with([](ModelPayload& m) { m.c = {0, 0.2001, 0, 0}; }));
+  EXPECT_FALSE(with([](ModelPayload& m) { m.c[4] = -1e-9; }));
+  EXPECT_TRUE(with([](ModelPayload& m) { m.relaxing = {1, 1}; }));
+  EXPECT_FALSE(with([](ModelPayload& m) { m.relaxing[0] = -1e-9; }));
+  EXPECT_FALSE(with([](ModelPayload& m) { m.relaxing[1] = 1.001; }));
+  EXPECT_FALSE(with([](ModelPayload& m) { m.relaxing[1] = std::nan(""); }));
+  // 2 c xi/L0 at xi = 5: 2,000 N/m is c3 = 0.2 N; half as much where half is on top when fast.
+  EXPECT_TRUE(with([](ModelPayload& m) { m.c = {0, 0, 0.2, 0, 0}; }));
+  EXPECT_FALSE(with([](ModelPayload& m) { m.c = {0, 0, 0.2001, 0, 0}; }));
+  EXPECT_FALSE(with([](ModelPayload& m) {
+    m.c = {0, 0, 0.15, 0, 0};
+    m.relaxing = {0.5, 0};
+  }));
+}
+
+RelaxingContact some_relaxing() {
+  RelaxingContact contact;
+  contact.become(some_model(),
+                 {1e-3 * *rc::gen::inRange(0, 500), 1e-3 * *rc::gen::inRange(1, 500)});
+  contact.age(1e-6 * *rc::gen::inRange(1, 7000), 1e-3 * *rc::gen::inRange(1, 2000));
+  return contact;
+}
+
+RC_GTEST_PROP(RelaxingContactTest, WithAPastThatStandsStillItIsASpringThatNeverPulls, ()) {
+  const RelaxingContact contact = some_relaxing();
+  const double depth = *rc::gen::inRange(1, 9000) * 1e-6;
+  constexpr int kParts = 4000;
+  double sum = 0.5 * contact.force(depth);
+  double before = 0;
+  for (int i = 0; i < kParts; ++i) {
+    const double force = contact.force(depth * i / kParts);
+    RC_ASSERT(force >= before);
+    before = force;
+    sum += force;
+  }
+  const double integral = sum * depth / kParts;
+  // The trapezes miss the corner where the force begins.
+  RC_ASSERT(std::abs(contact.energy(depth) - integral) <= 2e-3 * integral + 1e-12);
+}
+
+RC_GTEST_PROP(RelaxingContactTest, NoPathEverGivesMoreThanItTook, ()) {
+  RelaxingContact contact;
+  contact.become(some_model(), {0.3, 0.4});
+  double work = 0;
+  double depth = 0;
+  double least = 0;
+  for (int leg = 0; leg < 12; ++leg) {
+    const double to = *rc::gen::inRange(-500, 7000) * 1e-6;
+    const int ticks = *rc::gen::inRange(20, 2000);
+    for (int i = 1; i <= ticks; ++i) {
+      const double next = depth + (to - depth) / (ticks - i + 1);
+      work += 0.5 * (contact.force(depth) + contact.force(next)) * (next - depth);
+      depth = next;
+      contact.age(depth, 1e-3);
+      least = std::min(least, work);
+    }
+  }
+  RC_ASSERT(least >= -2e-6);  // what steps of 1 ms are wrong by
+}
+
+TEST(RelaxingContactTest, ComesToTheElasticForceAndBeginsAboveIt) {
+  const ContactModel elastic{0, {0, 0.06, 0, 0, 0}, 6e-3};
+  RelaxingContact contact;
+  contact.become(elastic, {0.1, 0.2});
+  EXPECT_NEAR(contact.force(4e-3), 1.3 * elastic.force(4e-3), 1e-12);
+  for (int tick = 0; tick < 2500; ++tick) contact.age(4e-3, 1e-3);
+  const double slow = 0.2 * std::exp(-1.0) + 0.1 * std::exp(-5.0);
+  EXPECT_NEAR(contact.force(4e-3) / elastic.force(4e-3), 1 + slow, 1e-3);
+  for (int tick = 0; tick < 30'000; ++tick) contact.age(4e-3, 1e-3);
+  EXPECT_NEAR(contact.force(4e-3), elastic.force(4e-3), 1e-5);
+  EXPECT_EQ(contact.force(0.5e-3), 0);  // let go of faster than it comes back
+  contact.forget();
+  EXPECT_GT(contact.force(0.5e-3), 0);
 }
 
 }  // namespace

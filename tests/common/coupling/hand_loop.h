@@ -42,13 +42,16 @@ class Liar {
     ModelPayload model;
     model.version = static_cast<std::uint32_t>(lie + 1);
     model.surface = 3e-3 * (2 * uniform(0) - 1);
-    model.c = {0.3 * uniform(1), 0.1 * uniform(2), 0.02 * uniform(3), 0.3 * uniform(4)};
+    model.c = {0.1 * uniform(12),
+               0.3 * uniform(1),
+               0.1 * uniform(2),
+               0.02 * uniform(3),
+               1e-4 * uniform(4)};
     model.depth_max = 5e-3;
     model.swing = 2e-3 * (2 * uniform(5) - 1);
     model.swing_quadrature = 2e-3 * (2 * uniform(6) - 1);
     model.swing_rate = 10 * uniform(7);
-    model.relaxing_share = 2 * uniform(8);
-    model.relaxing_time = 3 * uniform(9);
+    model.relaxing = {0.3 * uniform(8), 0.3 * uniform(9)};
     if (uniform(10) < 0.1) model.c[0] = std::nan("");
     if (uniform(11) < 0.1) model.version = 1;
     Incoming incoming;

@@ -21,11 +21,11 @@ struct SamePayload {
   }
   bool operator()(const ModelPayload& a, const ModelPayload& b) const {
     return a.version == b.version && same(a.c[0], b.c[0]) && same(a.c[1], b.c[1]) &&
-           same(a.c[2], b.c[2]) && same(a.c[3], b.c[3]) && same(a.swing, b.swing) &&
-           same(a.swing_quadrature, b.swing_quadrature) && same(a.swing_rate, b.swing_rate) &&
-           same(a.relaxing_share, b.relaxing_share) && same(a.relaxing_time, b.relaxing_time) &&
-           same(a.surface, b.surface) && same(a.depth_max, b.depth_max) &&
-           same(a.residual, b.residual);
+           same(a.c[2], b.c[2]) && same(a.c[3], b.c[3]) && same(a.c[4], b.c[4]) &&
+           same(a.swing, b.swing) && same(a.swing_quadrature, b.swing_quadrature) &&
+           same(a.swing_rate, b.swing_rate) && same(a.relaxing[0], b.relaxing[0]) &&
+           same(a.relaxing[1], b.relaxing[1]) && same(a.surface, b.surface) &&
+           same(a.depth_max, b.depth_max) && same(a.residual, b.residual);
   }
   template <class A, class B>
   bool operator()(const A&, const B&) const {

@@ -203,11 +203,12 @@ TEST(CodecTest, EveryNumberHasItsLimitAndMustBeFinite) {
       {"depth_max", [&](auto& w, double x) { model(w).depth_max = x; }, kLengthMax},
       {"residual", [&](auto& w, double x) { model(w).residual = x; }, kForceMax},
       {"c4", [&](auto& w, double x) { model(w).c[3] = x; }, kForceMax},
+      {"c5", [&](auto& w, double x) { model(w).c[4] = x; }, kForceMax},
       {"swing", [&](auto& w, double x) { model(w).swing = x; }, kLengthMax},
       {"quadrature", [&](auto& w, double x) { model(w).swing_quadrature = x; }, kLengthMax},
       {"swing rate", [&](auto& w, double x) { model(w).swing_rate = x; }, kSpeedMax},
-      {"relaxing share", [&](auto& w, double x) { model(w).relaxing_share = x; }, kForceMax},
-      {"relaxing time", [&](auto& w, double x) { model(w).relaxing_time = x; }, kSpeedMax},
+      {"relaxing fast", [&](auto& w, double x) { model(w).relaxing[0] = x; }, kForceMax},
+      {"relaxing slow", [&](auto& w, double x) { model(w).relaxing[1] = x; }, kForceMax},
       {"older", [](auto& w, double x) { w.older_count = 1, w.older[0].force = x; }, kForceMax},
   };
   ProtobufCodec protobuf;

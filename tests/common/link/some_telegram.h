@@ -43,6 +43,7 @@ inline CouplingPayload some_payload(Draw& draw, bool earlier) {
                           .c = {draw.within(kForceMax),
                                 draw.within(kForceMax),
                                 draw.within(kForceMax),
+                                draw.within(kForceMax),
                                 draw.within(kForceMax)},
                           .surface = draw.within(kLengthMax),
                           .depth_max = draw.within(kLengthMax),
@@ -50,8 +51,7 @@ inline CouplingPayload some_payload(Draw& draw, bool earlier) {
                           .swing = draw.within(kLengthMax),
                           .swing_quadrature = draw.within(kLengthMax),
                           .swing_rate = draw.within(kSpeedMax),
-                          .relaxing_share = draw.within(kForceMax),
-                          .relaxing_time = draw.within(kSpeedMax)};
+                          .relaxing = {draw.within(kForceMax), draw.within(kForceMax)}};
     default:
       return std::monostate{};
   }
@@ -112,8 +112,7 @@ inline void round_as_on_wire(PortSample& sample) {
     round_as_on_wire(model->swing);
     round_as_on_wire(model->swing_quadrature);
     round_as_on_wire(model->swing_rate);
-    round_as_on_wire(model->relaxing_share);
-    round_as_on_wire(model->relaxing_time);
+    for (double& share : model->relaxing) round_as_on_wire(share);
   }
 }
 

@@ -64,14 +64,15 @@ inline void add_fields(Fields& out, const ModelPayload& model) {
           model.c[1],
           model.c[2],
           model.c[3],
+          model.c[4],
           model.surface,
           model.depth_max,
           model.residual,
           model.swing,
           model.swing_quadrature,
           model.swing_rate,
-          model.relaxing_share,
-          model.relaxing_time);
+          model.relaxing[0],
+          model.relaxing[1]);
 }
 inline void add_fields(Fields& out, const PortSample& sample) {
   add_all(out, sample.position, sample.velocity, sample.force, sample.payload.index());
