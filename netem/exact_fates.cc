@@ -21,10 +21,6 @@ bool on_its_way(const CopyFate& fate) noexcept {
   return fate.verdict == Verdict::Delivered || fate.verdict == Verdict::HeaderHit;
 }
 
-bool stalls(const Impairment& law) noexcept {
-  return law.stall.median > Duration{} && law.stall.rate > 0;
-}
-
 }  // namespace
 
 ExactFates::ExactFates(const PreparedLaw& law, const Streams& streams, TimePoint start)
@@ -37,8 +33,8 @@ ExactFates::ExactFates(const PreparedLaw& law, const Streams& streams, TimePoint
       truncate_{law.impairment.truncate, streams.of(Stage::Truncate)},
       reorder_{law.impairment.reorder.chance, streams.of(Stage::Reorder)},
       swap_{law.impairment.swap, streams.of(Stage::Swap)},
-      state_{streams.of(Stage::StateSteps)},
-      gemodel_{streams.of(Stage::GemodelSteps)},
+      state_{law.impairment.state.value_or(FourStateLaw{}), streams.of(Stage::StateSteps)},
+      gemodel_{law.impairment.gemodel.value_or(GemodelLaw{}), streams.of(Stage::GemodelSteps)},
       burst_{streams.of(Stage::Burst)},
       gilbert_{streams.of(Stage::StayState), streams.of(Stage::StayLength)},
       stall_{streams.of(Stage::StallGap), streams.of(Stage::StallLength)},
@@ -61,6 +57,11 @@ void ExactFates::change(const PreparedLaw& law) noexcept {
   truncate_.change(impairment.truncate);
   reorder_.change(impairment.reorder.chance);
   swap_.change(impairment.swap);
+  state_.change(impairment.state.value_or(FourStateLaw{}));
+  gemodel_.change(impairment.gemodel.value_or(GemodelLaw{}));
+  burst_.change(impairment.burst, last_at_);
+  gilbert_.change(impairment.gilbert, last_at_);
+  stall_.change(impairment.stall, last_at_);
   bottleneck_.change(impairment);
   trace_.rewind();
   calm_until_ = TimePoint::min();
@@ -166,6 +167,8 @@ std::size_t ExactFates::next_troubled(const Arrival& arrival, TimePoint at) noex
 void ExactFates::catch_up() noexcept {
   const std::uint64_t passed = index_ - asked_;
   for (ChanceProcess* process : {&duplicate_, &loss_, &truncate_, &corrupt_}) process->skip(passed);
+  state_.skip(passed);
+  gemodel_.skip(passed);
   if (law_->impairment.reorder.gap == 1) reorder_.skip(passed);
   if (law_->impairment.order == Order::Swap) swap_.skip(passed);
   asked_ = index_;
@@ -179,13 +182,19 @@ void ExactFates::draw_chances() noexcept {
   const bool swaps = law.order == Order::Swap;
   chances_ = {.duplicate = duplicate_.next(),
               .lost = loss_.next(),
+              .swept = state_.next(),
+              .loss_gemodel = gemodel_.next(),
               .cut = truncate_.next(),
               .flipped = corrupt_.next(),
               .jumps = law.reorder.gap > 0 && jumps(),
               .swaps = swaps && swap_.next()};
   asked_ = index_ + 1;
-  std::uint64_t quiet =
-      std::min({duplicate_.quiet(), loss_.quiet(), truncate_.quiet(), corrupt_.quiet()});
+  std::uint64_t quiet = std::min({duplicate_.quiet(),
+                                  loss_.quiet(),
+                                  truncate_.quiet(),
+                                  corrupt_.quiet(),
+                                  state_.quiet(),
+                                  gemodel_.quiet()});
   if (law.reorder.gap > 0) quiet = law.reorder.gap == 1 ? std::min(quiet, reorder_.quiet()) : 0;
   if (swaps) quiet = std::min(quiet, swap_.quiet());
   quiet_end_ = flood_ > 0 ? 0 : asked_ + quiet;
@@ -200,33 +209,29 @@ inline bool ExactFates::jumps() noexcept {
 
 ExactFates::Common ExactFates::common_fate(TimePoint at) noexcept {
   const Impairment& law = law_->impairment;
-  Common common{.onward = at};
+  Common common{.onward = at, .lost = chances_.swept};
   common.dark = in_blackout(at);
-  if (law.burst.length > Duration{}) common.lost = burst_.next(law.burst, at, index_);
-  if (law.state) common.lost = state_.next(*law.state, index_) || common.lost;
+  if (burst_.on()) common.lost = burst_.next(at) || common.lost;
   if (!law.bitmap.lost.empty()) {
     common.lost = common.lost || law.bitmap.lost[index_ % law.bitmap.lost.size()];
   }
-  if (law.gemodel) common.loss_gemodel = gemodel_.next(*law.gemodel, index_);
-  if (law.gilbert.bad > Duration{}) common.loss_state = gilbert_.next(law.gilbert, at);
-  if (stalls(law)) common.onward = stall_.next(law.stall, at);
+  if (gilbert_.on()) common.loss_state = gilbert_.next(at);
+  if (stall_.on()) common.onward = stall_.next(at);
   calm_until_ = calm_until(at);
   return common;
 }
 
-/// Until when nothing of what holds for all copies will act: the processes that count datagrams
-/// must be asked each time, those in time only when theirs has come.
+/// Until when nothing of what comes in time will act.
 TimePoint ExactFates::calm_until(TimePoint at) const noexcept {
   const Impairment& law = law_->impairment;
-  if (law.burst.length > Duration{} || law.state || law.gemodel || !law.bitmap.lost.empty()) {
-    return TimePoint::min();
-  }
+  if (!law.bitmap.lost.empty()) return TimePoint::min();
   TimePoint until = TimePoint::max();
   for (const Blackout& window : law.blackouts) {
     if (at - start_ < window.from + window.length) until = std::min(until, start_ + window.from);
   }
-  if (law.gilbert.bad > Duration{}) until = std::min(until, gilbert_.harmless_until(law.gilbert));
-  if (stalls(law)) until = std::min(until, stall_.begins());
+  if (burst_.on()) until = std::min(until, burst_.harmless_until());
+  if (gilbert_.on()) until = std::min(until, gilbert_.harmless_until());
+  if (stall_.on()) until = std::min(until, stall_.begins());
   return until;
 }
 
@@ -258,8 +263,8 @@ bool ExactFates::lost(std::size_t copy, const Common& common) const noexcept {
       copy == 0 ? chances_.lost : loss_.aside(streams_.of(Stage::Loss, copy), index_);
   return common.lost || random ||
          (common.loss_state > 0 && draw(stay_loss_stream_, Stage::StayLoss) < common.loss_state) ||
-         (common.loss_gemodel > 0 &&
-          draw(gemodel_loss_stream_, Stage::GemodelLoss) < common.loss_gemodel);
+         (chances_.loss_gemodel > 0 &&
+          draw(gemodel_loss_stream_, Stage::GemodelLoss) < chances_.loss_gemodel);
 }
 
 void ExactFates::damage(CopyFate& fate, std::size_t copy) const noexcept {
@@ -295,6 +300,8 @@ inline void ExactFates::correlate(Duration gap) noexcept {
   carry_ = std::exp(-span);
   fresh_ = std::sqrt(-std::expm1(-2 * span));
   carry_gap_ = gap;
+  ahead_end_ = index_;  // of the steps drawn ahead none is right
+  ahead_count_ = 0;
 }
 
 [[gnu::always_inline]] inline void ExactFates::draw_delay(CopyFate& fate,
@@ -304,9 +311,7 @@ inline void ExactFates::correlate(Duration gap) noexcept {
     fate.delay = draw_ == Draw::Mean ? rounded(mean_) : traced_delay(onward, copy);
     return;
   }
-  double around = copy == 0 ? drawn_ahead() : draw(streams_.of(Stage::Delay, copy), index_);
-  if (draw_ == Draw::Correlated) around = law_->curve.at_normal(correlated(around, copy));
-  const double drawn = mean_ + jitter_ * around;
+  const double drawn = mean_ + jitter_ * around(copy);
   fate.floored = drawn < least_;
   fate.delay = rounded(std::max(drawn, least_));
 }
@@ -347,22 +352,40 @@ inline double ExactFates::draw(RandomStream stream, std::uint64_t index) const n
   return draw_ == Draw::Normal ? law_->curve.at_normal(normal) : normal;
 }
 
-/// One after the other each would wait for its tables; many at once wait together.
-inline double ExactFates::drawn_ahead() noexcept {
-  if (index_ >= ahead_end_) {
-    for (std::uint64_t i = index_; i < index_ + kAhead; ++i) {
-      ahead_[i % kAhead] = draw(delay_stream_, i);
-    }
-    ahead_end_ = index_ + kAhead;
+/// [-], distance from the mean in units of the jitter.
+inline double ExactFates::around(std::size_t copy) noexcept {
+  if (copy > 0) {
+    const double drawn = draw(streams_.of(Stage::Delay, copy), index_);
+    if (draw_ != Draw::Correlated) return drawn;
+    // A sibling of its original in the correlated process that leaves no trace in it.
+    return law_->curve.at_normal(first_ ? drawn : carry_ * z_before_ + fresh_ * drawn);
   }
-  return ahead_[index_ % kAhead];
+  if (index_ >= ahead_end_) look_ahead();
+  const std::size_t place = kAhead - static_cast<std::size_t>(ahead_end_ - index_);
+  z_ = normals_[place];
+  return ahead_[place];
 }
 
-/// A duplicate is a sibling of its original in the correlated process and leaves no trace in it.
-inline double ExactFates::correlated(double normal, std::size_t copy) noexcept {
-  const double z = first_ ? normal : carry_ * z_before_ + fresh_ * normal;
-  if (copy == 0) z_ = z;
-  return z;
+/// One after the other each would wait for its tables; many at once wait together. Only as many as
+/// will be right if the gaps stay as they are: after one that changed the next is all that is
+/// known, then twice as many each time.
+void ExactFates::look_ahead() noexcept {
+  const bool correlated = draw_ == Draw::Correlated;
+  const bool by_gap = correlated && law_->impairment.delay.correlation_time > Duration{};
+  ahead_count_ = by_gap ? std::clamp<std::size_t>(2 * ahead_count_, 1, kAhead) : kAhead;
+  ahead_end_ = index_ + ahead_count_;
+  double z = z_before_;
+  for (std::size_t i = 0; i < ahead_count_; ++i) {
+    const std::size_t place = kAhead - ahead_count_ + i;
+    ahead_[place] = draw(delay_stream_, index_ + i);
+    if (!correlated) continue;
+    z = first_ && i == 0 ? ahead_[place] : carry_ * z + fresh_ * ahead_[place];
+    normals_[place] = z;
+  }
+  if (!correlated) return;
+  for (std::size_t place = kAhead - ahead_count_; place < kAhead; ++place) {
+    ahead_[place] = law_->curve.at_normal(normals_[place]);
+  }
 }
 
 Duration ExactFates::traced_delay(TimePoint onward, std::size_t copy) noexcept {

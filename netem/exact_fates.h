@@ -43,6 +43,8 @@ class ExactFates {
   struct Chances {
     bool duplicate{};
     bool lost{};
+    bool swept{};           ///< lost, and all its copies
+    double loss_gemodel{};  ///< [1], of each of them
     bool cut{};
     bool flipped{};
     bool jumps{};  ///< goes ahead of its delay
@@ -53,8 +55,7 @@ class ExactFates {
     TimePoint onward{};  ///< behind the stall
     bool dark{};
     bool lost{};
-    double loss_state{};    ///< [1], of Gilbert-Elliott in time
-    double loss_gemodel{};  ///< [1]
+    double loss_state{};  ///< [1], of Gilbert-Elliott in time
   };
   /// Where a delay comes from.
   enum class Draw : std::uint8_t { Mean, Trace, Correlated, Normal, Share };
@@ -81,8 +82,8 @@ class ExactFates {
   [[nodiscard]] bool fits(const CopyFate& fate) const noexcept;
   void draw_delay(CopyFate& fate, std::size_t copy, TimePoint onward) noexcept;
   [[nodiscard]] double draw(RandomStream stream, std::uint64_t index) const noexcept;
-  [[nodiscard]] double drawn_ahead() noexcept;
-  [[nodiscard]] double correlated(double normal, std::size_t copy) noexcept;
+  [[nodiscard]] double around(std::size_t copy) noexcept;
+  void look_ahead() noexcept;
   [[nodiscard]] Duration traced_delay(TimePoint onward, std::size_t copy) noexcept;
   void correlate(Duration gap) noexcept;
   void leave(CopyFate& fate, std::size_t copy, TimePoint onward) noexcept;
@@ -123,14 +124,17 @@ class ExactFates {
   SlotGrid slots_;
   TimePoint calm_until_{TimePoint::min()};  ///< until then common_fate() has nothing to say
   Draw draw_{Draw::Mean};
+  /// Distances from the mean delay in units of the jitter, drawn ahead for originals.
   static constexpr std::size_t kAhead = 32;
-  std::array<double, kAhead> ahead_{};  ///< [-], draw() of the next datagrams, a ring ...
-  std::uint64_t ahead_end_{};           ///< ... below this index
-  double carry_{};                      ///< [1], a of z_n = a z_(n-1) + sqrt(1 - a^2) e_n
-  double fresh_{1};                     ///< [1], sqrt(1 - a^2)
-  Duration carry_gap_{-1};              ///< the gap that carry_ belongs to
-  double z_before_{};                   ///< [1], z_(n-1)
-  double z_{};                          ///< [1], z_n, once drawn
+  std::array<double, kAhead> ahead_{};    ///< [-], from index ahead_end_ - ahead_count_ on
+  std::array<double, kAhead> normals_{};  ///< [1], z of each, where delays are correlated
+  std::size_t ahead_count_{};
+  std::uint64_t ahead_end_{};
+  double carry_{};          ///< [1], a of z_n = a z_(n-1) + sqrt(1 - a^2) e_n
+  double fresh_{1};         ///< [1], sqrt(1 - a^2)
+  Duration carry_gap_{-1};  ///< the gap that carry_ belongs to
+  double z_before_{};       ///< [1], z_(n-1)
+  double z_{};              ///< [1], z_n, once drawn
   TraceReader trace_;
   RecordingReader recording_;
   std::uint32_t since_reorder_{};

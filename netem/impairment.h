@@ -75,8 +75,8 @@ struct GemodelLaw {
   bool operator==(const GemodelLaw&) const = default;
 };
 
-/// While no burst is on, one starts with probability rate * dt per datagram and takes everything
-/// for `length`, the datagram that started it included.
+/// After an exponential time of quiet, 1/rate in the mean, the next datagram begins a burst that
+/// takes everything for `length`, that datagram included.
 struct BurstLaw {
   double rate{};      ///< [1/s]
   Duration length{};  ///< 0: none

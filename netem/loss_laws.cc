@@ -26,6 +26,12 @@ double run_scale(double stays) noexcept {
                       : -1 / std::log(stays);
 }
 
+/// The length of a run after its first, of run_scale() and a draw.
+std::uint64_t run(double scale, std::uint64_t bits) noexcept {
+  const double more = scale == 0 ? 0 : -std::log(random_middle(bits)) * scale;
+  return more < static_cast<double>(kEndless) ? static_cast<std::uint64_t>(more) : kEndless;
+}
+
 }  // namespace
 
 void ChanceProcess::begin(const Chance& law) noexcept {
@@ -39,82 +45,134 @@ void ChanceProcess::begin(const Chance& law) noexcept {
 /// Hits after misses and the other way round.
 void ChanceProcess::turn() noexcept {
   hit_ = !hit_;
-  const double scale = hit_ ? hits_ : misses_;
-  const double more = -std::log(random_middle(stream_.bits(number_++))) * scale;
-  left_ = 1 + (more < static_cast<double>(kEndless) ? static_cast<std::uint64_t>(more) : kEndless);
+  left_ = 1 + run(hit_ ? hits_ : misses_, stream_.bits(number_++));
 }
 
-bool FourStateProcess::next(const FourStateLaw& law, std::uint64_t index) noexcept {
-  const double draw = stream_.uniform(index);
+void FourStateProcess::begin(const FourStateLaw& law) noexcept {
+  law_ = law;
+  scales_ = {0,
+             run_scale(1 - law.p13 - law.p14),
+             run_scale(1 - law.p23),
+             run_scale(1 - law.p31 - law.p32),
+             0};
+  left_ = more();
+  if (left_ == 0) turn();
+}
+
+/// How many of the next datagrams stay in the present state.
+std::uint64_t FourStateProcess::more() noexcept {
+  return run(scales_[state_], stream_.bits(number_++));
+}
+
+/// Leaves the state, to where is drawn.
+void FourStateProcess::turn() noexcept {
+  const double draw = stream_.uniform(number_++);
   switch (state_) {
     case 1:
-      state_ = draw < law.p14 ? 4 : draw < law.p14 + law.p13 ? 3 : 1;
+      state_ = draw * std::min(law_.p13 + law_.p14, 1.0) < law_.p14 ? 4 : 3;
       break;
     case 2:
-      state_ = draw < law.p23 ? 3 : 2;
+      state_ = 3;
       break;
     case 3:
-      state_ = draw < law.p32 ? 2 : draw < law.p32 + law.p31 ? 1 : 3;
+      state_ = draw * std::min(law_.p31 + law_.p32, 1.0) < law_.p32 ? 2 : 1;
       break;
     default:
       state_ = 1;
       break;
   }
-  return state_ >= 3;
+  left_ = 1 + more();
 }
 
-bool BurstProcess::next(const BurstLaw& law, TimePoint at, std::uint64_t index) noexcept {
-  const bool was_first = first_;
-  const TimePoint last_at = last_at_;
-  first_ = false;
-  last_at_ = at;
-  if (seen_ && at < until_) return true;
-  if (was_first) return false;
-  const TimePoint quiet_since = seen_ ? std::max(last_at, until_) : last_at;
-  const double expected = law.rate * seconds(at - quiet_since);
-  const double draw = stream_.uniform(index);
-  // rate * dt, saturating as a Poisson process does when the gap is long.
-  if (draw >= expected || draw >= -std::expm1(-expected)) return false;
-  seen_ = true;
-  until_ = at + law.length;
-  return true;
+void GemodelProcess::begin(const GemodelLaw& law) noexcept {
+  law_ = law;
+  goods_ = run_scale(1 - law.to_bad);
+  bads_ = run_scale(1 - law.to_good);
+  turn(bad_);
 }
 
-double GilbertTimeProcess::next(const GilbertLaw& law, TimePoint at) noexcept {
-  if (!begun_) enter(law, at);
+void GemodelProcess::turn(bool bad) noexcept {
+  bad_ = bad;
+  left_ = 1 + run(bad_ ? bads_ : goods_, steps_.bits(number_++));
+}
+
+void BurstProcess::change(const BurstLaw& law, TimePoint at) noexcept {
+  if (law == law_) return;
+  law_ = law;
+  if (begun_ && on() && at >= until_) plan(at);
+}
+
+bool BurstProcess::next(TimePoint at) noexcept {
+  if (!begun_) plan(at);
+  begun_ = true;
+  if (at < from_) return false;
+  if (until_ <= from_) {
+    from_ = at;
+    until_ = at + law_.length;
+  }
+  if (at < until_) return true;
+  plan(until_);
+  return next(at);
+}
+
+void BurstProcess::plan(TimePoint from) noexcept {
+  from_ = from + exponential(1 / law_.rate, gaps_.uniform(number_++));
+}
+
+void GilbertTimeProcess::change(const GilbertLaw& law, TimePoint at) noexcept {
+  if (law == law_) return;
+  law_ = law;
+  if (!begun_ || !on()) return;
+  ++stay_;
+  until_ = at + stay();
+}
+
+double GilbertTimeProcess::next(TimePoint at) noexcept {
+  if (!begun_) enter(at);
   begun_ = true;
   for (int stays = 0; at >= until_; ++stays) {
     ++stay_;
     if (stays == kStaysPerGapMax) {
-      enter(law, at);
+      enter(at);
       break;
     }
     bad_ = !bad_;
-    until_ += exponential(seconds(bad_ ? law.bad : law.good), lengths_.uniform(stay_));
+    until_ += stay();
   }
-  return bad_ ? law.loss_bad : law.loss_good;
+  return bad_ ? law_.loss_bad : law_.loss_good;
 }
 
 /// Enters the chain at `from` as if it had always run: exponential stays have no memory.
-void GilbertTimeProcess::enter(const GilbertLaw& law, TimePoint from) noexcept {
-  const double bad_share = seconds(law.bad) / (seconds(law.good) + seconds(law.bad));
+void GilbertTimeProcess::enter(TimePoint from) noexcept {
+  const double bad_share = seconds(law_.bad) / (seconds(law_.good) + seconds(law_.bad));
   bad_ = states_.uniform(stay_) < bad_share;
-  until_ = from + exponential(seconds(bad_ ? law.bad : law.good), lengths_.uniform(stay_));
+  until_ = from + stay();
 }
 
-TimePoint StallProcess::next(const StallLaw& law, TimePoint at) noexcept {
-  if (!begun_) plan(law, at);
+Duration GilbertTimeProcess::stay() noexcept {
+  return exponential(seconds(bad_ ? law_.bad : law_.good), lengths_.uniform(stay_));
+}
+
+void StallProcess::change(const StallLaw& law, TimePoint at) noexcept {
+  if (law == law_) return;
+  const bool was_on = on();
+  law_ = law;
+  if (begun_ && on() && (at < from_ || !was_on)) plan(at);
+}
+
+TimePoint StallProcess::next(TimePoint at) noexcept {
+  if (!begun_) plan(at);
   begun_ = true;
   for (int stalls = 0; at >= until_; ++stalls) {
     // After a long silence the past is as good as never: the next stall is planned from here.
-    plan(law, stalls < kStaysPerGapMax ? until_ : at);
+    plan(stalls < kStaysPerGapMax ? until_ : at);
   }
   return at >= from_ ? until_ : at;
 }
 
-void StallProcess::plan(const StallLaw& law, TimePoint from) noexcept {
-  from_ = from + exponential(1 / law.rate, gaps_.uniform(number_));
-  const double length = seconds(law.median) * std::exp(law.spread * lengths_.normal(number_));
+void StallProcess::plan(TimePoint from) noexcept {
+  from_ = from + exponential(1 / law_.rate, gaps_.uniform(number_));
+  const double length = seconds(law_.median) * std::exp(law_.spread * lengths_.normal(number_));
   until_ = from_ + std::max(from_seconds(std::min(length, kStallMax)), Duration{1});
   ++number_;
 }

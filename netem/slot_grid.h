@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -25,6 +27,7 @@ class SlotGrid {
     counts_ = slot.packets > 0 || slot.bytes > 0;
     packets_max_ = slot.packets > 0 ? slot.packets : kEndless;
     bytes_max_ = slot.bytes > 0 ? slot.bytes : kEndless;
+    ahead_end_ = number_;
   }
   [[nodiscard]] bool on() const noexcept { return on_; }
 
@@ -50,12 +53,20 @@ class SlotGrid {
   static constexpr int kStepsPerGapMax = 256;
 
   void step(TimePoint from) noexcept {
-    const double draw = random_middle(stream_.bits(number_++));
-    double span = least_ + draw * width_;
-    if (curve_ != nullptr) span += curve_->jitter() * curve_->at_share(draw);
-    at_ = from + Duration{static_cast<std::int64_t>(std::max(span, 1.0) + 0.5)};
+    if (number_ == ahead_end_) look_ahead();
+    at_ = from + ahead_[number_++ % kAhead];
     packets_ = 0;
     bytes_ = 0;
+  }
+
+  /// One after the other each step would wait for its draw; many at once wait together.
+  void look_ahead() noexcept {
+    for (; ahead_end_ < number_ + kAhead; ++ahead_end_) {
+      const double draw = random_middle(stream_.bits(ahead_end_));
+      double span = least_ + draw * width_;
+      if (curve_ != nullptr) span += curve_->jitter() * curve_->at_share(draw);
+      ahead_[ahead_end_ % kAhead] = Duration{static_cast<std::int64_t>(std::max(span, 1.0) + 0.5)};
+    }
   }
 
   RandomStream stream_;
@@ -66,7 +77,10 @@ class SlotGrid {
   double width_{};  ///< [ns], from the least to the most of it
   std::uint64_t packets_max_{};
   std::uint64_t bytes_max_{};  ///< [bytes]
-  std::uint64_t number_{};
+  std::uint64_t number_{};     ///< of the next step
+  static constexpr std::size_t kAhead = 32;
+  std::array<Duration, kAhead> ahead_{};  ///< the next steps, a ring ...
+  std::uint64_t ahead_end_{};             ///< ... below this number
   TimePoint at_;
   std::uint64_t packets_{};
   std::uint64_t bytes_{};  ///< [bytes]

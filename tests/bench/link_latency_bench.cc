@@ -112,8 +112,7 @@ link::Telegram telegram_of(Role role) {
                                        .swing = 1e-3,
                                        .swing_quadrature = 2e-3,
                                        .swing_rate = 1.5,
-                                       .relaxing_share = 0.2,
-                                       .relaxing_time = 0.7};
+                                       .relaxing = {0.2, 0.1}};
   return telegram;
 }
 

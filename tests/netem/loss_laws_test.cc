@@ -1,8 +1,11 @@
 #include "netem/loss_laws.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace palp::netem {
@@ -79,6 +82,112 @@ TEST(ChanceProcessTest, RunsAreAsLongAsTheCorrelationMakesThem) {
   const double mean = 1 / (1 - stays);
   const double spread = std::sqrt(stays) / (1 - stays);
   EXPECT_NEAR(static_cast<double>(hits) / runs, mean, 4 * spread / std::sqrt(runs));
+}
+
+/// Goal: who is told that some passed says what who was asked says, of the chains too.
+template <class Process>
+void told_says_what_asked_says(Process asked, Process told) {
+  for (int k = 0; k < 20'000;) {
+    const std::uint64_t quiet = std::min<std::uint64_t>(told.quiet(), 1000);
+    for (std::uint64_t i = 0; i < quiet; ++i, ++k) ASSERT_EQ(asked.next(), 0) << k;
+    told.skip(quiet);
+    ASSERT_EQ(told.next(), asked.next()) << k;
+    ++k;
+  }
+}
+
+TEST(FourStateProcessTest, WhoIsToldThatSomePassedSaysWhatWhoWasAskedSays) {
+  const FourStateLaw law{.p13 = 0.02, .p31 = 0.2, .p32 = 0.3, .p23 = 0.1, .p14 = 0.01};
+  told_says_what_asked_says(FourStateProcess{law, RandomStream{7, 3}},
+                            FourStateProcess{law, RandomStream{7, 3}});
+}
+
+TEST(GemodelProcessTest, WhoIsToldThatSomePassedSaysWhatWhoWasAskedSays) {
+  const GemodelLaw law{.to_bad = 0.02, .to_good = 0.3};
+  told_says_what_asked_says(GemodelProcess{law, RandomStream{7, 3}},
+                            GemodelProcess{law, RandomStream{7, 3}});
+}
+
+/// Goal: drawn run by run, the chain is still the one of the words. Method: the matrix of the
+/// chain, stepped datagram by datagram on a generator of the test's own, gives share and mean
+/// length of the runs of losses; both within four standard errors.
+TEST(FourStateProcessTest, LosesWhatTheChainStepByStepLoses) {
+  const FourStateLaw law{.p13 = 0.03, .p31 = 0.2, .p32 = 0.3, .p23 = 0.1, .p14 = 0.02};
+  constexpr int kCount = 400'000;
+  FourStateProcess process{law, RandomStream{7, 3}};
+  const RandomStream steps{8, 4};
+  int state = 1;
+  std::array<int, 2> losses{};
+  std::array<int, 2> runs{};
+  std::array<bool, 2> before{};
+  for (std::uint64_t k = 0; k < kCount; ++k) {
+    const double draw = steps.uniform(k);
+    if (state == 1) {
+      state = draw < law.p14 ? 4 : draw < law.p14 + law.p13 ? 3 : 1;
+    } else if (state == 3) {
+      state = draw < law.p32 ? 2 : draw < law.p32 + law.p31 ? 1 : 3;
+    } else {
+      state = state == 4 ? 1 : draw < law.p23 ? 3 : 2;
+    }
+    const std::array<bool, 2> lost{process.next(), state >= 3};
+    for (std::size_t i = 0; i < 2; ++i) {
+      losses[i] += lost[i] ? 1 : 0;
+      runs[i] += lost[i] && !before[i] ? 1 : 0;
+      before[i] = lost[i];
+    }
+  }
+  // A run and the quiet behind it renew the process: counts of runs spread like a Poisson's.
+  EXPECT_NEAR(runs[0], runs[1], 4 * std::sqrt(2.0 * runs[1]));
+  const double mean = static_cast<double>(losses[1]) / runs[1];
+  EXPECT_NEAR(static_cast<double>(losses[0]) / runs[0], mean, 4 * mean * std::sqrt(2.0 / runs[1]));
+}
+
+TEST(GemodelProcessTest, SpendsItsTimeAsTheStepsSay) {
+  const GemodelLaw law{.to_bad = 0.01, .to_good = 0.2, .loss_bad = 0.8, .loss_good = 0.1};
+  GemodelProcess process{law, RandomStream{7, 3}};
+  constexpr int kCount = 400'000;
+  int bad = 0;
+  int stays = 0;
+  bool before = false;
+  EXPECT_EQ(process.next(), 0.1);  // the first is good
+  for (int k = 0; k < kCount; ++k) {
+    const bool is_bad = process.next() > 0.5;
+    bad += is_bad ? 1 : 0;
+    stays += is_bad && !before ? 1 : 0;
+    before = is_bad;
+  }
+  const double stay = 1 / law.to_good;
+  EXPECT_NEAR(static_cast<double>(bad) / stays, stay, 4 * stay / std::sqrt(stays));
+  const double expected = kCount / (stay + 1 / law.to_bad);
+  EXPECT_NEAR(stays, expected, 4 * std::sqrt(expected));
+}
+
+/// Goal: a law that is set in mid-run is felt at once, not when what the old one planned is over.
+/// Method: from once in a million seconds to ten times a second; within a second it must act.
+TEST(LossLawsTest, WhatComesInTimeFeelsANewRateAtOnce) {
+  const RandomStream one{7, 3};
+  const RandomStream other{7, 4};
+  BurstProcess burst{one};
+  GilbertTimeProcess gilbert{one, other};
+  StallProcess stall{one, other};
+  const auto set = [&](double rate, TimePoint at) {
+    burst.change({.rate = rate, .length = std::chrono::milliseconds{1}}, at);
+    gilbert.change({.good = from_seconds(1 / rate), .bad = std::chrono::milliseconds{1}}, at);
+    stall.change({.rate = rate, .median = std::chrono::milliseconds{1}}, at);
+  };
+  set(1e-6, TimePoint{});
+  std::array<int, 3> hits{};
+  const auto ask = [&](TimePoint at) {
+    hits[0] += burst.next(at) ? 1 : 0;
+    hits[1] += gilbert.next(at) > 0 ? 1 : 0;
+    hits[2] += stall.next(at) > at ? 1 : 0;
+  };
+  TimePoint at{};
+  for (; at < TimePoint{std::chrono::seconds{1}}; at += std::chrono::microseconds{100}) ask(at);
+  EXPECT_THAT(hits, ::testing::Each(0));
+  set(10, at);
+  for (; at < TimePoint{std::chrono::seconds{3}}; at += std::chrono::microseconds{100}) ask(at);
+  EXPECT_THAT(hits, ::testing::Each(::testing::Gt(0)));
 }
 
 }  // namespace
