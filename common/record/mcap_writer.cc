@@ -241,17 +241,21 @@ void McapWriter::append_message_indexes(std::uint64_t chunk_offset, std::uint64_
       append(output_, std::as_bytes(std::span{waiting}));
     }
   }
-  const RecordScope index{chunk_indexes_, McapOpcode::ChunkIndex};
-  append(chunk_indexes_, waiting_span_.begin);
-  append(chunk_indexes_, waiting_span_.end);
-  append(chunk_indexes_, chunk_offset);
-  append(chunk_indexes_, chunk_size);
-  append(chunk_indexes_, static_cast<std::uint32_t>(offsets.size()));
-  append(chunk_indexes_, offsets);
-  append(chunk_indexes_, std::uint64_t{output_.size() - chunk_size});
-  append(chunk_indexes_, std::string_view{zstd ? "zstd" : ""});
-  append(chunk_indexes_, compressed_size);
-  append(chunk_indexes_, std::uint64_t{waiting_.size()});
+  Bytes& indexes = chunk_indexes_.newest();
+  {
+    const RecordScope index{indexes, McapOpcode::ChunkIndex};
+    append(indexes, waiting_span_.begin);
+    append(indexes, waiting_span_.end);
+    append(indexes, chunk_offset);
+    append(indexes, chunk_size);
+    append(indexes, static_cast<std::uint32_t>(offsets.size()));
+    append(indexes, offsets);
+    append(indexes, std::uint64_t{output_.size() - chunk_size});
+    append(indexes, std::string_view{zstd ? "zstd" : ""});
+    append(indexes, compressed_size);
+    append(indexes, std::uint64_t{waiting_.size()});
+  }
+  chunk_indexes_.settle();
 }
 
 void McapWriter::forget_waiting() {
@@ -314,6 +318,7 @@ void McapWriter::write_summary() {
   if (options_.statistics) {
     append_statistics(statistics);
   }
+  const Bytes chunk_indexes = chunk_indexes_.all();
   struct Group {
     McapOpcode opcode{};
     bool wanted{};
@@ -323,7 +328,7 @@ void McapWriter::write_summary() {
       Group{McapOpcode::Schema, options_.repeated_schemas, schema_records_},
       Group{McapOpcode::Channel, options_.repeated_channels, channel_records_},
       Group{McapOpcode::Statistics, options_.statistics, statistics},
-      Group{McapOpcode::ChunkIndex, options_.chunk_index && options_.chunks, chunk_indexes_},
+      Group{McapOpcode::ChunkIndex, options_.chunk_index && options_.chunks, chunk_indexes},
       Group{McapOpcode::AttachmentIndex, options_.attachment_index, attachment_indexes_},
       Group{McapOpcode::MetadataIndex, options_.metadata_index, metadata_indexes_}};
   output_.clear();

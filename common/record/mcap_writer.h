@@ -11,6 +11,7 @@
 
 #include "common/core/time.h"
 #include "common/record/byte_sink.h"
+#include "common/record/index_store.h"
 #include "common/record/mcap_compression.h"
 #include "common/record/mcap_format.h"
 
@@ -127,7 +128,7 @@ class McapWriter {
   std::vector<Channel> channels_;  ///< id 1 first
   Bytes schema_records_;           ///< kept for the summary, as are the following
   Bytes channel_records_;
-  Bytes chunk_indexes_;
+  IndexStore chunk_indexes_;
   Bytes attachment_indexes_;
   Bytes metadata_indexes_;
   std::uint16_t schema_count_{};

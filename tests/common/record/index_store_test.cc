@@ -1,0 +1,30 @@
+#include "common/record/index_store.h"
+
+#include <gtest/gtest.h>
+
+namespace palp::record {
+namespace {
+
+TEST(IndexStoreTest, GivesBackInOrderWhatItTookAndKeepsLittleOfIt) {
+  IndexStore store;
+  Bytes expected;
+  for (std::uint32_t k = 0; k < 100'000; ++k) {
+    append(store.newest(), k);
+    store.settle();
+    append(expected, k);
+    ASSERT_LE(store.newest().size(), IndexStore::kKept);
+  }
+  EXPECT_GE(store.laid_down() + IndexStore::kKept, expected.size());
+  EXPECT_EQ(store.all(), expected);
+}
+
+TEST(IndexStoreTest, AShortOneNeedsNoFile) {
+  IndexStore store;
+  append(store.newest(), std::uint64_t{7});
+  store.settle();
+  EXPECT_EQ(store.laid_down(), 0U);
+  EXPECT_EQ(store.all().size(), 8U);
+}
+
+}  // namespace
+}  // namespace palp::record
