@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <time.h>
 
+#include "common/io/send_probe.h"
 #include "common/io/steady_clock.h"
 #include "common/io/system_text.h"
 
@@ -243,6 +244,11 @@ void UdpSocket::rehearse() noexcept {
   const ssize_t got =
       ::recvmsg(socket_.number(), &batch.messages[0].msg_hdr, MSG_DONTWAIT | MSG_PEEK | MSG_TRUNC);
   if (got < 0 && is_path_error(errno)) ++inbox_.counting.path_errors;
+  const std::byte nothing{};
+  if (::send(socket_.number(), &nothing, sizeof nothing, MSG_DONTWAIT | kSendProbe) < 0 &&
+      is_path_error(errno)) {
+    ++inbox_.counting.path_errors;
+  }
 }
 
 std::optional<UdpSocket::Stranger> UdpSocket::take_early(std::span<std::byte> buffer) noexcept {

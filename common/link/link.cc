@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/core/check.h"
+#include "common/link/rehearsed_telegram.h"
 
 namespace palp::link {
 namespace {
@@ -47,22 +48,6 @@ PortSample for_repetition(const PortSample& sample) noexcept {
   if (std::holds_alternative<WavePayload>(sample.payload)) return sample;
   return {sample.position, sample.velocity, sample.force, std::monostate{}};
 }
-
-/// With all that a telegram can hold.
-const WireTelegram kRehearsed{
-    .sent_at_ns = kSentAtMaxNs,
-    .echo_ns = kSentAtMaxNs,
-    .newest_number = 1,
-    .before_newest = 1,
-    .hold_us = 1000,
-    .telegram = {.site = {.state = SiteState::Engaged,
-                          .epoch = 1,
-                          .lateral = 1,
-                          .depth = {.number = 1, .depth = 1, .depth_low = 1, .depth_high = 1}},
-                 .port = {.position = 1, .velocity = 1, .force = 1, .payload = ModelPayload{}}},
-    .older = {PortSample{.position = 1, .velocity = 1, .force = 1, .payload = {}},
-              PortSample{.position = 1, .velocity = 1, .force = 1, .payload = {}}},
-    .older_count = 2};
 
 }  // namespace
 

@@ -26,7 +26,7 @@ class Transport {
   /// @returns nullopt: none waiting.
   virtual std::optional<Datagram> receive(std::span<std::byte, kDatagramSizeMax> buffer,
                                           TimePoint now) noexcept = 0;
-  /// In spare time: touches what receive() will need. Takes nothing.
+  /// In spare time: touches what receive() and send() will need. Takes nothing, sends nothing.
   virtual void rehearse() noexcept {}
 };
 
