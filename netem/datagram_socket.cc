@@ -12,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "common/io/send_probe.h"
 #include "common/link/transport.h"
 
 namespace palp::netem {
@@ -226,6 +227,17 @@ std::size_t DatagramSocket::send(std::span<const OutgoingDatagram> datagrams,
     }
   }
   return sent;
+}
+
+void DatagramSocket::warm(const io::Endpoint* to) noexcept {
+  std::byte nothing{};
+  iovec part{&nothing, sizeof nothing};
+  msghdr header{};
+  header.msg_name = to != nullptr ? const_cast<sockaddr*>(to->address()) : nullptr;
+  header.msg_namelen = to != nullptr ? to->size() : 0;
+  header.msg_iov = &part;
+  header.msg_iovlen = 1;
+  if (::sendmsg(descriptor_, &header, MSG_DONTWAIT | MSG_NOSIGNAL | io::kSendProbe) < 0) ++errors_;
 }
 
 bool DatagramSocket::send(std::span<const std::byte> datagram,

@@ -61,6 +61,9 @@ class DatagramSocket {
   std::size_t send(std::span<const OutgoingDatagram> datagrams, const io::Endpoint* to) noexcept;
   /// `to`: for a socket that is bound only. @returns false: not sent, counted.
   bool send(std::span<const std::byte> datagram, const std::optional<io::Endpoint>& to) noexcept;
+  /// Sends nothing, but walks the kernel's way of a send() as far as its last step: after a rest
+  /// the next one finds it in the caches.
+  void warm(const io::Endpoint* to) noexcept;
   /// Refused, unreachable, out of buffers ...: what the kernel answered to receive() and send().
   [[nodiscard]] std::uint64_t errors() const noexcept { return errors_; }
 

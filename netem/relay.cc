@@ -19,6 +19,8 @@ constexpr Duration kSpinMin = microseconds{60};
 constexpr Duration kSpinMax = microseconds{600};
 constexpr Duration kSpinSpare = microseconds{20};
 constexpr std::int64_t kSpinMemory = 128;  ///< wakings
+/// After so long a rest the caches have forgotten how to send: 50 us instead of 8.
+constexpr Duration kCold = milliseconds{1};
 constexpr Duration kLate = microseconds{60};
 /// A send call on a busy machine costs about 8 us; more is a disturbance, not a cost to lead by.
 constexpr Duration kLeadMax = microseconds{20};
@@ -216,11 +218,18 @@ Relay::Readable Relay::rest(TimePoint now, TimePoint until) noexcept {
   if (slept) {
     const TimePoint woken = monotonic_now();
     if (woken - now > kNap / 4) awake_since_ = woken;
-    if (ready == 0) learn_spin(woken - wake);
+    if (ready == 0 && woken - now > kCold) warm();
+    if (ready == 0) learn_spin(monotonic_now() - wake);
   }
   if (ready <= 0) return {};
   stopped_ = (watched[2].revents & POLLIN) != 0;
   return {.client_side = watched[0].revents != 0, .server_side = watched[1].revents != 0};
+}
+
+/// Both ways: which of them is next may change till then.
+void Relay::warm() noexcept {
+  if (up_.next_release()) server_side_.warm(nullptr);
+  if (down_.next_release() && client_) client_side_.warm(&*client_);
 }
 
 /// Up at once, down slowly.

@@ -112,6 +112,7 @@ class Relay {
   void account(Direction direction, std::size_t sent, TimePoint before) noexcept;
   void rebind_if_asked();
   [[nodiscard]] Readable rest(TimePoint now, TimePoint until) noexcept;
+  void warm() noexcept;
   void learn_spin(Duration late) noexcept;
   void show(TimePoint now) noexcept;
   [[nodiscard]] Channel& way(Direction direction) noexcept {
