@@ -1,7 +1,6 @@
 #include "netem/exact_fates.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace palp::netem {
 namespace {
@@ -11,10 +10,6 @@ constexpr std::uint8_t kEcnMask = 3;  ///< RFC 3168: 0: cannot be marked, 3: is 
 /// 0 .. count - 1, evenly.
 std::uint64_t pick(std::uint64_t bits, std::uint64_t count) noexcept {
   return ((bits >> 32U) * count) >> 32U;
-}
-
-Duration rounded(double nanoseconds) noexcept {
-  return Duration{static_cast<std::int64_t>(nanoseconds + 0.5)};
 }
 
 bool on_its_way(const CopyFate& fate) noexcept {
@@ -39,7 +34,7 @@ ExactFates::ExactFates(const PreparedLaw& law, const Streams& streams, TimePoint
       gilbert_{streams.of(Stage::StayState), streams.of(Stage::StayLength)},
       stall_{streams.of(Stage::StallGap), streams.of(Stage::StallLength)},
       bottleneck_{law.impairment},
-      delay_stream_{streams.of(Stage::Delay)},
+      delays_{law, streams, start},
       stay_loss_stream_{streams.of(Stage::StayLoss)},
       gemodel_loss_stream_{streams.of(Stage::GemodelLoss)},
       slots_{streams.of(Stage::Slot), start} {
@@ -63,49 +58,20 @@ void ExactFates::change(const PreparedLaw& law) noexcept {
   gilbert_.change(impairment.gilbert, last_at_);
   stall_.change(impairment.stall, last_at_);
   bottleneck_.change(impairment);
-  trace_.rewind();
   calm_until_ = TimePoint::min();
-  mean_ = law.curve.mean();
-  jitter_ = law.curve.jitter();
-  least_ = impairment.delay.floor * mean_;
-  choose_draw(impairment.delay.jitter > Duration{} ||
-              impairment.delay.shape == DelayShape::Histogram);
-  carry_ = law.carry;
-  fresh_ = std::sqrt(1 - carry_ * carry_);
-  carry_gap_ = Duration{-1};
-  ahead_end_ = 0;
+  delays_.change(law);
   slots_.change(law);
-}
-
-void ExactFates::choose_draw(bool random) noexcept {
-  const DelayLaw& delay = law_->impairment.delay;
-  const Draw before = draw_;
-  if (!law_->impairment.trace.points.empty()) {
-    draw_ = Draw::Trace;
-  } else if (!random) {
-    draw_ = Draw::Mean;
-  } else if (law_->carry > 0 || delay.correlation_time > Duration{}) {
-    draw_ = Draw::Correlated;
-  } else {
-    draw_ = law_->curve.by_normal() ? Draw::Normal : Draw::Share;
-  }
-  if (draw_ != before) ahead_end_ = 0;
 }
 
 void ExactFates::lean(const Impairment& towards, double share) noexcept {
   catch_up();
   quiet_end_ = 0;
-  const auto between = [share](double from, double to) { return from + share * (to - from); };
-  const auto mix = [&](const Chance& one, const Chance& to) {
-    return Chance{between(one.share, to.share), between(one.correlation, to.correlation)};
+  const auto mix = [share](const Chance& one, const Chance& to) {
+    return Chance{one.share + share * (to.share - one.share),
+                  one.correlation + share * (to.correlation - one.correlation)};
   };
-  const auto count = [](Duration span) { return static_cast<double>(span.count()); };
   const Impairment& from = law_->impairment;
-  const DelayLaw& law = from.delay;
-  mean_ = between(count(law.mean), count(towards.delay.mean));
-  jitter_ = between(count(law.jitter), count(towards.delay.jitter));
-  least_ = between(law.floor, towards.delay.floor) * mean_;
-  choose_draw(jitter_ > 0);
+  delays_.lean(towards, share);
   loss_.change(mix(from.loss, towards.loss));
   duplicate_.change(mix(from.duplicate, towards.duplicate));
   corrupt_.change(mix(from.corrupt, towards.corrupt));
@@ -113,7 +79,7 @@ void ExactFates::lean(const Impairment& towards, double share) noexcept {
 
 std::span<const CopyFate> ExactFates::next(const Arrival& arrival) noexcept {
   const TimePoint at = first_ ? arrival.at : std::max(arrival.at, last_at_);
-  if (draw_ == Draw::Correlated) correlate(first_ ? Duration{} : at - last_at_);
+  delays_.begin(index_, first_ ? Duration{} : at - last_at_);
   last_at_ = at;
   std::size_t count = 1;
   if (!law_->impairment.replay.rows.empty()) {
@@ -125,7 +91,6 @@ std::span<const CopyFate> ExactFates::next(const Arrival& arrival) noexcept {
     count = next_troubled(arrival, at);
   }
   first_ = false;
-  z_before_ = z_;
   ++index_;
   return std::span{copies_}.first(count);
 }
@@ -158,8 +123,11 @@ std::size_t ExactFates::next_troubled(const Arrival& arrival, TimePoint at) noex
                                                      TimePoint onward,
                                                      bool room) noexcept {
   if (on_its_way(fate) && !(room && fits(fate))) fate.verdict = Verdict::OverLimit;
-  // A correlated delay is drawn of each original, got through or not.
-  if (on_its_way(fate) || (copy == 0 && draw_ == Draw::Correlated)) draw_delay(fate, copy, onward);
+  if (on_its_way(fate) || (copy == 0 && delays_.remembers())) {
+    const DelaySequence::Drawn drawn = delays_.draw(copy, onward);
+    fate.delay = drawn.delay;
+    fate.floored = drawn.floored;
+  }
   if (on_its_way(fate)) leave(fate, copy, onward);
 }
 
@@ -292,30 +260,6 @@ inline bool ExactFates::fits(const CopyFate& fate) const noexcept {
   return mtu == 0 || fate.length + kFrameHeaders - kEthernetHeader <= mtu;
 }
 
-/// Prepares the step of the correlated process over `gap`.
-inline void ExactFates::correlate(Duration gap) noexcept {
-  const Duration memory = law_->impairment.delay.correlation_time;
-  if (memory == Duration{} || gap == carry_gap_) return;
-  const double span = seconds(gap) / seconds(memory);
-  carry_ = std::exp(-span);
-  fresh_ = std::sqrt(-std::expm1(-2 * span));
-  carry_gap_ = gap;
-  ahead_end_ = index_;  // of the steps drawn ahead none is right
-  ahead_count_ = 0;
-}
-
-[[gnu::always_inline]] inline void ExactFates::draw_delay(CopyFate& fate,
-                                                          std::size_t copy,
-                                                          TimePoint onward) noexcept {
-  if (draw_ == Draw::Mean || draw_ == Draw::Trace) {
-    fate.delay = draw_ == Draw::Mean ? rounded(mean_) : traced_delay(onward, copy);
-    return;
-  }
-  const double drawn = mean_ + jitter_ * around(copy);
-  fate.floored = drawn < least_;
-  fate.delay = rounded(std::max(drawn, least_));
-}
-
 /// Through the line, after its delay, in order, at its slot. Only the original jumps or swaps.
 [[gnu::always_inline]] inline void ExactFates::leave(CopyFate& fate,
                                                      std::size_t copy,
@@ -341,61 +285,6 @@ inline void ExactFates::correlate(Duration gap) noexcept {
   }
   if (slots_.on()) release = slots_.fit(release, fate.length + kFrameHeaders);
   fate.release = release;
-}
-
-/// What the delay of datagram `index` is made of: where it hangs on the last one's a standard
-/// normal, else its distance from the mean in units of the jitter.
-inline double ExactFates::draw(RandomStream stream, std::uint64_t index) const noexcept {
-  const std::uint64_t bits = stream.bits(index);
-  if (draw_ == Draw::Share) return law_->curve.at_share(random_middle(bits));
-  const double normal = law_->normal.at(bits);
-  return draw_ == Draw::Normal ? law_->curve.at_normal(normal) : normal;
-}
-
-/// [-], distance from the mean in units of the jitter.
-inline double ExactFates::around(std::size_t copy) noexcept {
-  if (copy > 0) {
-    const double drawn = draw(streams_.of(Stage::Delay, copy), index_);
-    if (draw_ != Draw::Correlated) return drawn;
-    // A sibling of its original in the correlated process that leaves no trace in it.
-    return law_->curve.at_normal(first_ ? drawn : carry_ * z_before_ + fresh_ * drawn);
-  }
-  if (index_ >= ahead_end_) look_ahead();
-  const std::size_t place = kAhead - static_cast<std::size_t>(ahead_end_ - index_);
-  z_ = normals_[place];
-  return ahead_[place];
-}
-
-/// One after the other each would wait for its tables; many at once wait together. Only as many as
-/// will be right if the gaps stay as they are: after one that changed the next is all that is
-/// known, then twice as many each time.
-void ExactFates::look_ahead() noexcept {
-  const bool correlated = draw_ == Draw::Correlated;
-  const bool by_gap = correlated && law_->impairment.delay.correlation_time > Duration{};
-  ahead_count_ = by_gap ? std::clamp<std::size_t>(2 * ahead_count_, 1, kAhead) : kAhead;
-  ahead_end_ = index_ + ahead_count_;
-  double z = z_before_;
-  for (std::size_t i = 0; i < ahead_count_; ++i) {
-    const std::size_t place = kAhead - ahead_count_ + i;
-    ahead_[place] = draw(delay_stream_, index_ + i);
-    if (!correlated) continue;
-    z = first_ && i == 0 ? ahead_[place] : carry_ * z + fresh_ * ahead_[place];
-    normals_[place] = z;
-  }
-  if (!correlated) return;
-  for (std::size_t place = kAhead - ahead_count_; place < kAhead; ++place) {
-    ahead_[place] = law_->curve.at_normal(normals_[place]);
-  }
-}
-
-Duration ExactFates::traced_delay(TimePoint onward, std::size_t copy) noexcept {
-  const DelayTrace& trace = law_->impairment.trace;
-  Duration delay = trace_.delay(trace, onward - start_);
-  if (trace.dither) {
-    delay += rounded((streams_.of(Stage::Dither, copy).uniform(index_) - 0.5) * 1e6 + 1e9) -
-             Duration{1'000'000'000};
-  }
-  return std::max(delay, Duration{});
 }
 
 /// Who swaps leaves before those who came just before it.

@@ -9,13 +9,13 @@
 
 #include "common/core/time.h"
 #include "netem/bottleneck.h"
+#include "netem/delay_sequence.h"
 #include "netem/fate_types.h"
 #include "netem/impairment.h"
 #include "netem/loss_laws.h"
 #include "netem/prepared_law.h"
 #include "netem/recording_reader.h"
 #include "netem/slot_grid.h"
-#include "netem/trace_reader.h"
 
 namespace palp::netem {
 
@@ -57,16 +57,12 @@ class ExactFates {
     bool lost{};
     double loss_state{};  ///< [1], of Gilbert-Elliott in time
   };
-  /// Where a delay comes from.
-  enum class Draw : std::uint8_t { Mean, Trace, Correlated, Normal, Share };
-
   /// The original's stream is at hand; those of copies are made when needed.
   [[nodiscard]] RandomStream stream_of(RandomStream original,
                                        Stage stage,
                                        std::size_t copy) const noexcept {
     return copy == 0 ? original : streams_.of(stage, copy);
   }
-  void choose_draw(bool random) noexcept;
   [[nodiscard]] CopyFate untouched(const Arrival& arrival) const noexcept;
   [[nodiscard]] std::size_t next_troubled(const Arrival& arrival, TimePoint at) noexcept;
   void go_on(CopyFate& fate, std::size_t copy, TimePoint onward, bool room) noexcept;
@@ -80,12 +76,6 @@ class ExactFates {
   [[nodiscard]] bool lost(std::size_t copy, const Common& common) const noexcept;
   void damage(CopyFate& fate, std::size_t copy) const noexcept;
   [[nodiscard]] bool fits(const CopyFate& fate) const noexcept;
-  void draw_delay(CopyFate& fate, std::size_t copy, TimePoint onward) noexcept;
-  [[nodiscard]] double draw(RandomStream stream, std::uint64_t index) const noexcept;
-  [[nodiscard]] double around(std::size_t copy) noexcept;
-  void look_ahead() noexcept;
-  [[nodiscard]] Duration traced_delay(TimePoint onward, std::size_t copy) noexcept;
-  void correlate(Duration gap) noexcept;
   void leave(CopyFate& fate, std::size_t copy, TimePoint onward) noexcept;
   [[nodiscard]] TimePoint swap_order(TimePoint release, bool swaps) noexcept;
 
@@ -115,27 +105,11 @@ class ExactFates {
   StallProcess stall_;
   Bottleneck bottleneck_;
 
-  double mean_{};    ///< [ns], as it holds now, on a ramp too
-  double jitter_{};  ///< [ns]
-  double least_{};   ///< [ns], floor
-  RandomStream delay_stream_;
+  DelaySequence delays_;
   RandomStream stay_loss_stream_;
   RandomStream gemodel_loss_stream_;
   SlotGrid slots_;
   TimePoint calm_until_{TimePoint::min()};  ///< until then common_fate() has nothing to say
-  Draw draw_{Draw::Mean};
-  /// Distances from the mean delay in units of the jitter, drawn ahead for originals.
-  static constexpr std::size_t kAhead = 32;
-  std::array<double, kAhead> ahead_{};    ///< [-], from index ahead_end_ - ahead_count_ on
-  std::array<double, kAhead> normals_{};  ///< [1], z of each, where delays are correlated
-  std::size_t ahead_count_{};
-  std::uint64_t ahead_end_{};
-  double carry_{};          ///< [1], a of z_n = a z_(n-1) + sqrt(1 - a^2) e_n
-  double fresh_{1};         ///< [1], sqrt(1 - a^2)
-  Duration carry_gap_{-1};  ///< the gap that carry_ belongs to
-  double z_before_{};       ///< [1], z_(n-1)
-  double z_{};              ///< [1], z_n, once drawn
-  TraceReader trace_;
   RecordingReader recording_;
   std::uint32_t since_reorder_{};
 
