@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string_view>
 
-#include "common/core/conventions.h"
 #include "common/core/depth_text.h"
 #include "common/core/number_text.h"
 #include "common/link/health_text.h"
@@ -25,29 +24,12 @@ std::string progress_text(const ScriptProgress& script) {
   return text + script.phase_name.data();
 }
 
-/// What the operator should know about the state, where it is not the usual one.
-std::string cue(const SurgeonStatus& status) {
-  switch (status.state) {
-    case SiteState::Hold:
-    case SiteState::Retract:
-    case SiteState::Stopped:
-      return " (" + std::string{record::to_string(status.reason)} + ")";
-    case SiteState::Clutched:
-      if (status.refused == record::NoteCode::None) return {};
-      return " (" + std::string{record::to_string(status.refused)} + ")";
-    case SiteState::Parked:
-    case SiteState::Engaged:
-      break;
-  }
-  return {};
-}
-
 }  // namespace
 
 std::string status_line(const SurgeonStatus& status) {
-  return std::string{to_string(status.state)} + cue(status) + "  " + health_text(status.link) +
-         number_text("  force ", status.force, 2, " N  ") + depth_line_of(status.depth) +
-         progress_text(status.script);
+  return record::state_text(status.state, status.reason, status.refused) + "  " +
+         health_text(status.link) + number_text("  force ", status.force, 2, " N  ") +
+         depth_line_of(status.depth) + progress_text(status.script);
 }
 
 std::optional<std::string> delay_advice(const SurgeonStatus& status,

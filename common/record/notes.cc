@@ -58,4 +58,21 @@ std::string_view to_string(NoteCode code) noexcept {
   return "unknown note";
 }
 
+std::string state_text(SiteState state, NoteCode reason, NoteCode refused) {
+  const std::string name{palp::to_string(state)};
+  switch (state) {
+    case SiteState::Hold:
+    case SiteState::Retract:
+    case SiteState::Stopped:
+      return name + " (" + std::string{to_string(reason)} + ")";
+    case SiteState::Clutched:
+      if (refused == NoteCode::None) break;
+      return name + " (" + std::string{to_string(refused)} + ")";
+    case SiteState::Parked:
+    case SiteState::Engaged:
+      break;
+  }
+  return name;
+}
+
 }  // namespace palp::record

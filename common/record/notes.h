@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
+
+#include "common/core/site_state.h"
 
 /// Numbered notes and the reasons of state changes: rt leaves a number, people read the text.
 namespace palp::record {
@@ -41,5 +44,9 @@ enum class NoteCode : std::uint16_t {
 [[nodiscard]] inline std::string_view note_text(std::uint16_t code) noexcept {
   return to_string(static_cast<NoteCode>(code));
 }
+
+/// A site's state on its status line, and why, where it is not the usual one: "CLUTCHED", "RETRACT
+/// (peer is retracting)". `refused`: why the last engagement was, None: it was not.
+[[nodiscard]] std::string state_text(SiteState state, NoteCode reason, NoteCode refused);
 
 }  // namespace palp::record

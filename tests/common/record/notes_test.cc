@@ -20,5 +20,15 @@ TEST(NotesTest, EveryNumberHasItsOwnTextAndOthersSaySo) {
   EXPECT_EQ(known, 24);
 }
 
+TEST(NotesTest, AStateSaysWhyWhereItIsNotTheUsualOne) {
+  constexpr auto kReason = NoteCode::PeerStopped;
+  constexpr auto kRefused = NoteCode::EngageRefusedForce;
+  EXPECT_EQ(state_text(SiteState::Stopped, kReason, NoteCode::None), "STOPPED (peer stopped)");
+  EXPECT_EQ(state_text(SiteState::Engaged, kReason, kRefused), "ENGAGED");
+  EXPECT_EQ(state_text(SiteState::Clutched, kReason, NoteCode::None), "CLUTCHED");
+  EXPECT_EQ(state_text(SiteState::Clutched, kReason, kRefused),
+            "CLUTCHED (engagement refused: contact force too high)");
+}
+
 }  // namespace
 }  // namespace palp::record
