@@ -6,8 +6,6 @@
 #include <memory>
 #include <optional>
 
-#include "common/config/number.h"
-#include "common/core/conventions.h"
 #include "common/core/denormals.h"
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
@@ -19,6 +17,7 @@
 #include "lab/world.h"
 #include "netem/pipe.h"
 #include "patient_site/estimator_worker.h"
+#include "patient_site/tissue_record.h"
 
 namespace palp::lab {
 namespace {
@@ -33,15 +32,6 @@ constexpr std::size_t kInFlightMax = 4096;
 constexpr std::size_t kContactQueue = 4096;
 constexpr std::uint64_t kTissueStream = 0x7469737375650000;  ///< keeps the sensor's noise apart
 
-/// The truth about the tissue, for whoever judges the session afterwards, as palp-patient says it.
-record::SessionInfo with_tissue(record::SessionInfo info, const Scenario& scenario) {
-  info.metadata.emplace_back("surface_offset_mm",
-                             config::number_text(scenario.tissue.surface_offset / kMillimetre));
-  info.metadata.emplace_back("phantom_name", scenario.phantom.name);
-  info.attachments.push_back({"tissue.csv", "text/csv", patient::tissue_csv(scenario.phantom)});
-  return info;
-}
-
 /// Both session files of a run, or none.
 class Files final {
  public:
@@ -53,8 +43,9 @@ class Files final {
                                    {"time", "virtual"}};
     surgeon_.emplace(files.surgeon != nullptr ? *files.surgeon : null_surgeon_,
                      record::SessionInfo{link::Role::Surgeon, metadata, {}, now});
-    patient_.emplace(files.patient != nullptr ? *files.patient : null_patient_,
-                     with_tissue({link::Role::Patient, metadata, {}, now}, scenario));
+    record::SessionInfo patient_info{link::Role::Patient, metadata, {}, now};
+    patient::describe_tissue(scenario.phantom, scenario.tissue.surface_offset, patient_info);
+    patient_.emplace(files.patient != nullptr ? *files.patient : null_patient_, patient_info);
   }
   [[nodiscard]] record::SessionWriter* surgeon() { return surgeon_ ? &*surgeon_ : nullptr; }
   [[nodiscard]] record::SessionWriter* patient() { return patient_ ? &*patient_ : nullptr; }

@@ -8,8 +8,6 @@
 
 #include "common/config/command_line.h"
 #include "common/config/document.h"
-#include "common/config/number.h"
-#include "common/core/conventions.h"
 #include "common/core/histogram.h"
 #include "common/io/background_loop.h"
 #include "common/io/diagnostics.h"
@@ -32,6 +30,7 @@
 #include "patient_site/phantom.h"
 #include "patient_site/settings.h"
 #include "patient_site/simulated_phantom.h"
+#include "patient_site/tissue_record.h"
 
 namespace palp::patient {
 namespace {
@@ -72,23 +71,6 @@ struct Plan {
   site_program::RunnerConfig runner;
   record::SessionInfo info;
 };
-
-/// The truth about the tissue, for whoever judges the session afterwards.
-void describe_tissue(const Phantom& phantom,
-                     double surface_offset,  // [m]
-                     record::SessionInfo& info) {
-  const auto millimetres = [](double length) { return config::number_text(length / kMillimetre); };
-  const auto optional_text = [](const std::optional<double>& value, double unit) {
-    return value ? config::number_text(*value / unit) : std::string{};
-  };
-  info.metadata.emplace_back("surface_offset_mm", millimetres(surface_offset));
-  info.metadata.emplace_back("phantom_name", phantom.name);
-  info.metadata.emplace_back("phantom_depth_mm", optional_text(phantom.depth, kMillimetre));
-  info.metadata.emplace_back("phantom_radius_mm", optional_text(phantom.radius, kMillimetre));
-  info.metadata.emplace_back("phantom_ratio", optional_text(phantom.ratio, 1));
-  info.metadata.emplace_back("phantom_shape", phantom.shape);
-  info.attachments.push_back({"tissue.csv", "text/csv", tissue_csv(phantom)});
-}
 
 tl::expected<Plan, Ending> make_plan(const config::Document& document) {
   const auto bad = [](const Error& error) { return tl::unexpected{ending_of(error)}; };

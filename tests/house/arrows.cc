@@ -96,6 +96,7 @@ const std::vector<Arrow>& arrows() {
         "common/record",
         "common/config",
         "common/settings"}},
+      {"patient_site/tissue_record.*", {"common/record", "common/config/number.h"}},
       {"patient_site/*",
        {"patient_site/estimator",
         "fem/depth_database.h",

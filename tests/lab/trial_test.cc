@@ -99,6 +99,7 @@ TEST(TrialTest, TheSessionLogDoesNotChangeTheSession) {
   const auto bytes = patient.bytes();
   const std::string text{reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   EXPECT_NE(text.find("phantom_name"), std::string::npos);
+  EXPECT_NE(text.find("phantom_depth_mm"), std::string::npos);
   EXPECT_NE(text.find("tissue.csv"), std::string::npos);
 }
 
