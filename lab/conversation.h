@@ -8,7 +8,7 @@
 #include "common/link/link.h"
 #include "common/link/session.h"
 #include "common/link/transport.h"
-#include "lab/fault.h"
+#include "lab/local_clock.h"
 
 namespace palp::lab {
 

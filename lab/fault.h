@@ -31,11 +31,4 @@ struct Fault {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-/// A process's clock beside the lab's: what a step of it moves.
-struct LocalClock {
-  Duration ahead{};
-  [[nodiscard]] TimePoint local(TimePoint world) const noexcept { return world + ahead; }
-  [[nodiscard]] TimePoint world(TimePoint local) const noexcept { return local - ahead; }
-};
-
 }  // namespace palp::lab
