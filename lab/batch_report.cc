@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lab/digest.h"
 #include "lab/metric_table.h"
 #include "lab/observer.h"
 
@@ -21,12 +22,6 @@ constexpr std::size_t kWorstMax = 3;  ///< of each metric
 constexpr std::string_view kFixedFirst = "index,seed,digest,virtual_s,outcome,unstable,reason";
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-std::string hexadecimal(std::uint64_t value) {
-  std::array<char, 17> text{};
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
-  return text.data();
-}
 
 std::string decimal(double value) {
   if (!std::isfinite(value)) return {};

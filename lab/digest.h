@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <concepts>
 #include <cstdint>
+#include <cstdio>
+#include <string>
 
 namespace palp::lab {
 
@@ -24,5 +27,12 @@ class Digest {
  private:
   std::uint64_t state_{0x6a09e667f3bcc908ULL};
 };
+
+/// Of sixteen digits, as reports and files have it.
+[[nodiscard]] inline std::string hexadecimal(std::uint64_t value) {
+  std::array<char, 17> text{};
+  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
+  return text.data();
+}
 
 }  // namespace palp::lab

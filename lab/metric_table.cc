@@ -1,5 +1,6 @@
 #include "lab/metric_table.h"
 
+#include <algorithm>
 #include <array>
 
 namespace palp::lab {
@@ -39,5 +40,12 @@ constexpr std::array kTable{
 }  // namespace
 
 std::span<const Metric> metric_table() noexcept { return kTable; }
+
+std::optional<std::size_t> metric_index(std::string_view name) noexcept {
+  const auto* const found = std::find_if(
+      kTable.begin(), kTable.end(), [&](const Metric& metric) { return metric.name == name; });
+  if (found == kTable.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - kTable.begin());
+}
 
 }  // namespace palp::lab

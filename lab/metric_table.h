@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -15,5 +17,7 @@ struct Metric {
 
 /// All of them, in the order of reports.
 [[nodiscard]] std::span<const Metric> metric_table() noexcept;
+/// Which of them has that name; nullopt: none.
+[[nodiscard]] std::optional<std::size_t> metric_index(std::string_view name) noexcept;
 
 }  // namespace palp::lab

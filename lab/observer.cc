@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/core/random.h"
 #include "lab/metric_table.h"
 
 namespace palp::lab {
@@ -12,26 +13,17 @@ namespace {
 constexpr std::array kWebers{0.08, 0.15, 0.22};
 constexpr double kQuartile = 0.6745;  // of the normal distribution: 75 % lie below
 
-double phi(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
-
-std::size_t column(std::string_view name) {
-  const auto table = metric_table();
-  const auto found = std::find_if(
-      table.begin(), table.end(), [&](const Metric& metric) { return metric.name == name; });
-  return static_cast<std::size_t>(found - table.begin());
-}
-
 }  // namespace
 
 double right_answers(double ratio, double weber) noexcept {
   if (!(ratio > 0)) return 0.5;
   const double sigma = std::log1p(weber) / (std::sqrt(2.0) * kQuartile);
-  return phi(std::log(ratio) / (std::sqrt(2.0) * sigma));
+  return normal_cdf(std::log(ratio) / (std::sqrt(2.0) * sigma));
 }
 
 std::vector<ObserverRow> observe(const std::vector<CaseResult>& results) {
-  const std::size_t truth = column("ratio_true");
-  const std::size_t error = column("ratio_error");
+  const std::size_t truth = *metric_index("ratio_true");
+  const std::size_t error = *metric_index("ratio_error");
   std::vector<std::vector<std::string>> groups;
   for (const CaseResult& result : results) {
     if (std::find(groups.begin(), groups.end(), result.labels) == groups.end()) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/core/depth_text.h"
+#include "lab/digest.h"
 #include "lab/metric_table.h"
 #include "patient_site/estimator/depth_summary.h"
 #include "patient_site/phantom.h"
@@ -82,12 +83,6 @@ Json metrics_json(const TrialMetrics& m) {
     json[std::string{metric.name}] = number(metric.value(m));
   }
   return json;
-}
-
-std::string hexadecimal(std::uint64_t value) {
-  std::array<char, 17> text{};
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
-  return text.data();
 }
 
 /// printf at the end of a text; a line is never longer than 239 characters.

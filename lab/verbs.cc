@@ -87,11 +87,8 @@ Result<Run> run(Plan plan, const BatchArguments& arguments, const Machine& machi
 
 /// The metric over the first label that is a number, one curve per value of all other labels.
 std::string plot(const Run& done, const std::string& metric, const std::string& title) {
-  const auto table = metric_table();
-  const auto found = std::find_if(
-      table.begin(), table.end(), [&](const Metric& one) { return one.name == metric; });
-  if (found == table.end() || done.plan.label_names.empty()) return {};
-  const auto at = static_cast<std::size_t>(found - table.begin());
+  const auto at = metric_index(metric);
+  if (!at || done.plan.label_names.empty()) return {};
   std::map<std::string, plot::Curve> curves;
   for (const CaseResult& result : done.results) {
     std::string name;
@@ -108,7 +105,7 @@ std::string plot(const Run& done, const std::string& metric, const std::string& 
     const std::string& label = result.labels.front();
     std::from_chars(label.data(), label.data() + label.size(), x);
     curve.x.push_back(x);
-    curve.y.push_back(result.values[at]);
+    curve.y.push_back(result.values[*at]);
   }
   std::vector<plot::Curve> list;
   for (auto& [name, curve] : curves) list.push_back(std::move(curve));
