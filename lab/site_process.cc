@@ -1,21 +1,12 @@
 #include "lab/site_process.h"
 
-#include <array>
 #include <utility>
 
-#include "common/core/random.h"
 #include "common/link/codec_protobuf.h"
-#include "common/link/packet_protection.h"
 #include "lab/adversary.h"
 
 namespace palp::lab {
 namespace {
-
-constexpr std::uint64_t kEntropyStream = 0x656e'7472'6f70'0000ULL;  ///< "entrop": ids of sessions
-
-/// Where clocks step there are two of them, both long since started: none may fall below 0.
-constexpr Duration kSurgeonAhead = std::chrono::hours{1};
-constexpr Duration kPatientAhead = std::chrono::hours{7};
 
 std::unique_ptr<link::Codec> make_codec(const Scenario& scenario) {
   if (scenario.bare) return std::make_unique<link::RawCodec>();
@@ -26,32 +17,6 @@ std::unique_ptr<link::Codec> patient_codec(const Scenario& scenario) {
   auto codec = make_codec(scenario);
   if (!scenario.lying) return codec;
   return std::make_unique<LyingCodec>(std::move(codec), scenario.seed, scenario.link.period);
-}
-
-/// A session as the handshake would have left it.
-link::Handover handover(std::unique_ptr<link::Transport> transport) {
-  return {.transport = std::move(transport),
-          .protection = std::make_unique<link::PlainProtection>(),
-          .send_connection = 1,
-          .receive_connection = 1,
-          .session_id = 1};
-}
-
-/// Another 64 bits for every start of a process.
-std::uint64_t entropy(const Scenario& scenario, link::Role role, std::uint64_t start) {
-  return random_bits(scenario.seed, kEntropyStream + static_cast<std::uint64_t>(role), start);
-}
-
-link::SessionConfig session_config(const Scenario& scenario, link::Role role) {
-  return {.role = role, .coupling = scenario.coupling.name, .git = {}};
-}
-
-bool by_handshake(const Scenario& scenario) { return scenario.fault.kind != FaultKind::None; }
-
-/// A dead process reads nothing: its socket is gone and so is what comes meanwhile.
-void drop_all(link::Transport& end, TimePoint now) {
-  std::array<std::byte, link::kDatagramSizeMax> buffer{};
-  while (end.receive(buffer, now)) continue;
 }
 
 }  // namespace
@@ -87,25 +52,18 @@ SurgeonProcess::SurgeonProcess(const Scenario& scenario,
                                record::Recorder& recorder)
     : scenario_{scenario},
       hand_{hand},
-      clock_{by_handshake(scenario) ? kSurgeonAhead : Duration{0}},
-      device_{hand, clock_},
-      end_{std::move(end)},
+      meeting_{scenario, link::Role::Surgeon, std::move(end)},
+      device_{hand, meeting_.clock()},
       recorder_{recorder} {}
 
 void SurgeonProcess::start(TimePoint now) {
   parts_.emplace(*this);
-  const std::uint64_t random = entropy(scenario_, link::Role::Surgeon, starts_++);
-  if (by_handshake(scenario_)) {
-    parts_->conversation.emplace(
-        session_config(scenario_, link::Role::Surgeon), random, *end_, clock_, parts_->link);
-  } else {
-    (void)parts_->link.adopt(handover(std::move(end_)), now);
-  }
+  meeting_.start(parts_->link, now);
 }
 
 void SurgeonProcess::kill(TimePoint now) {
   parts_.reset();
-  drop_all(*end_, now);
+  meeting_.kill(now);
   const double offset = status_.offset;
   const double lateral = status_.lateral;
   status_ = {};
@@ -119,16 +77,16 @@ void SurgeonProcess::tick(TimePoint now) {
     (void)hand_.read(now);
     hand_.apply(0);
     hand_.show({});
-    drop_all(*end_, now);
+    meeting_.lose(now);
     return;
   }
-  parts_->node.tick(clock_.local(now));
-  if (parts_->conversation) parts_->conversation->step(now);
+  parts_->node.tick(meeting_.clock().local(now));
+  meeting_.step(now);
   status_ = parts_->node.status().get();
 }
 
 link::LinkHealth SurgeonProcess::health(TimePoint now) const noexcept {
-  return parts_ ? parts_->link.health(clock_.local(now)) : link::LinkHealth{};
+  return parts_ ? parts_->link.health(meeting_.clock().local(now)) : link::LinkHealth{};
 }
 
 PatientProcess::Running::Running(PatientProcess& owner)
@@ -148,24 +106,17 @@ PatientProcess::PatientProcess(const Scenario& scenario,
                                std::unique_ptr<link::Transport> end)
     : scenario_{scenario},
       around_{around},
-      clock_{by_handshake(scenario) ? kPatientAhead : Duration{0}},
-      device_{around.phantom, clock_},
-      end_{std::move(end)} {}
+      meeting_{scenario, link::Role::Patient, std::move(end)},
+      device_{around.phantom, meeting_.clock()} {}
 
 void PatientProcess::start(TimePoint now) {
   parts_.emplace(*this);
-  const std::uint64_t random = entropy(scenario_, link::Role::Patient, starts_++);
-  if (by_handshake(scenario_)) {
-    parts_->conversation.emplace(
-        session_config(scenario_, link::Role::Patient), random, *end_, clock_, parts_->link);
-  } else {
-    (void)parts_->link.adopt(handover(std::move(end_)), now);
-  }
+  meeting_.start(parts_->link, now);
 }
 
 void PatientProcess::kill(TimePoint now) {
   parts_.reset();
-  drop_all(*end_, now);
+  meeting_.kill(now);
 }
 
 void PatientProcess::tick(TimePoint now) {
@@ -173,15 +124,15 @@ void PatientProcess::tick(TimePoint now) {
     // The drive holds the stage where it stands.
     (void)around_.phantom.read(now);
     around_.phantom.halt();
-    drop_all(*end_, now);
+    meeting_.lose(now);
     return;
   }
-  parts_->node.tick(clock_.local(now));
-  if (parts_->conversation) parts_->conversation->step(now);
+  parts_->node.tick(meeting_.clock().local(now));
+  meeting_.step(now);
 }
 
 link::LinkHealth PatientProcess::health(TimePoint now) const noexcept {
-  return parts_ ? parts_->link.health(clock_.local(now)) : link::LinkHealth{};
+  return parts_ ? parts_->link.health(meeting_.clock().local(now)) : link::LinkHealth{};
 }
 
 }  // namespace palp::lab

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -9,8 +8,8 @@
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
 #include "common/record/recorder.h"
-#include "lab/conversation.h"
-#include "lab/fault.h"
+#include "lab/local_clock.h"
+#include "lab/meeting.h"
 #include "lab/scenario.h"
 #include "patient_site/patient_node.h"
 #include "patient_site/simulated_phantom.h"
@@ -18,9 +17,8 @@
 #include "surgeon_site/surgeon_node.h"
 
 /// Each site as a process on its machine: what it has when it starts, loses when it is killed, and
-/// reads its clock from. Devices live on without it, as a device does whose computer hangs. With a
-/// fault in the scenario sites find each other by the real handshake, else they know each other
-/// from the start. Thread: the lab's. Times are the lab's.
+/// reads its clock from. Devices live on without it, as a device does whose computer hangs. Thread:
+/// the lab's. Times are the lab's.
 namespace palp::lab {
 
 /// The hand, seen through the process's clock; and a foot that can be taken off the pedal.
@@ -75,7 +73,7 @@ class SurgeonProcess {
   void kill(TimePoint now);
   void tick(TimePoint now);
   [[nodiscard]] bool alive() const noexcept { return parts_.has_value(); }
-  [[nodiscard]] LocalClock& clock() noexcept { return clock_; }
+  [[nodiscard]] LocalClock& clock() noexcept { return meeting_.clock(); }
   [[nodiscard]] HandAtClock& hand() noexcept { return device_; }
   /// Alive, and the pedal down: the force at the hand is this process's own.
   [[nodiscard]] bool pressed() const noexcept { return alive() && device_.pedal_held(); }
@@ -85,18 +83,15 @@ class SurgeonProcess {
  private:
   const Scenario& scenario_;
   surgeon::SimulatedHand& hand_;
-  LocalClock clock_;
+  Meeting meeting_;
   HandAtClock device_;
-  std::unique_ptr<link::Transport> end_;
   record::Recorder& recorder_;
   surgeon::SurgeonStatus status_;
-  std::uint64_t starts_{};
   struct Running {
     explicit Running(SurgeonProcess& owner);
     link::Link link;
     coupling::SurgeonCoupling law;
     surgeon::SurgeonNode node;
-    std::optional<Conversation> conversation;
   };
   std::optional<Running> parts_;
 };
@@ -117,23 +112,19 @@ class PatientProcess {
   void start(TimePoint now);
   void kill(TimePoint now);
   void tick(TimePoint now);
-  [[nodiscard]] bool alive() const noexcept { return parts_.has_value(); }
-  [[nodiscard]] LocalClock& clock() noexcept { return clock_; }
+  [[nodiscard]] LocalClock& clock() noexcept { return meeting_.clock(); }
   [[nodiscard]] link::LinkHealth health(TimePoint now) const noexcept;
 
  private:
   const Scenario& scenario_;
   Surroundings around_;
-  LocalClock clock_;
+  Meeting meeting_;
   PhantomAtClock device_;
-  std::unique_ptr<link::Transport> end_;
-  std::uint64_t starts_{};
   struct Running {
     explicit Running(PatientProcess& owner);
     link::Link link;
     coupling::PatientCoupling law;
     patient::PatientNode node;
-    std::optional<Conversation> conversation;
   };
   std::optional<Running> parts_;
 };
