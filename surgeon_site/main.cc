@@ -1,10 +1,10 @@
 // palp-surgeon: the surgeon's site in real time.
 #include <chrono>
-#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "common/config/command_line.h"
 #include "common/config/document.h"
@@ -23,6 +23,7 @@
 #include "common/site_program/runner.h"
 #include "common/site_program/session_info.h"
 #include "common/site_program/site_address.h"
+#include "common/site_program/site_main.h"
 #include "common/site_program/site_report.h"
 #include "common/site_program/status_line.h"
 #include "surgeon_site/display.h"
@@ -48,15 +49,7 @@ void declare_flags(config::CommandLine& line, config::Document& document, std::s
   line.knob("--master", "hand.master");
   line.knob("--grip", "hand.grip");
   line.knob("--surface-offset-mm", "hand.surface_offset_mm");
-  line.knob("--session-file", "record.file");
-  line.knob("--duration-s", "duration_s");
-  line.knob("--delay-ms", "impairment.delay_ms");
-  line.knob("--jitter-ms", "impairment.jitter_ms");
-  line.knob("--loss", "impairment.loss");
-  line.knob("--impair", "impairment.spec");
-  line.knob("--seed", "seed");
-  line.knob("--identity", "link.identity");
-  line.knob("--insecure", "link.insecure");
+  site_program::declare_session_flags(line);
   line.knob("--force-engage", "engagement.forced");
 }
 
@@ -219,22 +212,6 @@ void Program::stop(site_program::SiteReport& report) {
   runner_.account(report);
 }
 
-Ending run(const config::Document& document, site_program::SiteReport& report) {
-  auto plan = make_plan(document);
-  if (!plan) return plan.error();
-  report.seed = plan->settings.seed;
-  report.coupling = plan->settings.coupling.name;
-  report.session_file = plan->settings.record.file;
-  io::Terminal terminal;
-  if (plan->settings.protection.insecure) {
-    io::warn("datagrams are neither encrypted nor authenticated: they stay on this machine");
-  }
-  Program program{std::move(*plan)};
-  report.ending = program.run(terminal);
-  program.stop(report);
-  return report.ending;
-}
-
 }  // namespace
 
 int run(int argc, char** argv) {
@@ -245,23 +222,12 @@ int run(int argc, char** argv) {
   line.verbs_optional();
   const site_program::CertificatesCommand certificates{line};
   const site_program::CheckCommand check{line, link::Role::Surgeon};
-  site_program::SiteReport report;
-  report.site = "surgeon";
-  if (const auto ending = line.parse(argc, argv)) {
-    if (ending->code == ExitCode::Done || report_file.empty()) return config::leave(*ending);
-    report.ending = ending_of(*ending);
-    return site_program::finish(report, report_file);
-  }
-  if (!line.chosen_verb().empty()) {
-    const Ending ending = line.chosen_verb() == "check" ? check.run() : certificates.run();
-    return config::leave({ending.code, ending.reason});
-  }
-  try {
-    report.ending = run(document, report);
-  } catch (const std::exception& error) {
-    report.ending = site_program::cannot_start(error.what());
-  }
-  return site_program::finish(report, report_file);
+  const auto session = [&](site_program::SiteReport& report) {
+    return site_program::run_session<Program>(make_plan(document), report);
+  };
+  const std::vector<site_program::SideVerb> verbs{
+      {"certificates", [&] { return certificates.run(); }}, {"check", [&] { return check.run(); }}};
+  return site_program::run({"surgeon", line, report_file, verbs, session}, argc, argv);
 }
 
 }  // namespace palp::surgeon

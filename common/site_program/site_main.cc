@@ -1,0 +1,43 @@
+#include "common/site_program/site_main.h"
+
+#include <algorithm>
+#include <exception>
+
+namespace palp::site_program {
+
+void declare_session_flags(config::CommandLine& line) {
+  line.knob("--session-file", "record.file");
+  line.knob("--duration-s", "duration_s");
+  line.knob("--delay-ms", "impairment.delay_ms");
+  line.knob("--jitter-ms", "impairment.jitter_ms");
+  line.knob("--loss", "impairment.loss");
+  line.knob("--impair", "impairment.spec");
+  line.knob("--seed", "seed");
+  line.knob("--identity", "link.identity");
+  line.knob("--insecure", "link.insecure");
+}
+
+int run(const SiteMain& program, int argc, const char* const* argv) {
+  SiteReport report;
+  report.site = program.site;
+  if (const auto ending = program.line.parse(argc, argv)) {
+    if (ending->code == config::ExitCode::Done || program.report_file.empty()) {
+      return config::leave(*ending);
+    }
+    report.ending = ending_of(*ending);
+    return finish(report, program.report_file);
+  }
+  const auto verb = std::ranges::find(program.verbs, program.line.chosen_verb(), &SideVerb::name);
+  if (verb != program.verbs.end()) {
+    const Ending ending = verb->run();
+    return config::leave({ending.code, ending.reason});
+  }
+  try {
+    report.ending = program.session(report);
+  } catch (const std::exception& error) {
+    report.ending = cannot_start(error.what());
+  }
+  return finish(report, program.report_file);
+}
+
+}  // namespace palp::site_program
