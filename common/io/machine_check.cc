@@ -36,8 +36,7 @@ int usable_processors() {
 /// What a socket that asks for `bytes` gets; the kernel tells twice as much as it holds.
 int granted_buffer(int bytes) {
   const Descriptor socket{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
-  (void)::setsockopt(socket.number(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
-  (void)::setsockopt(socket.number(), SOL_SOCKET, SO_RCVBUFFORCE, &bytes, sizeof bytes);
+  ask_receive_buffer(socket.number(), bytes);
   int given = 0;
   socklen_t size = sizeof given;
   if (::getsockopt(socket.number(), SOL_SOCKET, SO_RCVBUF, &given, &size) != 0) return 0;

@@ -27,8 +27,7 @@ void set_option(int socket, int level, int name, int value) noexcept {
 /// Comfort, not conditions: a kernel that refuses one still carries datagrams.
 void set_options(int socket, int family, const UdpSocketConfig& config) noexcept {
   set_option(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1);
-  set_option(socket, SOL_SOCKET, SO_RCVBUF, config.receive_buffer);
-  set_option(socket, SOL_SOCKET, SO_RCVBUFFORCE, config.receive_buffer);
+  ask_receive_buffer(socket, config.receive_buffer);
   // PROBE sets "don't fragment" without believing ICMP, which anybody can forge, on the path's MTU.
   if (family == AF_INET6) {
     set_option(socket, IPPROTO_IPV6, IPV6_TCLASS, kExpeditedForwarding);
@@ -50,6 +49,11 @@ bool is_path_error(int error) noexcept {
 }
 
 }  // namespace
+
+void ask_receive_buffer(int socket, int bytes) noexcept {
+  set_option(socket, SOL_SOCKET, SO_RCVBUF, bytes);
+  set_option(socket, SOL_SOCKET, SO_RCVBUFFORCE, bytes);
+}
 
 /// Room for one recvmmsg. What was taken but not handed over waits here, also over ticks.
 struct UdpSocket::Batch {

@@ -21,6 +21,9 @@ struct UdpSocketConfig {
   int receive_buffer{4 << 20};
 };
 
+/// With the right to it also above what the system allows everybody.
+void ask_receive_buffer(int socket, int bytes) noexcept;
+
 /// A connected, non-blocking UDP socket: the kernel lets through what the peer's address sent.
 /// Datagrams of type data go to the caller, all others into the inbox; both count against the
 /// budget of a tick. Telegrams that io took from an address that is being proven come after them,
