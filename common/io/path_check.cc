@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <optional>
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -12,35 +13,65 @@
 #include "common/io/dtls_handshake.h"
 #include "common/io/steady_clock.h"
 #include "common/io/system_text.h"
+#include "common/link/link.h"
 
 namespace palp::io {
 namespace {
 
-/// Above it no link becomes Live.
-constexpr Duration kRoundTripMax = std::chrono::milliseconds{2500};
+constexpr Duration kRoundTripMax = link::LinkConfig{}.round_trip_max;
 /// More lost questions than this are no accident.
 constexpr double kLostMax = 0.2;  // [-]
 
-/// HelloVerifyRequest (RFC 6347, 4.3.2): a record of a handshake, and behind its header the type 3.
-bool is_cookie(std::span<const std::byte> datagram) {
-  constexpr std::size_t kTypeAt = 13;
-  return datagram.size() > kTypeAt && datagram[0] == std::byte{22} &&
-         datagram[kTypeAt] == std::byte{3};
+// Of a record of DTLS (RFC 6347, 4.1): its type, the last of six bytes of its number, and what is
+// behind its header.
+constexpr std::byte kHandshake{22};
+constexpr std::size_t kNumberAt = 10;
+constexpr std::size_t kBodyAt = 13;
+constexpr std::byte kHelloVerifyRequest{3};
+
+/// Which question it answers: a cookie has the number of the record it was asked with (4.2.1).
+std::optional<std::size_t> question_of(std::span<const std::byte> datagram) {
+  const bool cookie = datagram.size() > kBodyAt && datagram[0] == kHandshake &&
+                      datagram[kBodyAt] == kHelloVerifyRequest;
+  if (!cookie) return std::nullopt;
+  return std::to_integer<std::size_t>(datagram[kNumberAt]);
 }
 
-/// @returns whether a cookie came before `until`.
-bool wait_for_cookie(const Descriptor& socket, const SteadyClock& clock, TimePoint until) {
-  for (;;) {
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(until - clock.now()).count();
-    if (left <= 0) return false;
-    pollfd watched{.fd = socket.number(), .events = POLLIN, .revents = 0};
-    if (::poll(&watched, 1, static_cast<int>(left)) <= 0) continue;
-    std::array<std::byte, 2048> bytes{};
-    const ssize_t got = ::recv(socket.number(), bytes.data(), bytes.size(), MSG_DONTWAIT);
-    if (got > 0 && is_cookie(std::span{bytes}.first(static_cast<std::size_t>(got)))) return true;
+/// Questions under way to one peer.
+class Questions {
+ public:
+  Questions(int socket, const Credentials& credentials)
+      : socket_{socket}, hello_{DtlsHandshake{credentials}.take_datagrams()} {}
+
+  void ask(TimePoint now) {
+    for (DtlsDatagram& one : hello_) {
+      one[kNumberAt] = static_cast<std::byte>(asked_at_.size());
+      (void)::send(socket_, one.data(), one.size(), MSG_DONTWAIT);
+    }
+    asked_at_.emplace_back(now);
   }
-}
+  /// Waits for one datagram, at the longest until then.
+  void listen(const SteadyClock& clock, TimePoint until) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - clock.now()).count();
+    pollfd watched{.fd = socket_, .events = POLLIN, .revents = 0};
+    if (::poll(&watched, 1, static_cast<int>(std::max<std::int64_t>(0, left))) <= 0) return;
+    std::array<std::byte, 2048> bytes{};
+    const ssize_t got = ::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (got <= 0) return;
+    const auto number = question_of(std::span{bytes}.first(static_cast<std::size_t>(got)));
+    if (!number || *number >= asked_at_.size() || !asked_at_[*number]) return;
+    round_trips_.push_back(clock.now() - *asked_at_[*number]);
+    asked_at_[*number].reset();
+  }
+  [[nodiscard]] std::size_t asked() const { return asked_at_.size(); }
+  [[nodiscard]] const std::vector<Duration>& round_trips() const { return round_trips_; }
+
+ private:
+  int socket_;
+  std::vector<DtlsDatagram> hello_;
+  std::vector<std::optional<TimePoint>> asked_at_;  ///< by number; nullopt: answered
+  std::vector<Duration> round_trips_;
+};
 
 }  // namespace
 
@@ -53,19 +84,21 @@ Result<PathFacts> read_path(const HostAndPort& peer,
   if (!socket.valid() || ::connect(socket.number(), place->address(), place->size()) != 0) {
     return fail("cannot call " + peer.to_string() + ": " + system_text(errno));
   }
-  const std::vector<DtlsDatagram> hello = DtlsHandshake{credentials}.take_datagrams();
+  Questions questions{socket.number(), credentials};
   const SteadyClock clock;
-  PathFacts facts;
-  for (; facts.asked < config.questions; ++facts.asked) {
-    const TimePoint asked_at = clock.now();
-    for (const DtlsDatagram& one : hello) {
-      (void)::send(socket.number(), one.data(), one.size(), MSG_DONTWAIT);
+  TimePoint until{};
+  while (questions.asked() < config.questions) {
+    const TimePoint now = clock.now();
+    questions.ask(now);
+    until = now + config.patience;
+    for (const TimePoint next = now + config.pause; clock.now() < next;) {
+      questions.listen(clock, next);
     }
-    if (!wait_for_cookie(socket, clock, asked_at + config.patience)) continue;
-    facts.round_trips.push_back(clock.now() - asked_at);
-    clock.sleep_until(clock.now() + config.pause);
   }
-  return facts;
+  while (questions.round_trips().size() < questions.asked() && clock.now() < until) {
+    questions.listen(clock, until);
+  }
+  return PathFacts{.asked = questions.asked(), .round_trips = questions.round_trips()};
 }
 
 MachineFinding judge_path(const PathFacts& facts) {
@@ -85,7 +118,9 @@ MachineFinding judge_path(const PathFacts& facts) {
               number_text(", ", seconds(sorted[sorted.size() / 2]) * 1e3, 1, " in the middle") +
               number_text(", ", lost, 0, " of ") + std::to_string(facts.asked) + " lost",
           good,
-          good ? "" : "above 2.5 s, or with so much loss, no session comes about: another network"};
+          good ? ""
+               : number_text("above ", seconds(kRoundTripMax), 1, " s, or with so much loss, ") +
+                     "no session comes about: another network"};
 }
 
 }  // namespace palp::io

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "common/core/result.h"
@@ -12,14 +13,14 @@
 namespace palp::io {
 
 struct PathFacts {
-  int asked{};
+  std::size_t asked{};
   std::vector<Duration> round_trips;  ///< of the questions that were answered
 };
 
 struct PathCheckConfig {
-  int questions{10};
-  Duration pause{std::chrono::milliseconds{50}};      ///< between an answer and the next question
-  Duration patience{std::chrono::milliseconds{500}};  ///< then a question counts as lost
+  std::size_t questions{10};                      ///< 256 at most
+  Duration pause{std::chrono::milliseconds{50}};  ///< between two questions
+  Duration patience{std::chrono::seconds{3}};     ///< then the last question counts as lost
 };
 
 /// Asks a patient site that runs at `peer`, in a session or not, for cookies: each is the first

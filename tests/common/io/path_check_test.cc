@@ -1,9 +1,14 @@
 #include "common/io/path_check.h"
 
+#include <deque>
+#include <thread>
+#include <utility>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/io/session_server.h"
+#include "common/io/steady_clock.h"
 #include "tests/common/io/keys_folder.h"
 #include "tests/common/io/loopback.h"
 
@@ -27,7 +32,7 @@ TEST(PathCheckTest, APatientSiteThatRunsAnswersEachQuestionAndKeepsNothing) {
                                *surgeon,
                                {.questions = 3, .pause = {}, .patience = std::chrono::seconds{10}});
   ASSERT_TRUE(facts) << facts.error().text;
-  EXPECT_EQ(facts->asked, 3);
+  EXPECT_EQ(facts->asked, 3U);
   EXPECT_EQ(facts->round_trips.size(), 3U);
   EXPECT_TRUE(judge_path(*facts).good);
   EXPECT_FALSE(server.news()) << "nobody is told of it";
@@ -49,6 +54,32 @@ TEST(PathCheckTest, SomethingElseThanACookieIsNoAnswer) {
   ASSERT_TRUE(facts);
   EXPECT_TRUE(facts->round_trips.empty());
   EXPECT_FALSE(judge_path(*facts).good);
+}
+
+TEST(PathCheckTest, AWayLongerThanThePauseIsMeasuredInFull) {
+  const test::KeysFolder keys{"path-far"};
+  const auto surgeon = keys.credentials(Role::Surgeon);
+  static constexpr Duration kRoundTrip = milliseconds{40};
+  test::PlainSocket far;
+  std::jthread answers{[&far](const std::stop_token& stop) {
+    const SteadyClock clock;
+    std::deque<std::pair<TimePoint, test::PlainSocket::Taken>> under_way;
+    while (!stop.stop_requested()) {
+      if (auto taken = far.take()) under_way.emplace_back(clock.now() + kRoundTrip, *taken);
+      for (; !under_way.empty() && under_way.front().first <= clock.now(); under_way.pop_front()) {
+        auto& [due, question] = under_way.front();
+        question.bytes[13] = std::byte{3};  // else as it came: a ClientHello becomes a cookie
+        far.send_to(question.from, question.bytes);
+      }
+      std::this_thread::sleep_for(milliseconds{1});
+    }
+  }};
+  const auto facts = read_path({.host = "127.0.0.1", .port = far.local().port()},
+                               *surgeon,
+                               {.questions = 5, .pause = milliseconds{7}});
+  ASSERT_TRUE(facts);
+  EXPECT_EQ(facts->round_trips.size(), 5U);
+  for (const Duration one : facts->round_trips) EXPECT_GE(one, kRoundTrip);
 }
 
 TEST(PathCheckTest, TellsTheBestAndTheMiddleAndWhatWasLost) {
