@@ -108,6 +108,7 @@ std::string plot(const Run& done, const std::string& metric, const std::string& 
     curve.y.push_back(result.values[*at]);
   }
   std::vector<plot::Curve> list;
+  list.reserve(curves.size());
   for (auto& [name, curve] : curves) list.push_back(std::move(curve));
   plot::Axes axes;
   axes.title = title;

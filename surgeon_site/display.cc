@@ -1,7 +1,6 @@
 #include "surgeon_site/display.h"
 
 #include <algorithm>
-#include <string_view>
 
 #include "common/core/depth_text.h"
 #include "common/core/number_text.h"

@@ -59,7 +59,7 @@ std::string_view to_string(NoteCode code) noexcept {
 }
 
 std::string state_text(SiteState state, NoteCode reason, NoteCode refused) {
-  const std::string name{palp::to_string(state)};
+  std::string name{palp::to_string(state)};
   switch (state) {
     case SiteState::Hold:
     case SiteState::Retract:
