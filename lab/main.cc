@@ -1,10 +1,8 @@
 /// palp-lab: whole sessions in virtual time.
 
-#include <cstdio>
 #include <exception>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <unistd.h>
 

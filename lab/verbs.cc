@@ -1,9 +1,7 @@
 #include "lab/verbs.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <map>
 

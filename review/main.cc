@@ -1,5 +1,4 @@
 // palp-review: reads session files. It is linked into no site.
-#include <cstdio>
 #include <exception>
 #include <fstream>
 #include <iostream>

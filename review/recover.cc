@@ -1,7 +1,6 @@
 #include "review/recover.h"
 
 #include <cstring>
-#include <utility>
 
 #include "common/record/mcap_writer.h"
 #include "review/text.h"

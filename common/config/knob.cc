@@ -1,7 +1,6 @@
 #include "common/config/knob.h"
 
 #include <algorithm>
-#include <string_view>
 
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/message.h>

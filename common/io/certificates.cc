@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <filesystem>
 #include <stdexcept>
-#include <utility>
 
 #include <fcntl.h>
 #include <openssl/pem.h>

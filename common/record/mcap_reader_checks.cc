@@ -1,7 +1,6 @@
 // The part of McapReader that compares a file with what the file says of itself. A file without
 // any of it is still read; nothing here changes which messages come out.
 #include <algorithm>
-#include <utility>
 
 #include "common/record/mcap_reader.h"
 

@@ -1,7 +1,6 @@
 #include "common/site_program/site_report.h"
 
 #include <algorithm>
-#include <array>
 
 #include <nlohmann/json.hpp>
 

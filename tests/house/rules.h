@@ -2,7 +2,6 @@
 
 #include <ostream>
 #include <string_view>
-#include <vector>
 
 #include "tests/house/source.h"
 

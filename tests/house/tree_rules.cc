@@ -1,6 +1,5 @@
 #include "tests/house/tree_rules.h"
 
-#include <algorithm>
 #include <map>
 #include <regex>
 #include <set>

@@ -1,7 +1,6 @@
 #include "surgeon_site/gesture_script.h"
 
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>

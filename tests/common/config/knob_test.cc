@@ -7,7 +7,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <set>
 
 #include <gmock/gmock.h>
 #include <google/protobuf/descriptor.h>

@@ -1,7 +1,6 @@
 #include "common/core/random.h"
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <functional>

@@ -1,7 +1,5 @@
 #include "common/io/machine_check.h"
 
-#include <algorithm>
-
 #include <gtest/gtest.h>
 
 namespace palp::io {

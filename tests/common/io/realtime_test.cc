@@ -1,6 +1,5 @@
 #include "common/io/realtime.h"
 
-#include <memory>
 #include <thread>
 #include <vector>
 

@@ -4,8 +4,6 @@
 #include "common/io/secure_conversation.h"
 
 #include <algorithm>
-#include <deque>
-#include <functional>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,6 @@
 #include "common/record/mcap_reader.h"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 
 #include <gtest/gtest.h>

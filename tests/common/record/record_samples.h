@@ -2,9 +2,6 @@
 
 #include <bit>
 #include <cstdint>
-#include <span>
-#include <string>
-#include <tuple>
 #include <vector>
 
 #include "common/record/session_writer.h"

@@ -1,5 +1,3 @@
-#include <limits>
-#include <map>
 #include <set>
 #include <vector>
 

@@ -2,8 +2,6 @@
 
 #include <functional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include <google/protobuf/descriptor.h>
 
