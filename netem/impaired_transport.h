@@ -20,6 +20,7 @@ class ImpairedTransport final : public link::Transport {
   bool send(std::span<const std::byte> datagram, TimePoint now) noexcept override;
   std::optional<link::Datagram> receive(std::span<std::byte, link::kDatagramSizeMax> buffer,
                                         TimePoint now) noexcept override;
+  void rehearse() noexcept override { inner_->rehearse(); }
 
   [[nodiscard]] const Channel& channel() const noexcept { return channel_; }
   /// Datagrams longer than kDatagramSizeMax: dropped before the channel.

@@ -17,6 +17,8 @@ class ByteSink {
   virtual ~ByteSink() = default;
   /// @returns false: not all of it was taken (disk full); the recording then ends here.
   virtual bool write(std::span<const std::byte> bytes) noexcept = 0;
+  /// There is a disk: what is long may be put down there.
+  [[nodiscard]] virtual bool on_disk() const noexcept { return false; }
 };
 
 /// A file of its own: creating it over an existing one is refused, a recording is never destroyed.
@@ -29,6 +31,7 @@ class FileSink final : public ByteSink {
   FileSink& operator=(const FileSink&) = delete;
   ~FileSink() override;
   bool write(std::span<const std::byte> bytes) noexcept override;
+  [[nodiscard]] bool on_disk() const noexcept override { return true; }
 
  private:
   explicit FileSink(int descriptor) noexcept : descriptor_{descriptor} {}

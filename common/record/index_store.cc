@@ -3,11 +3,9 @@
 namespace palp::record {
 
 void IndexStore::settle() noexcept {
-  if (newest_.size() < kKept || refused_) return;
-  if (!file_) file_.reset(std::tmpfile());
+  if (newest_.size() < kKept || !file_ || refused_) return;
   // A piece that did not go out whole stays here, with all that follow.
-  refused_ = !file_ ||
-             std::fwrite(newest_.data(), 1, newest_.size(), file_.get()) != newest_.size() ||
+  refused_ = std::fwrite(newest_.data(), 1, newest_.size(), file_.get()) != newest_.size() ||
              std::fflush(file_.get()) != 0;
   if (refused_) return;
   laid_down_ += newest_.size();

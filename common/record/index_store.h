@@ -8,14 +8,15 @@
 
 namespace palp::record {
 
-/// Bytes that are wanted only once more, all together at the end. The older ones lie in a temporary
-/// file without a name: a recording of a day takes no more memory than one of a minute. Where no
-/// file can be had they stay in memory.
-/// Thread: its owner's, never rt.
+/// Bytes that are wanted only once more, all together at the end. With a file, one without a name
+/// in the folder for such, the older ones lie there: a recording of a day takes no more memory than
+/// one of a minute. Where none can be had they stay in memory. Thread: its owner's, never rt.
 class IndexStore {
  public:
   /// In memory, more than the index of a short recording. [bytes]
   static constexpr std::size_t kKept = std::size_t{64} * 1024;
+
+  explicit IndexStore(bool with_file) : file_{with_file ? std::tmpfile() : nullptr} {}
 
   /// To append to; whole records, then settle().
   [[nodiscard]] Bytes& newest() noexcept { return newest_; }

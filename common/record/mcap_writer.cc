@@ -25,7 +25,10 @@ void McapWriter::TimeSpan::add(std::uint64_t time) noexcept {
 }
 
 McapWriter::McapWriter(ByteSink& sink, const McapOptions& options)
-    : sink_{sink}, options_{options}, compressor_{options.zstd_level} {
+    : sink_{sink},
+      options_{options},
+      compressor_{options.zstd_level},
+      chunk_indexes_{sink.on_disk()} {
   waiting_.reserve(options_.chunk_size_max + options_.chunk_size_max / 4);
   Bytes head{kMcapMagic.begin(), kMcapMagic.end()};
   {
