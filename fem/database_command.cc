@@ -25,6 +25,8 @@
 namespace palp::fem {
 namespace {
 
+constexpr const char* kSchema = "palp.depth-database/1";
+
 using config::Ending;
 using config::ExitCode;
 
@@ -211,7 +213,7 @@ std::size_t wanted_members(const DepthGrid& grid) {
 nlohmann::ordered_json describe(const DepthTable& table) {
   const DepthGrid& grid = table.grid;
   nlohmann::ordered_json out;
-  out["schema"] = "palp.depth-database/1";
+  out["schema"] = kSchema;
   out["model"] = table.model;
   out["made_by"] = table.made_by;
   out["youngs_modulus_kpa"] = grid.block.youngs_modulus / 1e3;
@@ -258,17 +260,17 @@ void declare_database(config::CommandLine& line, DatabaseFlags& flags) {
              flags.check,
              {.min = 0, .max = 10'000},
              "phantoms between the grid's points, solved to state the interpolation's error");
-  line.text("--report", flags.report, "FILE", "JSON report");
+  line.report(flags.report, kSchema);
 }
 
 void declare_merge(config::CommandLine& line, DatabaseFlags& flags) {
   line.text("--out", flags.out, "FILE", "the database");
-  line.text("--report", flags.report, "FILE", "JSON report");
+  line.report(flags.report, kSchema);
   line.arguments("FILE", flags.files, "databases of one grid");
 }
 
 void declare_info(config::CommandLine& line, DatabaseFlags& flags) {
-  line.text("--report", flags.report, "FILE", "JSON report");
+  line.report(flags.report, kSchema);
   line.argument("FILE", flags.file, "a database");
   line.required();
 }

@@ -1,7 +1,8 @@
 // palp-fem: the finite element solver of indented phantoms as a program.
-#include <exception>
+#include <string>
 
 #include "common/config/command_line.h"
+#include "common/config/program_run.h"
 #include "fem/curve_command.h"
 #include "fem/database_command.h"
 #include "fem/paper_command.h"
@@ -22,24 +23,18 @@ int run(int argc, char** argv) {
   declare_verify(line.verb("verify", "the solver against closed solutions"), verify);
   PaperFlags paper;
   declare_paper(line.verb("paper", "the paper's phantoms, hash and formula, beside ours"), paper);
-  if (const auto ending = line.parse(argc, argv)) return leave(*ending);
-  const std::string verb = line.chosen_verb();
-  if (verb == "database") return leave(run_database(database));
-  if (verb == "merge") return leave(run_merge(database));
-  if (verb == "info") return leave(run_info(database));
-  if (verb == "paper") return leave(run_paper(paper));
-  if (verb == "verify") return leave(run_verify(verify));
-  return leave(run_curve(curve));
+  return config::run_program(line, argc, argv, [&]() -> config::Ending {
+    const std::string verb = line.chosen_verb();
+    if (verb == "database") return run_database(database);
+    if (verb == "merge") return run_merge(database);
+    if (verb == "info") return run_info(database);
+    if (verb == "paper") return run_paper(paper);
+    if (verb == "verify") return run_verify(verify);
+    return run_curve(curve);
+  });
 }
 
 }  // namespace
 }  // namespace palp::fem
 
-int main(int argc, char** argv) {
-  try {
-    return palp::fem::run(argc, argv);
-  } catch (const std::exception& error) {
-    return palp::config::leave(
-        {palp::config::ExitCode::CannotOpen, std::string{"palp-fem: "} + error.what()});
-  }
-}
+int main(int argc, char** argv) { return palp::fem::run(argc, argv); }

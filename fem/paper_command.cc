@@ -230,7 +230,7 @@ void declare_paper(config::CommandLine& line, PaperFlags& flags) {
               {.min = 1, .max = 4, .unit = "mm"},
               "indentations of the cubic, from 0");
   line.text("--svg", flags.svg, "FILE", "a picture: Fig. 5 and Fig. 8");
-  line.text("--report", flags.report, "FILE", "JSON report");
+  line.report(flags.report, "palp.paper/1");
 }
 
 Result<PaperStudy> study_paper(const PaperFlags& flags) {

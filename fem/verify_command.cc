@@ -22,7 +22,7 @@ std::size_t missed(const Checks& checks) {
 
 void declare_verify(config::CommandLine& line, VerifyFlags& flags) {
   line.toggle("--quick", flags.quick, "coarser meshes, the same laws");
-  line.text("--report", flags.report, "FILE", "JSON report");
+  line.report(flags.report, "palp.verify/1");
 }
 
 std::string verify_table(const Checks& checks) {

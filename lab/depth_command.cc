@@ -145,7 +145,7 @@ void declare_depth(config::CommandLine& line, DepthFlags& flags) {
   line.toggle(
       "--wide", flags.wide, "as many phantoms from a range wider than the prior's, not a fifth");
   line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "processes at a time");
-  line.text("--report", flags.report, "FILE", "JSON report");
+  line.report(flags.report, "palp.depth/1");
   line.text("--csv", flags.csv, "FILE", "a line per case");
   line.text("--svg", flags.svg, "FILE", "estimates, intervals and the truth");
 }

@@ -1,6 +1,5 @@
 /// palp-lab: whole sessions in virtual time.
 
-#include <exception>
 #include <optional>
 #include <string>
 
@@ -8,6 +7,7 @@
 
 #include "common/config/command_line.h"
 #include "common/config/exit_code.h"
+#include "common/config/program_run.h"
 #include "common/config/report.h"
 #include "common/io/parallel.h"
 #include "common/io/process_time.h"
@@ -117,7 +117,6 @@ Machine machine() {
 }  // namespace palp::lab
 
 int main(int argc, char** argv) {
-  using palp::config::leave;
   palp::lab::Arguments arguments;
   palp::config::CommandLine line{"palp-lab",
                                  "Whole sessions in virtual time, repeatable to the bit."};
@@ -132,7 +131,7 @@ int main(int argc, char** argv) {
            arguments.session_files,
            "PREFIX",
            "keep the session files: PREFIXsurgeon.mcap, PREFIXpatient.mcap");
-  run.text("--report", arguments.report, "FILE", "report as JSON");
+  run.report(arguments.report, "palp.run/1");
   run.text("--trace", arguments.trace, "FILE", "every tick of the script as CSV");
   palp::lab::BatchArguments batch;
   palp::lab::declare_batch_verbs(line, batch);
@@ -141,20 +140,15 @@ int main(int argc, char** argv) {
   declare_depth(line.verb("depth", "how well a depth is estimated, over many phantoms"), depth);
   palp::lab::VisibilityFlags visible;
   declare_visible(line.verb("visible", "the smallest inclusion the sensor sees"), visible);
-  if (const auto ending = line.parse(argc, argv)) return leave(*ending);
-  try {
-    if (const auto ending =
-            palp::lab::run_batch_verb(line.chosen_verb(), batch, palp::lab::machine())) {
-      return leave(*ending);
+  return palp::config::run_program(line, argc, argv, [&]() -> palp::config::Ending {
+    const std::string verb = line.chosen_verb();
+    if (auto ending = palp::lab::run_batch_verb(verb, batch, palp::lab::machine())) return *ending;
+    if (verb == "scenarios") {
+      return {palp::config::ExitCode::Done,
+              palp::lab::describe_scenarios() + palp::lab::describe_sets()};
     }
-    if (line.chosen_verb() == "scenarios") {
-      return leave({palp::config::ExitCode::Done,
-                    palp::lab::describe_scenarios() + palp::lab::describe_sets()});
-    }
-    if (line.chosen_verb() == "depth") return leave(palp::lab::run_depth(depth));
-    if (line.chosen_verb() == "visible") return leave(palp::lab::run_visible(visible));
-    return leave(palp::lab::run(arguments));
-  } catch (const std::exception& failure) {
-    return leave({palp::config::ExitCode::CannotOpen, std::string{"palp-lab: "} + failure.what()});
-  }
+    if (verb == "depth") return palp::lab::run_depth(depth);
+    if (verb == "visible") return palp::lab::run_visible(visible);
+    return palp::lab::run(arguments);
+  });
 }

@@ -18,6 +18,12 @@
 namespace palp::lab {
 namespace {
 
+constexpr const char* kMontecarlo = "palp.montecarlo/1";
+constexpr const char* kAdversary = "palp.adversary/1";
+constexpr const char* kCompare = "palp.compare/1";
+constexpr const char* kMap = "palp.map/1";
+constexpr const char* kSweep = "palp.sweep/1";
+
 using config::Ending;
 using config::ExitCode;
 
@@ -131,7 +137,7 @@ Ending montecarlo(const BatchArguments& arguments, const Machine& machine, bool 
   if (!plan) return refusal(plan.error());
   auto done = run(std::move(*plan), arguments, machine);
   if (!done) return refusal(done.error());
-  if (lying) done->account.schema = "palp.adversary/1";
+  if (lying) done->account.schema = kAdversary;
   return finish(*done, arguments, plot(*done, arguments.metric, "set " + done->plan.name));
 }
 
@@ -142,14 +148,14 @@ Ending sweep(const BatchArguments& arguments, const Machine& machine) {
   if (!plan) return refusal(plan.error());
   auto done = run(std::move(*plan), arguments, machine);
   if (!done) return refusal(done.error());
-  done->account.schema = "palp.sweep/1";
+  done->account.schema = kSweep;
   return finish(*done, arguments, plot(*done, arguments.metric, "sweep of " + arguments.scenario));
 }
 
 std::string map_report(const Run& done) {
   using Json = nlohmann::ordered_json;
   Json json;
-  json["schema"] = "palp.map/1";
+  json["schema"] = kMap;
   json["seed"] = done.plan.seed;
   json["tissue"] = done.plan.tissue;
   json["shard"] = done.account.shard.empty() ? Json(nullptr) : Json(done.account.shard);
@@ -211,7 +217,7 @@ Ending map(const BatchArguments& arguments, const Machine& machine) {
 Ending compare(const BatchArguments& arguments, const Machine& machine) {
   std::string text;
   nlohmann::ordered_json json;
-  json["schema"] = "palp.compare/1";
+  json["schema"] = kCompare;
   Run all;
   for (const std::string_view name : coupling::kCouplingNames) {
     BatchArguments one = arguments;
@@ -264,16 +270,16 @@ Ending merge(const BatchArguments& arguments) {
   return finish(all, arguments, plot(all, arguments.metric, "set " + all.plan.name));
 }
 
-void declare_common(config::CommandLine& verb, BatchArguments& arguments) {
+void declare_common(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {
   verb.whole("--seed", arguments.seed, {.min = 0, .max = kSeedMax}, "of everything random; 1");
   verb.text("--tissue", arguments.tissue, "NAME", "closed-form, fe, or a phantom");
-  verb.text("--report", arguments.report, "FILE", "report as JSON");
+  verb.report(arguments.report, schema);
   verb.text("--cases", arguments.cases, "FILE", "one row per case as CSV");
   verb.text("--svg", arguments.svg, "FILE", "plot");
 }
 
-void declare_running(config::CommandLine& verb, BatchArguments& arguments) {
-  declare_common(verb, arguments);
+void declare_running(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {
+  declare_common(verb, arguments, schema);
   verb.text("--shard", arguments.shard, "I/N", "only every Nth case, from the Ith on");
   verb.whole("--cores", arguments.cores, {.min = 1, .max = 1024}, "threads; as many as there are");
 }
@@ -291,17 +297,17 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   auto& monte = line.verb("montecarlo", "a set of scenarios: errors, energies, stability");
   set_flags(monte, true);
   monte.text("--coupling", arguments.coupling, "NAME", "the law; mmt");
-  declare_running(monte, arguments);
+  declare_running(monte, arguments, kMontecarlo);
   auto& liar = line.verb("adversary", "random cases with a patient site that lies");
   set_flags(liar, false);
   liar.text("--coupling", arguments.coupling, "NAME", "the law; mmt");
-  declare_running(liar, arguments);
+  declare_running(liar, arguments, kAdversary);
   auto& side_by_side = line.verb("compare", "a set with every coupling");
   set_flags(side_by_side, true);
-  declare_running(side_by_side, arguments);
+  declare_running(side_by_side, arguments, kCompare);
   auto& stability = line.verb("map", "stability of eq. (1): spring, round trip, grip");
   stability.text("--coupling", arguments.coupling, "NAME", "direct");
-  declare_running(stability, arguments);
+  declare_running(stability, arguments, kMap);
   auto& axes = line.verb("sweep", "all combinations of settings: PATH=VALUE,VALUE,...");
   axes.text("--scenario", arguments.scenario, "NAME", "what they change; standard");
   axes.text("--coupling", arguments.coupling, "NAME", "instead of the scenario's");
@@ -309,14 +315,14 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   axes.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
   axes.arguments("AXIS", arguments.list, "PATH=VALUE,VALUE,...; coupling.* at both sites; rtt_ms");
   axes.required();
-  declare_running(axes, arguments);
+  declare_running(axes, arguments, kSweep);
   auto& joined = line.verb("merge", "cases files of all shards become one report");
   joined.text("--set", arguments.set, "NAME", "how to call it");
   joined.text("--coupling", arguments.coupling, "NAME", "the law they were run with");
   joined.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
   joined.arguments("FILE", arguments.list, "as --cases wrote them");
   joined.required();
-  declare_common(joined, arguments);
+  declare_common(joined, arguments, kMontecarlo);
 }
 
 std::optional<Ending> run_batch_verb(const std::string& verb,

@@ -94,7 +94,7 @@ void declare_visible(config::CommandLine& line, VisibilityFlags& flags) {
   line.whole("--reference-taps", flags.reference_taps, {.min = 0, .max = 1000}, "beside it");
   line.number(
       "--indentation-mm", flags.indentation_mm, {.min = 1, .max = 5, .unit = "mm"}, "of each tap");
-  line.text("--report", flags.report, "FILE", "JSON report");
+  line.report(flags.report, "palp.visible/1");
 }
 
 Ending run_visible(const VisibilityFlags& flags) {

@@ -1,7 +1,6 @@
 // palp-netem: impaired paths for datagrams between two UDP ports.
 #include <csignal>
 #include <cstdio>
-#include <exception>
 #include <limits>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "common/config/command_line.h"
 #include "common/config/number.h"
+#include "common/config/program_run.h"
 #include "common/config/report.h"
 #include "common/core/printable.h"
 #include "common/core/random.h"
@@ -255,7 +255,7 @@ void declare_relay(config::CommandLine& relay, Flags& flags) {
       "--record", flags.record, "PREFIX", "to PREFIX-up.csv, PREFIX-down.csv, PREFIX.pcapng");
   relay.text(
       "--control", flags.control, "ADDRESS", "127.0.0.1:PORT or unix:PATH: events as JSON lines");
-  relay.text("--report", flags.report, "FILE", "JSON report, written when the relay ends");
+  relay.report(flags.report, "palp.relay/1");
   relay.number("--status-s",
                flags.status_s,
                {.min = 0, .max = kDurationMax, .unit = "s"},
@@ -350,18 +350,13 @@ int run(int argc, char** argv) {
   shown.argument("NAME", flags.shown, "only this one");
   SimulateFlags simulation;
   declare_simulate(line.verb("simulate", "decide about datagrams without any socket"), simulation);
-  if (const auto ending = line.parse(argc, argv)) return leave(*ending);
-  if (line.chosen_verb() == "simulate") return leave(run_simulate(simulation));
-  return leave(line.chosen_verb() == "relay" ? serve(flags) : show_presets(flags.shown));
+  return config::run_program(line, argc, argv, [&] {
+    if (line.chosen_verb() == "simulate") return run_simulate(simulation);
+    return line.chosen_verb() == "relay" ? serve(flags) : show_presets(flags.shown);
+  });
 }
 
 }  // namespace
 }  // namespace palp::netem
 
-int main(int argc, char** argv) {
-  try {
-    return palp::netem::run(argc, argv);
-  } catch (const std::exception& error) {
-    return leave(palp::netem::cannot_open(error.what()));
-  }
-}
+int main(int argc, char** argv) { return palp::netem::run(argc, argv); }

@@ -1,5 +1,4 @@
 // palp-review: reads session files. It is linked into no site.
-#include <exception>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -7,6 +6,7 @@
 
 #include "common/config/command_line.h"
 #include "common/config/exit_code.h"
+#include "common/config/program_run.h"
 #include "common/config/report.h"
 #include "common/record/mapped_file.h"
 #include "common/record/mcap_reader.h"
@@ -138,7 +138,7 @@ void declare(config::CommandLine& line, MetricsFlags& flags) {
   line.text("--surgeon-report", flags.reports.surgeon, "FILE", "report that palp-surgeon wrote");
   line.text("--patient-report", flags.reports.patient, "FILE", "report that palp-patient wrote");
   line.text("--relay", flags.relay, "FILE", "report that palp-netem relay wrote");
-  line.text("--report", flags.report, "FILE", "write palp.demo/1 to this file");
+  line.report(flags.report, "palp.demo/1");
   line.text("--outcome", flags.asked.outcome, "TEXT", "how the session ended");
   line.text("--preset", flags.asked.preset, "NAME", "link preset that was asked for");
   line.text("--grip", flags.asked.grip, "NAME", "grip that was asked for");
@@ -148,7 +148,7 @@ void declare(config::CommandLine& line, MetricsFlags& flags) {
   line.number("--loss", flags.asked.loss, {.min = 0, .max = 1, .unit = "share"}, "lost datagrams");
 }
 
-Ending run(int argc, char** argv) {
+int run(int argc, char** argv) {
   config::CommandLine line{"palp-review", "what a session file says"};
   std::string in;
   std::string out;
@@ -163,20 +163,15 @@ Ending run(int argc, char** argv) {
   recovery.argument("OUT", out, "new file; must not exist");
   recovery.required();
   declare(line.verb("metrics", "taps, depth and counters of a session"), flags);
-  if (const auto ending = line.parse(argc, argv)) return *ending;
-  const std::string verb = line.chosen_verb();
-  if (verb == "info") return run_info(in);
-  if (verb == "check") return run_check(in);
-  return verb == "recover" ? run_recover(in, out) : run_metrics(flags);
+  return config::run_program(line, argc, argv, [&] {
+    const std::string verb = line.chosen_verb();
+    if (verb == "info") return run_info(in);
+    if (verb == "check") return run_check(in);
+    return verb == "recover" ? run_recover(in, out) : run_metrics(flags);
+  });
 }
 
 }  // namespace
 }  // namespace palp::review
 
-int main(int argc, char** argv) {
-  try {
-    return palp::config::leave(palp::review::run(argc, argv));
-  } catch (const std::exception& error) {
-    return palp::config::leave(palp::review::cannot_open(error.what()));
-  }
-}
+int main(int argc, char** argv) { return palp::review::run(argc, argv); }

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <type_traits>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 
 #include "common/config/number.h"
-#include "common/config/settings_text.h"
+#include "common/config/settings_flags.h"
 #include "common/core/check.h"
 #include "common/core/printable.h"
 
@@ -18,10 +19,6 @@ namespace {
 using Values = std::vector<std::string>;
 
 Ending bad_input(std::string text) { return {ExitCode::BadInput, std::move(text)}; }
-
-std::optional<Ending> as_ending(const Result<void>& result) {
-  return result ? std::nullopt : std::optional{bad_input(result.error().text)};
-}
 
 /// The last step of reading a value.
 template <class Variable>
@@ -48,10 +45,10 @@ struct CommandLine::Parts {
   std::vector<std::unique_ptr<CommandLine>> verbs;
   bool verb_needed{true};
 
-  Document* document{};
-  std::string config_file;
-  Values overrides;
-  std::vector<std::array<std::string, 3>> knobs;  ///< given: path, value, flag
+  const CLI::Option* report{};
+  std::string report_schema;
+
+  SettingsFlags settings;
 
   void declare(const std::string& name,
                const std::string& placeholder,
@@ -61,8 +58,12 @@ struct CommandLine::Parts {
   void declare_switch(const std::string& name,
                       const std::string& meaning,
                       std::function<void()> take);
+  template <class Variable, class Range>
+  void declare_number(const std::string& flag,
+                      Variable& value,
+                      const Range& range,
+                      const std::string& said);
   [[nodiscard]] std::optional<Ending> take_values();
-  [[nodiscard]] std::optional<Ending> fill_document();
   [[nodiscard]] std::optional<Ending> take_all();
   [[nodiscard]] std::optional<Ending> unexpected_word() const;
 };
@@ -99,6 +100,21 @@ void CommandLine::Parts::declare_switch(const std::string& name,
   declared.push_back({.name = name, .option = app->add_flag(name, meaning), .take = take_one});
 }
 
+template <class Variable, class Range>
+void CommandLine::Parts::declare_number(const std::string& flag,
+                                        Variable& value,
+                                        const Range& range,
+                                        const std::string& said) {
+  constexpr bool kWhole = std::is_same_v<Range, WholeRange>;
+  declare(flag, kWhole ? "N" : "X", said, true, [flag, &value, range](const Values& given) {
+    if constexpr (kWhole) {
+      return read_whole(flag, given.front(), range).map(store_in(value));
+    } else {
+      return read_number(flag, given.front(), range).map(store_in(value));
+    }
+  });
+}
+
 std::optional<Ending> CommandLine::Parts::take_values() {
   for (const Declared& one : declared) {
     const Values& values = one.option->results();
@@ -117,45 +133,18 @@ std::optional<Ending> CommandLine::Parts::take_values() {
         return bad_input(one.name + " needs a value, not " + printable(value));
       }
     }
-    if (auto ending = as_ending(one.take(values))) {
-      return ending;
+    if (const auto taken = one.take(values); !taken) {
+      return bad_input(taken.error().text);
     }
   }
   return std::nullopt;
-}
-
-std::optional<Ending> CommandLine::Parts::fill_document() {
-  if (document == nullptr) {
-    return std::nullopt;
-  }
-  if (!config_file.empty()) {
-    const auto text = read_whole_file(config_file);
-    if (!text) {
-      return Ending{ExitCode::CannotOpen, "--config: " + text.error().text};
-    }
-    if (auto ending = as_ending(document->merge(*text, config_file))) {
-      return ending;
-    }
-  }
-  for (const std::string& assignment : overrides) {
-    if (auto ending = as_ending(document->set(assignment))) {
-      ending->text = "--set " + ending->text;
-      return ending;
-    }
-  }
-  for (const auto& [path, value, flag] : knobs) {
-    if (auto ending = as_ending(document->set(path, value, flag))) {
-      return ending;
-    }
-  }
-  return as_ending(document->check());
 }
 
 std::optional<Ending> CommandLine::Parts::take_all() {
   if (auto ending = take_values()) {
     return ending;
   }
-  return fill_document();
+  return settings.fill();
 }
 
 std::optional<Ending> CommandLine::Parts::unexpected_word() const {
@@ -236,19 +225,14 @@ void CommandLine::number(const std::string& flag,
                          const NumberRange& range,
                          const std::string& meaning) {
   const std::string said = describe(meaning, range) + ", default " + number_text(value);
-  parts_->declare(flag, "X", said, true, [flag, &value, range](const Values& given) {
-    return read_number(flag, given.front(), range).map(store_in(value));
-  });
+  parts_->declare_number(flag, value, range, said);
 }
 
 void CommandLine::number(const std::string& flag,
                          std::optional<double>& value,
                          const NumberRange& range,
                          const std::string& meaning) {
-  const std::string said = describe(meaning, range);
-  parts_->declare(flag, "X", said, true, [flag, &value, range](const Values& given) {
-    return read_number(flag, given.front(), range).map(store_in(value));
-  });
+  parts_->declare_number(flag, value, range, describe(meaning, range));
 }
 
 void CommandLine::whole(const std::string& flag,
@@ -256,19 +240,14 @@ void CommandLine::whole(const std::string& flag,
                         const WholeRange& range,
                         const std::string& meaning) {
   const std::string said = describe(meaning, range) + ", default " + std::to_string(value);
-  parts_->declare(flag, "N", said, true, [flag, &value, range](const Values& given) {
-    return read_whole(flag, given.front(), range).map(store_in(value));
-  });
+  parts_->declare_number(flag, value, range, said);
 }
 
 void CommandLine::whole(const std::string& flag,
                         std::optional<std::uint64_t>& value,
                         const WholeRange& range,
                         const std::string& meaning) {
-  const std::string said = describe(meaning, range);
-  parts_->declare(flag, "N", said, true, [flag, &value, range](const Values& given) {
-    return read_whole(flag, given.front(), range).map(store_in(value));
-  });
+  parts_->declare_number(flag, value, range, describe(meaning, range));
 }
 
 void CommandLine::address(const std::string& flag,
@@ -303,30 +282,36 @@ void CommandLine::arguments(const std::string& name,
 }
 
 void CommandLine::settings(Document& document) {
-  PALP_CHECK(parts_->document == nullptr, "one document for one command line");
-  parts_->document = &document;
-  text("--config", parts_->config_file, "FILE", "settings, in protobuf's text format");
+  PALP_CHECK(parts_->settings.document == nullptr, "one document for one command line");
+  parts_->settings.document = &document;
+  text("--config", parts_->settings.config_file, "FILE", "settings, in protobuf's text format");
   parts_->declare(
       "--set", "PATH=VALUE", "one setting; may be repeated", false, [this](const Values& given) {
-        parts_->overrides = given;
+        parts_->settings.overrides = given;
         return Result<void>{};
       });
   parts_->app->footer("Settings, for --config and --set:\n" + document.describe());
 }
 
 void CommandLine::knob(const std::string& flag, const std::string& path) {
-  PALP_CHECK(parts_->document != nullptr, "settings() comes before knob()");
-  const std::string meaning = parts_->document->describe(path);
-  if (parts_->document->is_switch(path)) {
+  PALP_CHECK(parts_->settings.document != nullptr, "settings() comes before knob()");
+  const std::string meaning = parts_->settings.document->describe(path);
+  if (parts_->settings.document->is_switch(path)) {
     parts_->declare_switch(flag, meaning, [this, flag, path] {
-      parts_->knobs.push_back({path, "true", flag});
+      parts_->settings.knobs.push_back({path, "true", flag});
     });
     return;
   }
   parts_->declare(flag, "VALUE", meaning, true, [this, flag, path](const Values& given) {
-    parts_->knobs.push_back({path, given.front(), flag});
+    parts_->settings.knobs.push_back({path, given.front(), flag});
     return Result<void>{};
   });
+}
+
+void CommandLine::report(std::string& file, const std::string& schema) {
+  text("--report", file, "FILE", "JSON report, written also when the run fails");
+  parts_->report = parts_->declared.back().option;
+  parts_->report_schema = schema;
 }
 
 void CommandLine::footer(const std::string& text) { parts_->app->footer(text); }
@@ -378,6 +363,17 @@ bool CommandLine::given(std::string_view flag) const {
   PALP_CHECK(false, "given() asks for a flag that was declared");
   return false;
 }
+
+CommandLine::AskedReport CommandLine::asked_report() const {
+  for (const auto& verb : parts_->verbs) {
+    if (auto asked = verb->asked_report(); !asked.file.empty()) return asked;
+  }
+  const bool given = parts_->report != nullptr && !parts_->report->empty();
+  return given ? AskedReport{parts_->report->results().front(), parts_->report_schema}
+               : AskedReport{};
+}
+
+const std::string& CommandLine::program() const { return parts_->program; }
 
 std::string CommandLine::chosen_verb() const {
   for (const auto& verb : parts_->verbs) {

@@ -77,6 +77,9 @@ class CommandLine {
   /// A boolean field gives a switch that sets it to true.
   void knob(const std::string& flag, const std::string& path);
 
+  /// --report FILE, JSON of `schema`.
+  void report(std::string& file, const std::string& schema);
+
   /// What --help says below the flags: lines of at most 100 columns. Not beside settings(), which
   /// says its own there.
   void footer(const std::string& text);
@@ -90,6 +93,13 @@ class CommandLine {
 
   /// After parse().
   [[nodiscard]] bool given(std::string_view flag) const;
+  /// What report() declared and was given, of the program or its verb; also after a failed parse().
+  struct AskedReport {
+    std::string file;  ///< empty: none
+    std::string schema;
+  };
+  [[nodiscard]] AskedReport asked_report() const;
+  [[nodiscard]] const std::string& program() const;
   /// The verb's name; empty: none.
   [[nodiscard]] std::string chosen_verb() const;
 

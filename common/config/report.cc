@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include <fcntl.h>
+#include <nlohmann/json.hpp>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -86,6 +87,15 @@ Result<void> write_whole_file(const std::string& path, std::string_view text) {
   }
   sync_folder(target);
   return {};
+}
+
+std::string failure_report(const std::string& schema, const Ending& ending) {
+  nlohmann::ordered_json json;
+  json["schema"] = schema;
+  json["outcome"] = ending.code == ExitCode::BadInput ? "bad input" : "cannot start";
+  json["reason"] = ending.text;
+  // What people typed need not be UTF-8.
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 std::string json_number(double value) { return std::isfinite(value) ? number_text(value) : "null"; }

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/config/ending.h"
 #include "common/core/result.h"
 
 /// Writing what scripts read.
@@ -12,6 +13,9 @@ namespace palp::config {
 /// renamed. A device or a pipe (/dev/stdout) is written to directly. Blocks; not for a control
 /// thread. The error is a CannotOpen.
 [[nodiscard]] Result<void> write_whole_file(const std::string& path, std::string_view text);
+
+/// Of a run that came to nothing, as JSON: schema, outcome ("bad input" or "cannot start"), reason.
+[[nodiscard]] std::string failure_report(const std::string& schema, const Ending& ending);
 
 /// A JSON number that reads back as the same double, or "null" where it is not finite.
 [[nodiscard]] std::string json_number(double value);

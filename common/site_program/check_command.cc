@@ -17,7 +17,7 @@ CheckCommand::CheckCommand(config::CommandLine& line, link::Role role) {
   config::CommandLine& verb = line.verb(
       "check", "Looks whether this machine can run a site on time, and says what to change.");
   verb.number("--seconds", seconds_, {.min = 0.1, .max = 3600, .unit = "s"}, "of an idle loop");
-  verb.text("--report", report_, "FILE", "JSON report");
+  verb.report(report_, "palp.check/1");
   if (role != link::Role::Surgeon) return;
   verb.text("--peer", peer_, "HOST:PORT", "also the way to the patient site, which runs there");
   verb.text("--identity", identity_, "FOLDER", "this site's, for --peer");

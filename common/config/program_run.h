@@ -1,0 +1,19 @@
+#pragma once
+
+#include <functional>
+
+#include "common/config/command_line.h"
+
+namespace palp::config {
+
+/// A whole program: parses, then `body` does what was chosen, then leave(); an exception is a
+/// CannotOpen. @returns what main() returns.
+[[nodiscard]] int run_program(CommandLine& line,
+                              int argc,
+                              const char* const* argv,
+                              const std::function<Ending()>& body);
+
+/// leave(); bad input and what cannot be opened go into the report that was asked for too.
+[[nodiscard]] int leave(const CommandLine& line, const Ending& ending);
+
+}  // namespace palp::config

@@ -1,0 +1,78 @@
+#include "common/config/program_run.h"
+
+#include <filesystem>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "common/config/settings_text.h"
+
+namespace palp::config {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A program with a verb that reports to a file of its own, removed at the end.
+class ProgramRunTest : public testing::Test {
+ protected:
+  ProgramRunTest() {
+    CommandLine& verb = line_.verb("try", "tries");
+    verb.report(report_, "palp.try/1");
+    verb.number("--rate", rate_, {.min = 0, .max = 1}, "how fast");
+  }
+  ~ProgramRunTest() override { std::filesystem::remove(file_); }
+
+  int run(std::vector<std::string> words, const std::function<Ending()>& body) {
+    words.insert(words.end(), {"--report", file_});
+    std::vector<const char*> argv{"palp-x", "try"};
+    for (const std::string& word : words) argv.push_back(word.c_str());
+    return run_program(line_, static_cast<int>(argv.size()), argv.data(), body);
+  }
+  [[nodiscard]] std::string written() const { return read_whole_file(file_).value_or(""); }
+
+ private:
+  std::string file_ = testing::TempDir() + "palp_run_test_" + std::to_string(::getpid());
+  CommandLine line_{"palp-x", "does x"};
+  std::string report_;
+  double rate_{1};
+};
+
+TEST_F(ProgramRunTest, AFailedRunIsReportedToo) {
+  EXPECT_EQ(run({}, [] { return Ending{ExitCode::CannotOpen, "the door is \"shut\""}; }), 3);
+  EXPECT_THAT(written(),
+              AllOf(HasSubstr(R"("schema": "palp.try/1")"),
+                    HasSubstr(R"("outcome": "cannot start")"),
+                    HasSubstr(R"("reason": "the door is \"shut\"")")));
+}
+
+TEST_F(ProgramRunTest, WhatIsThrownIsReported) {
+  EXPECT_EQ(run({}, []() -> Ending { throw std::runtime_error{"no such thing"}; }), 3);
+  EXPECT_THAT(written(), HasSubstr("palp-x: no such thing"));
+}
+
+TEST_F(ProgramRunTest, AWrongFlagIsReportedAndNothingRuns) {
+  bool ran = false;
+  const auto body = [&] {
+    ran = true;
+    return Ending{};
+  };
+  EXPECT_EQ(run({"--rate", "2"}, body), 2);
+  EXPECT_THAT(written(), AllOf(HasSubstr(R"("outcome": "bad input")"), HasSubstr("--rate")));
+  EXPECT_FALSE(ran);
+}
+
+TEST_F(ProgramRunTest, AnUnknownFlagIsReported) {
+  EXPECT_EQ(run({"--speed", "2"}, [] { return Ending{}; }), 2);
+  EXPECT_THAT(written(), HasSubstr("--speed"));
+}
+
+TEST_F(ProgramRunTest, OfARunThatDidNotFailOnlyTheVerbReports) {
+  EXPECT_EQ(run({}, [] { return Ending{ExitCode::Missed, "short of the target"}; }), 1);
+  EXPECT_EQ(written(), "");
+}
+
+}  // namespace
+}  // namespace palp::config
