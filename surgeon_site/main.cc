@@ -132,7 +132,8 @@ class Program {
         node_{settings_.node, {device_, law_, link_, recording_.recorder(0)}},
         began_at_{clock_.now()},
         watch_{{.peer = settings_.peer,
-                .patience = settings_.link.closed_after,
+                .patience_at_first = settings_.link.closed_after,
+                .patience = settings_.give_up_after,
                 .round_trip_max = settings_.link.round_trip_max},
                began_at_} {
     runner_.start(link_, [this](TimePoint now) { node_.tick(now); });

@@ -65,6 +65,7 @@ Result<Settings> make_settings(const proto::config::SurgeonConfig& message) {
   made.impairment = settings::make_impairment(message.impairment());
   made.record = settings::make_record(message.record());
   made.duration = from_seconds(message.duration_s());
+  made.give_up_after = from_seconds(message.give_up_after_s());
   made.seed = message.seed();
   return made;
 }

@@ -18,8 +18,9 @@ std::optional<Ending> PeerWatch::judge(const link::LinkHealth& link, TimePoint n
     ever_ = true;
     return std::nullopt;
   }
-  if (now - worked_at_ < config_.patience) return std::nullopt;
-  if (!ever_) return unreachable(link, config_.patience);
+  const Duration patience = ever_ ? config_.patience : config_.patience_at_first;
+  if (now - worked_at_ < patience) return std::nullopt;
+  if (!ever_) return unreachable(link, patience);
   return Ending{config::ExitCode::CutShort,
                 "peer lost",
                 "the peer at " + config_.peer + " has been silent for " +

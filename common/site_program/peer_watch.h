@@ -10,8 +10,9 @@
 namespace palp::site_program {
 
 struct PeerWatchConfig {
-  std::string peer;                             ///< as people know it: "127.0.0.1:9000"
-  Duration patience{std::chrono::seconds{30}};  ///< without a working link
+  std::string peer;                                      ///< as people know it: "127.0.0.1:9000"
+  Duration patience_at_first{std::chrono::seconds{30}};  ///< while no link has worked yet
+  Duration patience{std::chrono::seconds{120}};          ///< since one last worked
   Duration round_trip_max{std::chrono::milliseconds{2500}};  ///< above it no link comes about
 };
 

@@ -53,7 +53,9 @@ std::string text_of(const Settings& settings) {
   add(list, settings.loop);
   add(list, settings.impairment);
   add(list, settings.record);
-  list.add("duration", settings.duration).add("seed", settings.seed);
+  list.add("duration", settings.duration)
+      .add("give_up_after", settings.give_up_after)
+      .add("seed", settings.seed);
   return list.text();
 }
 

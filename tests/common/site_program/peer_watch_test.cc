@@ -17,7 +17,10 @@ link::LinkHealth link_in(LinkState state) {
   return link;
 }
 
-PeerWatch watch() { return {{.peer = "127.0.0.1:9000", .patience = seconds{30}}, kStart}; }
+PeerWatch watch() {
+  return {{.peer = "127.0.0.1:9000", .patience_at_first = seconds{30}, .patience = seconds{50}},
+          kStart};
+}
 
 TEST(PeerWatchTest, NobodyAnswersIsUnreachableAfterThePatience) {
   PeerWatch watch_it = watch();
@@ -32,10 +35,10 @@ TEST(PeerWatchTest, NobodyAnswersIsUnreachableAfterThePatience) {
 TEST(PeerWatchTest, ALinkThatWorkedAndBrokeIsAPeerLost) {
   PeerWatch watch_it = watch();
   EXPECT_FALSE(watch_it.judge(link_in(LinkState::Live), kStart + seconds{50}));
-  EXPECT_FALSE(watch_it.judge(link_in(LinkState::Lost), kStart + seconds{79}));
-  EXPECT_FALSE(watch_it.judge(link_in(LinkState::Live), kStart + seconds{79})) << "it came back";
-  EXPECT_FALSE(watch_it.judge(link_in(LinkState::Lost), kStart + seconds{108}));
-  const auto ending = watch_it.judge(link_in(LinkState::Down), kStart + seconds{109});
+  EXPECT_FALSE(watch_it.judge(link_in(LinkState::Lost), kStart + seconds{99}));
+  EXPECT_FALSE(watch_it.judge(link_in(LinkState::Live), kStart + seconds{99})) << "it came back";
+  EXPECT_FALSE(watch_it.judge(link_in(LinkState::Lost), kStart + seconds{148}));
+  const auto ending = watch_it.judge(link_in(LinkState::Down), kStart + seconds{149});
   ASSERT_TRUE(ending);
   EXPECT_EQ(ending->code, config::ExitCode::CutShort);
   EXPECT_EQ(ending->outcome, "peer lost");
