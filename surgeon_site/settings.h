@@ -35,8 +35,8 @@ struct Settings {
   settings::LoopSettings loop;
   settings::ImpairmentSettings impairment;
   settings::RecordSettings record;
-  Duration duration{};       ///< 0: until the script ends
-  Duration give_up_after{};  ///< of a patient site that fell silent
+  Duration duration{};                                ///< 0: until the script ends
+  Duration give_up_after{std::chrono::seconds{120}};  ///< a patient site that fell silent
   std::uint64_t seed{1};
 };
 
