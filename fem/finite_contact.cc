@@ -16,11 +16,12 @@ namespace {
 
 constexpr double kStepMax = 0.05;      // [radii]: 0.25 mm for the paper's tip
 constexpr double kStepMin = 1e-4;      // [radii]
-constexpr int kPassesMax = 12;         // of one step; 2 to 4 are usual
-constexpr int kContactPassesMax = 60;  // on the dense surface; about 10 are usual
+constexpr int kPassesMax = 12;         // of one step; 5 are usual
+constexpr int kContactPassesMax = 25;  // on the dense surface; about 10 are usual
 constexpr double kTolerance = 1e-5;    // of the residual, relative to the contact's force
-constexpr double kSlow = 0.3;          // of the residual before: new factors are worth it
-constexpr double kNear = 0.3;          // residual from which a state's own tangent is sound
+constexpr int kPatience = 5;           // passes that cost as much as new factors
+constexpr double kSlowest = 0.5;       // of the residual before, of a pass that makes its way
+constexpr double kNear = 2;            // residual from which a state's own tangent is sound
 constexpr double kSound = 1e-2;        // residual after one pass above which new factors pay
 constexpr double kStuck = 0.01;        // change of the residual in two passes that is none
 constexpr double kShift = 1e-6;        // of the surface's tangent where it is indefinite
@@ -107,7 +108,9 @@ bool FiniteContact::solve(State& state) {
     if (load.touching > 0 && residuals_.back() < kTolerance) return true;
     if (stuck()) return false;
     if (!choose_factors(state)) return false;
-    if (!improve(state)) return false;
+    if (improve(state)) continue;
+    // Factors of a guess may lack a stable surface; those of the last equilibrium have one.
+    if (!factorize(solved_) || !improve(state)) return false;
   }
   return false;
 }
@@ -122,14 +125,17 @@ bool FiniteContact::stuck() const {
 }
 
 /// One pass by the factors there are, of a step ago, brings the last state near the new
-/// equilibrium; then the state's own tangent is worth its price, and serves to the end of the step.
-/// New ones again where the residual falls slowly, or where a step had to be shortened.
+/// equilibrium; then the state's own tangent is worth its price, and serves to the end of the step,
+/// even where the pass left a residual as large as the contact's force: that is volume, second
+/// order in the pass, which the next one takes back. New ones again where more passes are to be
+/// expected than factors cost, or where a step had to be shortened.
 bool FiniteContact::choose_factors(const State& state) {
   const std::size_t passes = residuals_.size();
   const double now = residuals_.back();
   if (factorizations_ == 0) return factorize(solved_);
   if (passes == 1) return true;
-  const bool slow = now > kSlow * residuals_[passes - 2];
+  const double rate = now / residuals_[passes - 2];
+  const bool slow = rate > kSlowest || std::log(kTolerance / now) < kPatience * std::log(rate);
   if (!slow && !cut_ && !(passes == 2 && now > kSound)) return true;
   if (now < kNear && factorize(state)) return true;
   return factorize(solved_);
@@ -143,6 +149,7 @@ bool FiniteContact::factorize(const State& state) {
   assembler_.assemble(state.displacement, pressures, tangent_, force);
   factor_.factorize(tangent_);
   ++factorizations_;
+  of_equilibrium_ = &state == &solved_;
   if (factor_.info() != Eigen::Success) return false;
   condense();
   return true;
@@ -250,7 +257,7 @@ bool FiniteContact::settle_contact(const State& state,
     const double scale = contact_.measure(base + increment, state.indentation).energy;
     if (share < kShareMin || std::abs(decrement) <= kSettled * scale) return true;
   }
-  return true;  // the outer pass sees what is left
+  return of_equilibrium_;  // then the outer pass sees what is left
 }
 
 Eigen::VectorXd FiniteContact::surface_of(const Eigen::VectorXd& displacement) const {

@@ -21,7 +21,7 @@ namespace palp::fem {
 /// their own (see element.h). Each pass uses factors of the elastic tangent alone, with the nodes
 /// that may touch the sphere last: the trailing block of the factors is then the block's stiffness
 /// as its surface feels it, and the contact, whose status flips from pass to pass, is settled on
-/// that small dense system. What is left for the outer passes is smooth: one factorization and five
+/// that small dense system. What is left for the outer passes is smooth: one factorization and six
 /// passes a step are usual. Owns its mesh's system. Thread: its owner's.
 class FiniteContact {
  public:
@@ -34,7 +34,7 @@ class FiniteContact {
   [[nodiscard]] Field field() const;
   [[nodiscard]] double energy() const;  ///< [J], elastic and penalty
   [[nodiscard]] int equations() const noexcept { return assembler_.equations(); }
-  /// Newton passes so far: one factorization each.
+  /// So far.
   [[nodiscard]] int factorizations() const noexcept { return factorizations_; }
   /// Residuals over the contact's force, of the last step's passes.
   [[nodiscard]] const std::vector<double>& residuals() const noexcept { return residuals_; }
@@ -87,6 +87,7 @@ class FiniteContact {
   double step_max_;                    ///< [m], of the indentation
   double step_;                        ///< [m], that worked last
   int factorizations_{};
+  bool of_equilibrium_{};          ///< the factors are, not of a guess
   bool cut_{};                     ///< the last pass's step was shortened
   std::vector<double> residuals_;  ///< [-]
 };
