@@ -31,8 +31,9 @@ CurveMatcher::CurveMatcher(const TouchSums& sums, const StiffnessPrior& stiffnes
 Matrix3 CurveMatcher::normal_matrix(const CurveTerms& curve) const noexcept {
   Matrix3 normal = known_;
   for (std::size_t i = 0; i < 3; ++i) {
+    const TouchSums::Columns rows = sums_.rows(i, curve);
     for (std::size_t j = i; j < 3; ++j) {
-      normal[i][j] += sums_.between(i, curve, j, curve);
+      normal[i][j] += TouchSums::between(rows, j, curve);
       normal[j][i] = normal[i][j];
     }
   }
@@ -71,14 +72,16 @@ CurveMatcher::Information CurveMatcher::information(
     const CurveTerms& curve, const std::array<CurveTerms, 3>& along) const noexcept {
   const Matrix3 covariance = inverse(normal_matrix(curve)).matrix;
   std::array<Vector3, 3> cross{};  // by coordinate and unknown
+  std::array<TouchSums::Columns, 3> rows{};
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) cross[i][j] = sums_.between(0, along[i], j, curve);
+    rows[i] = sums_.rows(0, along[i]);
+    for (std::size_t j = 0; j < 3; ++j) cross[i][j] = TouchSums::between(rows[i], j, curve);
   }
   const double square = scale_ * scale_;
   Information out{};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
-      double sum = sums_.between(0, along[i], 0, along[j]);
+      double sum = TouchSums::between(rows[i], 0, along[j]);
       for (std::size_t m = 0; m < 3; ++m) {
         for (std::size_t n = 0; n < 3; ++n) sum -= cross[i][m] * covariance[m][n] * cross[j][n];
       }

@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kRadiusCells = 6;  // to begin with
 constexpr std::size_t kRatioCells = 4;
 constexpr std::size_t kLinesMax = 300;  // a bound on the time
+constexpr std::array kDoublings{0, 3};  // of the way from a guess to a line's best: most are near
 constexpr double kReach = 4;            // [-], standard deviations below the best: forgotten
 constexpr double kFine = 0.9;           // [-], standard deviations to a cell's edge: fine enough
 constexpr double kCaution = 1.4;        // [-], the information changes within a cell
@@ -82,17 +83,18 @@ void DepthModel::look(const CurveMatcher& points, Cell& cell) const {
   const double low = lattice_.log_depths().low;
   const double high = deepest(cell.radius);
   const double effect = effect_of(std::exp(cell.log_ratio));
+  const double guess = std::clamp(cell.log_depth, low, high);
+  const double width = 2 * cell.depth_stddev;
   std::optional<Peak> peak;
-  if (cell.depth_stddev > 0) {
-    const double width = 2 * cell.depth_stddev;
-    const double reach = std::exp2(kPeakGuesses) * width;
-    const CurveLine line =
-        lattice_.line(cell.radius, effect, cell.log_depth - reach, cell.log_depth + reach);
-    peak = search(cell.log_depth, width, [&](double log_depth) {
+  for (const int doublings : kDoublings) {
+    if (peak || !(width > 0)) break;
+    const double reach = (std::exp2(doublings + 1) - 1) * width;
+    const CurveLine line = lattice_.line(cell.radius, effect, guess - reach, guess + reach);
+    peak = search({low, high}, {guess, width, doublings}, [&](double log_depth) {
       return points.match(line.at(log_depth)).log_likelihood;
     });
   }
-  if (!peak || peak->at <= low || peak->at >= high) {
+  if (!peak) {
     const CurveLine line = lattice_.line(cell.radius, effect, low, high);
     peak = scan(low, high, [&](double log_depth) {
       return points.match(line.at(log_depth)).log_likelihood;

@@ -10,7 +10,6 @@
 namespace palp::estimator {
 
 inline constexpr std::size_t kPeakScan = 12;  // places looked at first
-inline constexpr int kPeakGuesses = 4;        // doublings of the way from a guess to the peak
 inline constexpr int kPeakSteps = 24;
 inline constexpr double kPeakExact = 0.01;  // [-], of a log-likelihood
 
@@ -75,25 +74,60 @@ template <typename Value>
   return *top;
 }
 
-/// The same, near `guess`; nothing if it is not within a few `width`.
+/// Where a peak is sought.
+struct PeakRange {
+  double low{};   ///< [as the argument]
+  double high{};  ///< [as the argument]
+};
+struct PeakGuess {
+  double at{};      ///< [as the argument], within the range
+  double width{};   ///< [as the argument], of the peak
+  int doublings{};  ///< of the width, on the way to the peak
+};
+
+/// The same, near a guess; nothing if it is not. `value` is asked within the range, no farther from
+/// the guess than 2^(doublings + 1) - 1 widths.
 template <typename Value>
-[[nodiscard]] std::optional<Peak> search(double guess, double width, const Value& value) {
-  std::array<Peak, 3> places{
-      {{guess - width, value(guess - width)}, {guess, value(guess)}, {guess + width, 0}}};
-  places[2].value = value(guess + width);
-  for (int i = 0; i < kPeakGuesses; ++i) {
+[[nodiscard]] std::optional<Peak> search(const PeakRange& range,
+                                         const PeakGuess& guess,
+                                         const Value& value) {
+  // Beyond the range all looks as at its end.
+  const auto held = [&](double at) { return value(std::clamp(at, range.low, range.high)); };
+  double width = guess.width;
+  std::array<Peak, 3> places{{{guess.at - width, held(guess.at - width)},
+                              {guess.at, held(guess.at)},
+                              {guess.at + width, held(guess.at + width)}}};
+  for (int i = 0;; ++i) {
     auto& [left, middle, right] = places;
-    if (middle.value >= left.value && middle.value >= right.value) return climb(places, value);
+    if (middle.value >= left.value && middle.value >= right.value) break;
+    if (i == guess.doublings) return std::nullopt;
     width *= 2;
     if (right.value > left.value) {
       const double at = right.at + width;
-      places = {middle, right, {at, value(at)}};
+      places = {middle, right, {at, held(at)}};
     } else {
       const double at = left.at - width;
-      places = {Peak{at, value(at)}, left, middle};
+      places = {Peak{at, held(at)}, left, middle};
     }
   }
-  return std::nullopt;
+  const Peak peak = climb(places, held);
+  const double near = 0.05 * guess.width;
+  if (peak.at > range.low + near && peak.at < range.high - near) return peak;
+  // The peak is an end of the range, or lies just inside.
+  const bool first = !(peak.at > range.low + near);
+  const double end = first ? range.low : range.high;
+  const Peak last{end, value(end)};
+  double step = 0.25 * std::min(guess.width, range.high - range.low);
+  if (!first) step = -step;
+  Peak inside{end + step, value(end + step)};
+  if (inside.value <= last.value) return last;
+  Peak beyond{end + 2 * step, value(end + 2 * step)};
+  if (beyond.value > inside.value) {
+    inside = beyond;
+    beyond = {end + 4 * step, value(end + 4 * step)};
+  }
+  if (beyond.value > inside.value) return std::nullopt;
+  return first ? climb({last, inside, beyond}, value) : climb({beyond, inside, last}, value);
 }
 
 }  // namespace palp::estimator

@@ -204,17 +204,19 @@ double TouchSums::along(std::size_t i, const CurveTerms& curve) const noexcept {
   return sum;
 }
 
-double TouchSums::between(std::size_t i,
-                          const CurveTerms& a,
-                          std::size_t j,
-                          const CurveTerms& b) const noexcept {
-  double sum = 0;
+/// Row by row: sums that run side by side are several times faster than one after the other.
+TouchSums::Columns TouchSums::rows(std::size_t i, const CurveTerms& curve) const noexcept {
+  Columns out{};
   for (std::size_t m = 0; m < kCurveTerms; ++m) {
-    const double* row = &matrix_[i * kCurveTerms + m][j * kCurveTerms];
-    double part = 0;
-    for (std::size_t n = 0; n < kCurveTerms; ++n) part += row[n] * b[n];
-    sum += a[m] * part;
+    const Columns& row = matrix_[i * kCurveTerms + m];
+    for (std::size_t k = 0; k < kColumns; ++k) out[k] += curve[m] * row[k];
   }
+  return out;
+}
+
+double TouchSums::between(const Columns& rows, std::size_t j, const CurveTerms& curve) noexcept {
+  double sum = 0;
+  for (std::size_t n = 0; n < kCurveTerms; ++n) sum += rows[j * kCurveTerms + n] * curve[n];
   return sum;
 }
 

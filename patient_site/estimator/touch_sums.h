@@ -72,11 +72,12 @@ class TouchSums {
   [[nodiscard]] double squares() const noexcept { return squares_; }  ///< [-], of the force
   /// Of unknown i: the measured force's share along the curve.
   [[nodiscard]] double along(std::size_t i, const CurveTerms& curve) const noexcept;
-  /// Of unknowns i <= j and two curves.
-  [[nodiscard]] double between(std::size_t i,
-                               const CurveTerms& a,
-                               std::size_t j,
-                               const CurveTerms& b) const noexcept;
+  /// Of unknown i and a curve: what it shares with the columns of i and of the unknowns behind.
+  [[nodiscard]] Columns rows(std::size_t i, const CurveTerms& curve) const noexcept;
+  /// Of such rows, unknown j and a second curve.
+  [[nodiscard]] static double between(const Columns& rows,
+                                      std::size_t j,
+                                      const CurveTerms& curve) noexcept;
 
  private:
   void add(const Columns& columns, double weight) noexcept;
