@@ -11,6 +11,7 @@ namespace palp::estimator {
 
 inline constexpr std::size_t kPeakScan = 12;  // places looked at first
 inline constexpr int kPeakSteps = 24;
+inline constexpr int kPeakHalvings = 13;    // towards an end, to a ten-thousandth of a scan's step
 inline constexpr double kPeakExact = 0.01;  // [-], of a log-likelihood
 
 /// Maximum of `value` between the first and the last of three places, the middle one above both:
@@ -65,7 +66,9 @@ template <typename Value>
   }
   // The peak may lie just inside the end.
   const double inward = top == places.begin() ? step : -step;
-  for (double part = 0.5; part > 1e-4; part *= 0.5) {
+  double part = 1;
+  for (int i = 0; i < kPeakHalvings; ++i) {
+    part *= 0.5;
     const Peak inside{top->at + part * inward, value(top->at + part * inward)};
     if (inside.value <= top->value) continue;
     const Peak beyond{top->at + 2 * part * inward, value(top->at + 2 * part * inward)};
