@@ -30,6 +30,7 @@ constexpr std::array kTable{
     Metric{"energy_operator_mj", [](const M& m) { return m.energy_operator * 1e3; }},
     Metric{"energy_net_mj", [](const M& m) { return m.energy_net * 1e3; }},
     Metric{"force_step_10ms_n", [](const M& m) { return m.force_step_10ms; }},
+    Metric{"force_step_event_10ms_n", [](const M& m) { return m.force_step_event; }},
     Metric{"force_step_guarded_10ms_n", [](const M& m) { return m.force_step_guarded; }},
     Metric{"force_peak_n", [](const M& m) { return m.force_peak; }},
     Metric{"contact_force_max_n", [](const M& m) { return m.contact_force_max; }},

@@ -252,8 +252,12 @@ void judge_forces(const std::vector<TrialTick>& ticks,
     const bool whole =
         k >= kStepTicks && tick.at - ticks[k - kStepTicks].at < (kStepTicks + 0.5) * config.period;
     if (whole) {
-      metrics.force_step_10ms = std::max(
-          metrics.force_step_10ms, std::abs(tick.hand_force - ticks[k - kStepTicks].hand_force));
+      const TrialTick& before = ticks[k - kStepTicks];
+      const double step = tick.hand_force - before.hand_force;
+      const double unexplained = step - (tick.force_true - before.force_true);
+      metrics.force_step_10ms = std::max(metrics.force_step_10ms, std::abs(step));
+      metrics.force_step_event =
+          std::max(metrics.force_step_event, std::min(std::abs(step), std::abs(unexplained)));
     }
     const bool in_air = tick.counted && tick.phase.kind == PhaseKind::FreeAir &&
                         tick.phase.elapsed >= tick.phase.duration - kFreeAirTail;

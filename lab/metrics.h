@@ -83,6 +83,9 @@ struct TrialMetrics {
   double energy_operator{};      ///< [J], most the operator ever got
   double energy_net{};           ///< [J], most excess delivered to the tissue
   double force_step_10ms{};      ///< [N], worst change of F_h in 10 ms
+  /// [N], the same less what the hand's own motion does: the smaller of the changes of F_h and of
+  /// felt - true, so that a hand that leaves or enters the tissue makes no step by itself.
+  double force_step_event{};
   /// [N], the same over the whole run, also while the operator waits or aligns: as long as the
   /// surgeon's process lives and its pedal is down. Not judge()'s: whoever made the ticks knows.
   double force_step_guarded{};

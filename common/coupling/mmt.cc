@@ -110,12 +110,15 @@ void MmtSurgeon::choose_offset(double position, double energy_max, double force_
 }
 
 /// How fast a new model may come in. A large force that appears under a light hand throws it back.
-double MmtSurgeon::slew_for(double position, Duration round_trip) const noexcept {
-  const double missing = shown_.force(depth_at(position)) - shown_force_;
+double MmtSurgeon::slew_for(double position, double speed, Duration round_trip) const noexcept {
+  const double there = candidate_ ? candidate_->force(position - candidate_->surface) : 0;
+  const double missing = std::max(there, shown_.force(depth_at(position))) - shown_force_;
   const double room = (config_.gap_large - missing) / (config_.gap_large - config_.gap_small);
   const double small =
       round_trip < config_.round_trip_short ? config_.slew_short : config_.slew_small;
-  return config_.slew + (small - config_.slew) * std::clamp(room, 0.0, 1.0);
+  const double slew = config_.slew + (small - config_.slew) * std::clamp(room, 0.0, 1.0);
+  // A hand that is being thrown back is not to be pushed on.
+  return slew * std::clamp(1 + speed / config_.slew_speed, 0.0, 1.0);
 }
 
 /// How much the tank lacks, 0 to 1. A surface that breathes takes and gives its strokes' energy
@@ -134,7 +137,7 @@ double MmtSurgeon::damp(double force, double depth, double speed) const noexcept
   } else {
     force += (config_.air_damping + config_.repay_air * debt()) * speed;
   }
-  if (tank_ < 0) force += config_.empty_damping * speed;
+  force += config_.empty_damping * std::clamp(-tank_ / config_.overdraft, 0.0, 1.0) * speed;
   return force;
 }
 
@@ -160,7 +163,7 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
 
   shown_.age(depth_before, span);
   approach_candidate(in.position, depth_before, span);
-  const double slew = slew_for(in.position, in.round_trip);
+  const double slew = slew_for(in.position, speed, in.round_trip);
   const double force_max =
       std::max(force_before + config_.slew_beside * span, shown_force_ + slew * span);
   choose_offset(in.position, std::max(0.0, moved + tank_), force_max);

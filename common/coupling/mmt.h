@@ -24,14 +24,16 @@ struct MmtConfig {
   double slew_small{9};     ///< [N/s], the same where little force is missing
   double gap_small{0.1};    ///< [N], of missing force: up to here it is little
   double gap_large{0.3};    ///< [N], and from here on it is not
+  double slew_speed{0.03};  ///< [m/s], of a hand moving out: none comes in
   double slew_beside{1};    ///< [N/s], of a new model beside what motion alone does
-  Duration round_trip_short{std::chrono::milliseconds{15}};
+  Duration round_trip_short{std::chrono::milliseconds{8}};
   double blend{0.05};           ///< [s], time constant of changes of the model
   double contact_damping{0.2};  ///< [N s/m], on the way out: the way in is what a finger judges
   double air_damping{0.3};      ///< [N s/m], fills the tank
   double repay_contact{3};      ///< [N s/m], on top on the way out while the tank is empty
   double repay_air{0.7};        ///< [N s/m], the same in the air
   double empty_damping{2};      ///< [N s/m], on top while the tank is overdrawn
+  double overdraft{5e-6};       ///< [J], with which that is reached
   double velocity_cut_off{60};  ///< [Hz]
   double fade{1};               ///< [s], of the model in Retract
   double period{1e-3};          ///< [s]
@@ -67,7 +69,7 @@ class MmtSurgeon {
   [[nodiscard]] double depth_at(double position) const noexcept {
     return position - shown_.elastic().surface;
   }
-  [[nodiscard]] double slew_for(double position, Duration round_trip) const noexcept;
+  [[nodiscard]] double slew_for(double position, double speed, Duration round_trip) const noexcept;
   void choose_offset(double position, double energy_max, double force_max) noexcept;
   [[nodiscard]] double debt() const noexcept;
   [[nodiscard]] double damp(double force, double depth, double speed) const noexcept;

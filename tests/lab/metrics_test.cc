@@ -172,5 +172,18 @@ TEST(MetricsTest, ForceStepIsOverTenMilliseconds) {
   EXPECT_NEAR(judge(builder.ticks, {}).force_step_10ms, 0.1, 1e-12);
 }
 
+TEST(MetricsTest, AStepOfAnEventIsNeitherTheHandsMotionNorWhatWasNotFelt) {
+  Builder builder;
+  builder.phase(PhaseKind::Other, Site::A, 0, 1, [](double t) { return 0.01 * t; });
+  const double swept = judge(builder.ticks, {}).force_step_10ms;
+  ASSERT_GT(swept, 0);
+  EXPECT_EQ(judge(builder.ticks, {}).force_step_event, 0) << "exact rendering";
+  Builder blind = builder;
+  for (TrialTick& tick : blind.ticks) tick.hand_force = 0;
+  EXPECT_EQ(judge(blind.ticks, {}).force_step_event, 0) << "nothing was felt, nothing changed";
+  for (std::size_t k = 500; k < 1000; ++k) builder.ticks[k].hand_force += 0.3;
+  EXPECT_NEAR(judge(builder.ticks, {}).force_step_event, 0.3, 1e-12);
+}
+
 }  // namespace
 }  // namespace palp::lab

@@ -119,6 +119,38 @@ TEST(MmtSurgeonTest, ASurfaceFoundWhilePressingIsLetInAsFarAsTheTankPays) {
   EXPECT_LE(discover(hard).rate_max, config.slew_small + 1e-6);
 }
 
+/// A hand that leaves unknown tissue at `speed` [m/s] while its model arrives: the force [N] after
+/// 20 ms.
+double discover_leaving(double speed) {
+  MmtSurgeon law{MmtConfig{}};
+  double position = 5e-3;
+  law.begin_epoch(position);
+  Incoming incoming;
+  incoming.fresh = true;
+  double force = 0;
+  for (int tick = 0; tick < 120; ++tick) {
+    position -= 1e-3 * speed;
+    if (tick == 100) {
+      incoming.sample.payload = ModelPayload{.version = 1, .c = {0, 0.06}, .depth_max = 5e-3};
+    }
+    const std::array arrived{incoming};
+    SurgeonInput in;
+    in.state = SiteState::Engaged;
+    in.position = position;
+    in.force_applied = force;
+    in.round_trip = std::chrono::milliseconds{100};
+    in.arrived = arrived;
+    force = law.step(in, std::chrono::milliseconds{1}).force;
+  }
+  return force;
+}
+
+TEST(MmtSurgeonTest, ATissueFoundWhileTheHandIsThrownOutOfItDoesNotPushItOn) {
+  EXPECT_GT(discover_leaving(0), 0.05);
+  EXPECT_GT(discover_leaving(0.005), 0.03);
+  EXPECT_EQ(discover_leaving(0.035), 0);
+}
+
 TEST(MmtSurgeonTest, PressingFurtherIntoAKnownTissueIsNotSlewed) {
   MmtSurgeon law{MmtConfig{}};
   law.begin_epoch(-1e-3);
