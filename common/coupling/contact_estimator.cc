@@ -30,6 +30,18 @@ constexpr double kStillWeight = 0.2;         // [-], of an equation that repeats
 constexpr std::size_t kNear = 4;             // candidates around the best that are always judged
 constexpr std::size_t kStride = 12;          // of the others, one in so many
 constexpr std::size_t kEdge = 3;             // so near the grid's end it is moved
+constexpr double kAstray = 3e-3;             // [m], a surface above where the tip felt nothing
+/// [m], where the force is `force` [N]; 8 mm at most.
+double depth_of(const ContactModel& model, double force) noexcept {
+  double depth = 0;
+  double step = 8e-3;
+  for (int i = 0; i < 14; ++i) {
+    step *= 0.5;
+    if (model.force(depth + step) < force) depth += step;
+  }
+  return depth;
+}
+
 }  // namespace
 
 ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcept
@@ -38,6 +50,7 @@ ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcep
       tip_{config.sensor_cut_off, config.period},
       swing_{config.period} {
   expected_[1] = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
+  expected_here_ = expected_;
 }
 
 double ContactEstimator::surface_of(std::size_t candidate) const noexcept {
@@ -76,10 +89,24 @@ void ContactEstimator::new_place() noexcept {
   swing_.new_mean();
   contact_here_ = false;
   deepest_ = -1;
+  deepest_in_air_ = -1;
   if (!placed_) return;
   std::copy(model_.c.begin(), model_.c.end(), expected_.begin());
   std::copy(model_.relaxing.begin(), model_.relaxing.end(), expected_.begin() + kModelTerms);
+  expected_here_ = expected_;
   place_grid(model_.surface);
+}
+
+/// A wrong breath and a wrong tissue confirm each other, and the surface walks away. Then both are
+/// forgotten.
+void ContactEstimator::begin_again() noexcept {
+  swing_ = SurfaceSwing{config_.period};
+  expected_ = expected_here_;
+  tip_.reset(raw_tip_);
+  tip_mean_ = raw_tip_mean_;
+  ContactModel believed{0, {}, kModelDepthMax};
+  std::copy_n(expected_.begin(), kModelTerms, believed.c.begin());
+  place_grid(tip_mean_ - depth_of(believed, force_mean_));
 }
 
 void ContactEstimator::filter_shapes(double position) noexcept {
@@ -221,6 +248,7 @@ void ContactEstimator::search() noexcept {
   ++turn_;
   best_ = won;
   publish(winner);
+  if (surface_of(best_) < deepest_in_air_ - kAstray) return begin_again();
   if (best_ < kEdge || best_ + kEdge >= kCandidates) {
     expected_ = winner.c;
     place_grid(surface_of(best_));
@@ -249,12 +277,7 @@ void ContactEstimator::watch_surface(double position) noexcept {
     elastic += model_.relaxing[k] * past_[k];
   }
   elastic /= gain;
-  double depth = 0;
-  double step = 8e-3;
-  for (int i = 0; i < 14; ++i) {
-    step *= 0.5;
-    if (believed.force(depth + step) < elastic) depth += step;
-  }
+  const double depth = depth_of(believed, elastic);
   const double slope = believed.slope(depth) / kSwingSlope;
   swing_.see(raw_tip_mean_ - depth, std::min(1.0, slope * slope));
 }
@@ -306,6 +329,7 @@ void ContactEstimator::step(double position, double force) noexcept {
     deepest_ = tip_mean_;
     publish(prior);
   }
+  if (!contact && contact_here_) deepest_in_air_ = std::max(deepest_in_air_, raw_tip_);
   if (contact) {
     contact_here_ = true;
     deepest_ = std::max(deepest_, tip_.value());

@@ -60,6 +60,7 @@ class ContactEstimator {
   void absorb() noexcept;
   void search() noexcept;
   void publish(const Solution& solution) noexcept;
+  void begin_again() noexcept;
   void watch_surface(double position) noexcept;
   [[nodiscard]] Solution solve(std::size_t candidate) noexcept;
   [[nodiscard]] double surface_of(std::size_t candidate) const noexcept;
@@ -106,13 +107,15 @@ class ContactEstimator {
   std::size_t best_{};
   std::uint32_t turn_{};
   Terms expected_{};           ///< [N]
+  Terms expected_here_{};      ///< [N], before anything was felt at this place
   double surface_expected_{};  ///< [m]
   ModelPayload model_;
   SurfaceSwing swing_;
   std::uint32_t swing_ticks_{};
-  double raw_tip_mean_{};  ///< [m], as tip_mean_, in a frame that does not swing
-  double raw_tip_{};       ///< [m], behind the transducer's pole
-  double deepest_{};       ///< [m], tip in contact at this place
+  double raw_tip_mean_{};      ///< [m], as tip_mean_, in a frame that does not swing
+  double raw_tip_{};           ///< [m], behind the transducer's pole
+  double deepest_{};           ///< [m], tip in contact at this place
+  double deepest_in_air_{-1};  ///< [m], tip that felt nothing, between contacts at this place
 };
 
 }  // namespace palp::coupling

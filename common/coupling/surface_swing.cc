@@ -12,17 +12,20 @@ using std::numbers::pi;
 // Breaths from 6 to 36 a minute.
 constexpr double kSlowest = 2 * pi * 0.10;  // [rad/s]
 constexpr double kFastest = 2 * pi * 0.60;  // [rad/s]
-constexpr double kMemory = 8;               // [s] of contact
-constexpr double kJudgeEvery = 0.05;        // [s]
-constexpr double kSeenFor = 2.5;            // [s], since the first sight
-constexpr double kAmplitudeMin = 0.2e-3;    // [m]
-constexpr double kStillBelow = 0.35e-3;     // [m]
-constexpr double kAmplitudeMax = 4e-3;      // [m]
-constexpr double kExplainedMin = 0.6;       // [-], to begin believing
-constexpr double kExplainedLeast = 0.3;     // [-], to go on
-constexpr double kPresenceTime = 0.3;       // [s]
-constexpr double kRidge = 0.02;             // [-]
-constexpr double kSightPeriod = 5e-3;       // [s], of see()
+// A short arc fits many paces: an adult at rest breathes 12 to 20 times a minute.
+constexpr double kUsual = 2 * pi * 0.26;  // [rad/s]
+constexpr double kUnusual = 0.15;         // [-], of what it explains, an octave away
+constexpr double kMemory = 8;             // [s] of contact
+constexpr double kJudgeEvery = 0.05;      // [s]
+constexpr double kSeenFor = 2.5;          // [s], since the first sight
+constexpr double kAmplitudeMin = 0.2e-3;  // [m]
+constexpr double kStillBelow = 0.35e-3;   // [m]
+constexpr double kAmplitudeMax = 4e-3;    // [m]
+constexpr double kExplainedMin = 0.6;     // [-], to begin believing
+constexpr double kExplainedLeast = 0.3;   // [-], to go on
+constexpr double kPresenceTime = 0.3;     // [s]
+constexpr double kRidge = 0.02;           // [-]
+constexpr double kSightPeriod = 5e-3;     // [s], of see()
 
 }  // namespace
 
@@ -125,16 +128,21 @@ void SurfaceSwing::judge() noexcept {
   if (time_ - first_seen_ < kSeenFor || !(spread > 0)) return;
   std::array<Wave, kFrequencies> waves;
   std::size_t at = 0;
+  double most = 0;
   for (std::size_t i = 0; i < kFrequencies; ++i) {
     waves[i] = solve(i);
-    if (waves[i].explained > waves[at].explained) at = i;
+    const double octaves = std::log2(rates_[i] / kUsual);
+    const double plausible = waves[i].explained * (1 - kUnusual * octaves * octaves);
+    if (plausible <= most) continue;
+    most = plausible;
+    at = i;
   }
   const Wave& best = waves[at];
   const double amplitude = std::hypot(best.cosine, best.sine);
   const double explained = best.explained / spread;
   believed_ = amplitude > kAmplitudeMin && amplitude < kAmplitudeMax &&
               explained > (believed_ ? kExplainedLeast : kExplainedMin);
-  still_ = !believed_ && (still_ || amplitude < kStillBelow);
+  still_ = !believed_ && amplitude < (still_ ? 2 : 1) * kStillBelow;
   if (!believed_) return;
   // Between the frequencies tried: the top of the parabola through the best and its neighbours.
   double between = 0;

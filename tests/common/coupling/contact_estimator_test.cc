@@ -127,6 +127,24 @@ TEST(ContactEstimatorTest, OnlySaysWhatIsPassive) {
   EXPECT_TRUE(is_sound(model, 60e-3, 1e9));
 }
 
+TEST(ContactEstimatorTest, TheSurfaceDoesNotWalkToWhereTheTipFeltNothing) {
+  ContactEstimatorConfig config;
+  config.sensor_quantum = 0;
+  ContactEstimator estimator{config};
+  double highest = 0;
+  for (int tick = 0; tick < 30'000; ++tick) {
+    const double t = 1e-3 * tick;
+    const double tap = -3e-3 + 3.5e-3 * (1 - std::cos(2 * std::numbers::pi * t));
+    const double sway = 2e-3 * std::sin(9 * t);  // about a press of 3 mm
+    // What a wrong breath makes of a tissue: soft, and as if it began 15 mm above the tip.
+    const bool pressed = t > 6;
+    const double force = pressed ? 0.3 + 20 * sway : hertz(tap);
+    estimator.step(pressed ? 3e-3 + sway : tap, force);
+    highest = std::min(highest, estimator.model().surface);
+  }
+  EXPECT_GT(highest, -7e-3);
+}
+
 TEST(ContactEstimatorTest, SaysNothingWithoutAContact) {
   ContactEstimator estimator{ContactEstimatorConfig{}};
   for (int tick = 0; tick < 2000; ++tick) estimator.step(-5e-3, 0.05 * ((tick % 20) == 0));
