@@ -57,8 +57,11 @@ void MmtSurgeon::hear(std::span<const Incoming> arrived, Duration round_trip) no
   if (model->version == 0) return;
   candidate_ = contact_model(*model);
   candidate_relaxing_ = model->relaxing;
+  // Another swing than was foreseen is a change of the model, not a motion of the surface.
+  const double foreseen = swing_.after(swing_age_);
   swing_ = {model->swing, model->swing_quadrature, model->swing_rate};
   swing_age_ = 0.5 * seconds(round_trip);
+  swung_ += swing_.after(swing_age_) - foreseen;
 }
 
 /// The shown model moves towards the newest one; in the air at once, for nothing is stored there.

@@ -151,6 +151,35 @@ TEST(MmtSurgeonTest, ATissueFoundWhileTheHandIsThrownOutOfItDoesNotPushItOn) {
   EXPECT_EQ(discover_leaving(0.035), 0);
 }
 
+TEST(MmtSurgeonTest, AnotherBreathThanForeseenComesInSlowly) {
+  MmtSurgeon law{MmtConfig{}};
+  law.begin_epoch(-1e-3);
+  ModelPayload model{.version = 1, .c = {0, 0.06}, .depth_max = 4e-3};
+  std::array<double, 1200> forces{};
+  for (std::size_t tick = 0; tick < forces.size(); ++tick) {
+    if (tick == 1000) {
+      model.version = 2;
+      model.swing = 2e-3;
+      model.swing_rate = 1.5;
+    }
+    Incoming incoming;
+    incoming.sample.payload = model;
+    incoming.fresh = true;
+    const std::array arrived{incoming};
+    SurgeonInput in;
+    in.state = SiteState::Engaged;
+    in.position = std::min(3e-3, -1e-3 + 20e-6 * static_cast<double>(tick));
+    in.force_applied = tick > 0 ? forces[tick - 1] : 0;
+    in.arrived = arrived;
+    forces[tick] = law.step(in, std::chrono::milliseconds{1}).force;
+  }
+  ASSERT_GT(forces[999], 0.25);
+  EXPECT_LT(forces[1199], 0.1) << "it does come in";
+  for (std::size_t tick = 1000; tick < 1100; ++tick) {
+    EXPECT_LT(std::abs(forces[tick] - forces[tick - 10]), 0.1) << tick;
+  }
+}
+
 TEST(MmtSurgeonTest, PressingFurtherIntoAKnownTissueIsNotSlewed) {
   MmtSurgeon law{MmtConfig{}};
   law.begin_epoch(-1e-3);
