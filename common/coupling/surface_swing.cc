@@ -142,7 +142,7 @@ void SurfaceSwing::judge() noexcept {
   const double explained = best.explained / spread;
   believed_ = amplitude > kAmplitudeMin && amplitude < kAmplitudeMax &&
               explained > (believed_ ? kExplainedLeast : kExplainedMin);
-  still_ = !believed_ && amplitude < (still_ ? 2 : 1) * kStillBelow;
+  still_ = !believed_ && (still_ || amplitude < kStillBelow);
   if (!believed_) return;
   // Between the frequencies tried: the top of the parabola through the best and its neighbours.
   double between = 0;
