@@ -15,8 +15,8 @@
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
 #include "common/link/codec_protobuf.h"
-#include "common/link/packet_protection.h"
 #include "common/record/queue_recorder.h"
+#include "lab/meeting.h"
 #include "lab/scenario_file.h"
 #include "netem/impairment.h"
 #include "netem/pipe.h"
@@ -41,14 +41,6 @@ struct Costs {
   std::vector<double> patient;  ///< [us]
 };
 
-link::Handover handover(std::unique_ptr<link::Transport> transport) {
-  return {.transport = std::move(transport),
-          .protection = std::make_unique<link::PlainProtection>(),
-          .send_connection = 1,
-          .receive_connection = 1,
-          .session_id = 1};
-}
-
 Costs measure(const std::string& coupling, Duration span) {
   lab::Scenario scenario =
       lab::make_scenario("standard", lab::load_scenario("standard").value()).value();
@@ -60,8 +52,10 @@ Costs measure(const std::string& coupling, Duration span) {
   netem::Pipe pipe{scenario.up, scenario.down, 1, kQueue, now};
   link::Link surgeon_link{scenario.link, std::make_unique<link::ProtobufCodec>()};
   link::Link patient_link{scenario.link, std::make_unique<link::ProtobufCodec>()};
-  (void)surgeon_link.adopt(handover(pipe.surgeon_end()), now);
-  (void)patient_link.adopt(handover(pipe.patient_end()), now);
+  lab::Meeting surgeon_meeting{scenario, link::Role::Surgeon, pipe.surgeon_end()};
+  lab::Meeting patient_meeting{scenario, link::Role::Patient, pipe.patient_end()};
+  surgeon_meeting.start(surgeon_link, now);
+  patient_meeting.start(patient_link, now);
   record::QueueRecorder surgeon_records{kQueue};
   record::QueueRecorder patient_records{kQueue};
 
