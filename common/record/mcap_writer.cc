@@ -30,7 +30,7 @@ McapWriter::McapWriter(ByteSink& sink, const McapOptions& options)
       compressor_{options.zstd_level},
       chunk_indexes_{sink.on_disk()} {
   waiting_.reserve(options_.chunk_size_max + options_.chunk_size_max / 4);
-  if (sink.on_disk()) {
+  if (sink.on_disk() && options_.compression == McapCompression::Zstd) {
     // A chunk of the largest size, once: what memory it takes is taken before the session.
     waiting_.resize(options_.chunk_size_max);
     (void)compressor_.compress(waiting_, output_);
