@@ -97,7 +97,7 @@ Duration DelaySequence::traced(TimePoint onward, std::size_t copy) noexcept {
   const DelayTrace& trace = law_->impairment.trace;
   Duration delay = trace_.delay(trace, onward - start_);
   if (trace.dither) {
-    delay += rounded((streams_.of(Stage::Dither, copy).uniform(index_) - 0.5) * 1e6 + 1e9) -
+    delay += nearest((streams_.of(Stage::Dither, copy).uniform(index_) - 0.5) * 1e6 + 1e9) -
              Duration{1'000'000'000};
   }
   return std::max(delay, Duration{});

@@ -9,6 +9,7 @@
 #include "common/core/time.h"
 #include "netem/fate_types.h"
 #include "netem/impairment.h"
+#include "netem/nearest.h"
 #include "netem/prepared_law.h"
 #include "netem/trace_reader.h"
 
@@ -43,19 +44,16 @@ class DelaySequence {
   [[nodiscard]] bool remembers() const noexcept { return source_ == Source::Correlated; }
   /// Of the original (copy 0), at most once, or of a copy that goes on at `onward`.
   [[nodiscard]] Drawn draw(std::size_t copy, TimePoint onward) noexcept {
-    if (source_ == Source::Mean) return {rounded(mean_)};
+    if (source_ == Source::Mean) return {nearest(mean_)};
     if (source_ == Source::Trace) return {traced(onward, copy)};
     const double drawn = mean_ + jitter_ * (copy == 0 ? around() : around(copy));
-    return {rounded(std::max(drawn, least_)), drawn < least_};
+    return {nearest(std::max(drawn, least_)), drawn < least_};
   }
 
  private:
   /// Where a delay comes from.
   enum class Source : std::uint8_t { Mean, Trace, Correlated, Normal, Share };
 
-  [[nodiscard]] static Duration rounded(double nanoseconds) noexcept {
-    return Duration{static_cast<std::int64_t>(nanoseconds + 0.5)};
-  }
   void choose_source(bool random) noexcept;
   void correlate(Duration gap) noexcept;
   void look_ahead() noexcept;

@@ -8,6 +8,7 @@
 
 #include "common/core/random.h"
 #include "common/core/time.h"
+#include "netem/nearest.h"
 #include "netem/prepared_law.h"
 
 namespace palp::netem {
@@ -65,7 +66,7 @@ class SlotGrid {
       const double draw = random_middle(stream_.bits(ahead_end_));
       double span = least_ + draw * width_;
       if (curve_ != nullptr) span += curve_->jitter() * curve_->at_share(draw);
-      ahead_[ahead_end_ % kAhead] = Duration{static_cast<std::int64_t>(std::max(span, 1.0) + 0.5)};
+      ahead_[ahead_end_ % kAhead] = nearest(std::max(span, 1.0));
     }
   }
 
