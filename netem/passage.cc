@@ -120,6 +120,13 @@ std::optional<TimePoint> Passage::next_release() const noexcept {
   return kernel_slots_ ? kernel_slots_->look_at(first->release()) : first->release();
 }
 
+std::size_t Passage::in_line_by(TimePoint at, std::size_t most) const noexcept {
+  const std::size_t end = std::min(most, line_.size());
+  std::size_t count = 0;
+  while (count < end && line_[count].release() <= at) ++count;
+  return count;
+}
+
 std::optional<Decision> Passage::pop(TimePoint now) noexcept {
   if (kernel_slots_) settle(now);
   Entry entry{};

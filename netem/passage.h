@@ -69,6 +69,8 @@ class Passage {
 
   /// When the next one leaves. @returns nullopt: nobody is on the way.
   [[nodiscard]] std::optional<TimePoint> next_release() const noexcept;
+  /// How many leave by `at` without overtaking anybody, `most` at the most: a host's effort.
+  [[nodiscard]] std::size_t in_line_by(TimePoint at, std::size_t most) const noexcept;
   /// The next one due at `now`; its place is free again at the next push.
   [[nodiscard]] std::optional<Decision> pop(TimePoint now) noexcept;
 

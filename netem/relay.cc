@@ -25,6 +25,8 @@ constexpr Duration kLate = microseconds{60};
 /// A send call on a busy machine costs about 8 us; more is a disturbance, not a cost to lead by.
 constexpr Duration kLeadMax = microseconds{20};
 constexpr Duration kLeadStep{50};
+/// Nothing is sent earlier than this before its time.
+constexpr Duration kBunchLeadMax = microseconds{50};
 /// A SCHED_FIFO thread that is awake for 95 % of a second is stopped for the rest of it by the
 /// kernel: under a flood it naps before.
 constexpr Duration kAwakeMax = microseconds{2000};
@@ -136,6 +138,16 @@ void Relay::take_commands(TimePoint now) {
   }
 }
 
+/// How long before `next` to begin, so that what leaves at `next` is on time. Of several that are
+/// due together, sent one after the other, the middle one is: the error of the first and of the
+/// last is then the least it can be.
+Duration Relay::lead(Direction direction, TimePoint next) const noexcept {
+  const std::size_t together =
+      channel(direction).passage().in_line_by(next + lead_, kDatagramBatch);
+  if (together < 2) return lead_;
+  return std::min(lead_ * static_cast<std::int64_t>(together + 1) / 2, kBunchLeadMax);
+}
+
 /// Sends what is due, in batches: their bytes stay where they are until the next push.
 void Relay::release(Direction direction, TimePoint now) noexcept {
   Channel& channel = way(direction);
@@ -144,10 +156,11 @@ void Relay::release(Direction direction, TimePoint now) noexcept {
   const io::Endpoint* to = direction == Direction::Down && client_ ? &*client_ : nullptr;
   const std::uint8_t side = direction == Direction::Up ? 1 : 0;
   TimePoint before = now;
-  for (;;) {
+  for (auto next = channel.next_release(); next; next = channel.next_release()) {
+    const TimePoint due = before + lead(direction, *next);
     std::size_t count = 0;
     while (count < kDatagramBatch) {
-      const auto popped = channel.pop_in_place(before + lead_);
+      const auto popped = channel.pop_in_place(due);
       if (!popped) break;
       leaving_[count] = popped->decision;
       outgoing_[count] = {popped->bytes, popped->decision.tos};
@@ -175,14 +188,15 @@ void Relay::account(Direction direction, std::size_t sent, TimePoint before) noe
   RelayTraffic& traffic = traffic_[static_cast<std::size_t>(direction)];
   const TimePoint after = monotonic_now();
   traffic.forwarded += sent;
+  const Duration each = (after - before) / static_cast<std::int64_t>(sent);
   for (std::size_t i = 0; i < sent; ++i) {
-    traffic.delay.record(after - leaving_[i].arrived_at);
-    const Duration late = after - leaving_[i].released_at;
+    const TimePoint left = before + each * static_cast<std::int64_t>(i + 1);
+    traffic.delay.record(left - leaving_[i].arrived_at);
+    const Duration late = left - leaving_[i].released_at;
     traffic.release_error.record(late < Duration{} ? -late : late);
     if (late > kLate) ++traffic.late_releases;
   }
   // A step up or down at each call ends where half of the calls take longer.
-  const Duration each = (after - before) / static_cast<std::int64_t>(sent);
   lead_ += each > lead_ ? kLeadStep : -kLeadStep;
   lead_ = std::clamp(lead_, Duration{}, kLeadMax);
 }
@@ -200,8 +214,10 @@ void Relay::rebind_if_asked() {
 /// without waiting, which is the spin.
 Relay::Readable Relay::rest(TimePoint now, TimePoint until) noexcept {
   TimePoint next = std::min(until, now + kRestMax);
-  if (const auto release = up_.next_release()) next = std::min(next, *release - lead_);
-  if (const auto release = down_.next_release()) next = std::min(next, *release - lead_);
+  for (const Direction direction : {Direction::Up, Direction::Down}) {
+    const auto release = way(direction).next_release();
+    if (release) next = std::min(next, *release - lead(direction, *release));
+  }
   if (real_time_ && now - awake_since_ > kAwakeMax) {
     const timespec nap = to_timespec(kNap);
     ::clock_nanosleep(CLOCK_MONOTONIC, 0, &nap, nullptr);

@@ -111,6 +111,7 @@ class Relay {
   void release(Direction direction, TimePoint now) noexcept;
   void account(Direction direction, std::size_t sent, TimePoint before) noexcept;
   void rebind_if_asked();
+  [[nodiscard]] Duration lead(Direction direction, TimePoint next) const noexcept;
   [[nodiscard]] Readable rest(TimePoint now, TimePoint until) noexcept;
   void warm() noexcept;
   void learn_spin(Duration late) noexcept;

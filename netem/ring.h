@@ -19,6 +19,10 @@ class Ring {
   [[nodiscard]] std::size_t size() const noexcept { return count_; }
   [[nodiscard]] const T& front() const noexcept { return items_[first_]; }
   [[nodiscard]] const T& back() const noexcept { return items_[wrap(first_ + count_ - 1)]; }
+  /// `at` < size(), from the front.
+  [[nodiscard]] const T& operator[](std::size_t at) const noexcept {
+    return items_[wrap(first_ + at)];
+  }
   void push(const T& item) noexcept { items_[wrap(first_ + count_++)] = item; }
   void pop() noexcept {
     first_ = wrap(first_ + 1);

@@ -167,6 +167,22 @@ TEST(ChannelTest, WhatIsDueTogetherLeavesAsItCame) {
   EXPECT_GT(together, 200);
 }
 
+TEST(ChannelTest, TellsHowManyLeaveByAnInstantAndNoneOfThemTwice) {
+  Channel channel{impaired("delay 10ms"), 1, Direction::Up, 99};
+  for (std::uint64_t i = 0; i < 5; ++i) channel.push(numbered(i), at_ms(0));
+  for (std::uint64_t i = 5; i < 8; ++i) channel.push(numbered(i), at_ms(3));
+  const auto leaving_by = [&channel](TimePoint at, std::size_t most = 64) {
+    return channel.passage().in_line_by(at, most);
+  };
+  EXPECT_EQ(leaving_by(at_ms(10) - Duration{1}), 0U);
+  EXPECT_EQ(leaving_by(at_ms(10)), 5U);
+  EXPECT_EQ(leaving_by(at_ms(10), 3), 3U);
+  EXPECT_EQ(leaving_by(at_ms(13)), 8U);
+  Buffer buffer{};
+  ASSERT_TRUE(channel.pop(buffer, at_ms(10)));
+  EXPECT_EQ(leaving_by(at_ms(13)), 7U);
+}
+
 TEST(ChannelTest, DropsWhatNobodyCollectsAndStaysWhole) {
   Channel channel{impaired("none"), 1, Direction::Up, 1};
   for (std::uint64_t i = 0; i < 10'000; ++i) channel.push(numbered(i), at_ms(0));
