@@ -82,6 +82,12 @@ std::string default_text(const FieldDescriptor& field) {
   }
 }
 
+const FieldDescriptor& sibling(const FieldDescriptor& field, const std::string& name) {
+  const FieldDescriptor* const found = field.containing_type()->FindFieldByName(name);
+  PALP_CHECK(found != nullptr, "a relation names a field of the same message");
+  return *found;
+}
+
 }  // namespace
 
 std::string value_text(const Message& settings, const FieldDescriptor& field, int index) {
@@ -128,17 +134,23 @@ Result<void> check_relation(const Message& settings,
                             const FieldDescriptor& field,
                             const std::string& name) {
   const proto::config::Knob& knob = knob_of(field);
-  if (!knob.has_not_above()) {
-    return {};
+  const auto dot = name.rfind('.');
+  const std::string group = dot == std::string::npos ? "" : name.substr(0, dot + 1);
+  if (knob.has_not_above()) {
+    const FieldDescriptor& bound = sibling(field, knob.not_above());
+    if (number_of(settings, field, -1) > number_of(settings, bound, -1)) {
+      return fail(name + " = " + value_text(settings, field) + " is above " + group + bound.name() +
+                  " = " + value_text(settings, bound) +
+                  (knob.unit() == "1" ? "" : ' ' + knob.unit()));
+    }
   }
-  const FieldDescriptor* const bound = field.containing_type()->FindFieldByName(knob.not_above());
-  PALP_CHECK(bound != nullptr, "not_above names a field of the same message");
-  if (number_of(settings, field, -1) > number_of(settings, *bound, -1)) {
-    const auto dot = name.rfind('.');
-    const std::string group = dot == std::string::npos ? "" : name.substr(0, dot + 1);
-    return fail(name + " = " + value_text(settings, field) + " is above " + group + bound->name() +
-                " = " + value_text(settings, *bound) +
-                (knob.unit() == "1" ? "" : ' ' + knob.unit()));
+  if (knob.has_instead_of()) {
+    const FieldDescriptor& other = sibling(field, knob.instead_of());
+    if (!text_of(settings, other, -1).empty() &&
+        number_of(settings, field, -1) != field.default_value_double()) {
+      return fail(name + " = " + value_text(settings, field) + " counts nothing beside " + group +
+                  other.name() + " = " + value_text(settings, other) + ": give one of them");
+    }
   }
   return {};
 }

@@ -27,7 +27,7 @@ namespace palp::config {
                                        int index,
                                        const std::string& name);
 
-/// The relation not_above of one field, if it has one; `name` as above.
+/// The relations not_above and instead_of of one field, if it has them; `name` as above.
 [[nodiscard]] Result<void> check_relation(const google::protobuf::Message& settings,
                                           const google::protobuf::FieldDescriptor& field,
                                           const std::string& name);

@@ -220,6 +220,26 @@ TEST(SchemaTest, EveryRelationHoldsUpToEquality) {
   });
 }
 
+TEST(SchemaTest, WhatIsSaidInAnotherWayIsNotSaidTwice) {
+  int seen = 0;
+  for_each_field([&seen](const FieldDescriptor& field) {
+    if (!knob_of(field).has_instead_of()) {
+      return;
+    }
+    ++seen;
+    const auto& other = *field.containing_type()->FindFieldByName(knob_of(field).instead_of());
+    const auto settings = empty_message(*field.containing_type());
+    const auto& writer = *settings->GetReflection();
+    writer.SetString(settings.get(), &other, "words");
+    EXPECT_TRUE(check_relation(*settings, field, "x")) << field.full_name();
+    writer.SetDouble(settings.get(), &field, default_of(field) + 1);
+    EXPECT_FALSE(check_relation(*settings, field, "x")) << field.full_name();
+    writer.SetString(settings.get(), &other, "");
+    EXPECT_TRUE(check_relation(*settings, field, "x")) << field.full_name();
+  });
+  EXPECT_EQ(seen, 3);
+}
+
 TEST(SchemaTest, EveryChoiceIsTakenAndNothingElse) {
   for_each_field([](const FieldDescriptor& field) {
     if (knob_of(field).one_of_size() == 0) {

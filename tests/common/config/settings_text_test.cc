@@ -91,6 +91,16 @@ TEST(SettingsTextTest, ChecksRelationsOfTheWhole) {
   EXPECT_TRUE(check_settings(patient));
 }
 
+TEST(SettingsTextTest, RefusesNumbersBesideTheWordsThatReplaceThem) {
+  PatientConfig patient;
+  ASSERT_TRUE(merge_text("impairment { spec: 'loss 1%' delay_ms: 5 }", "a.conf", patient));
+  const auto checked = check_settings(patient);
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(checked.error().text,
+            "impairment.delay_ms = 5 counts nothing beside impairment.spec = \"loss 1%\": give one "
+            "of them");
+}
+
 TEST(SettingsTextTest, ChecksValuesThatDidNotComeFromText) {
   PatientConfig patient;
   patient.mutable_motion_gate()->set_force_limit_n(std::nan(""));
