@@ -51,6 +51,14 @@ Result<void> apply(config::Document& document, const Setting& setting) {
     auto up = document.set("up.delay_ms", half, setting.path);
     return up ? document.set("down.delay_ms", half, setting.path) : up;
   }
+  // The words of a path are all that is said of it.
+  if (setting.path == "up.spec" || setting.path == "down.spec") {
+    const std::string path = setting.path.substr(0, setting.path.find('.') + 1);
+    for (const char* number : {"delay_ms", "jitter_ms", "loss"}) {
+      auto done = document.set(path + number, "0", setting.path);
+      if (!done) return done;
+    }
+  }
   constexpr std::string_view kBoth = "coupling.";
   if (setting.path.rfind(kBoth, 0) == 0) {
     auto surgeon = document.set("surgeon." + setting.path, setting.value, setting.path);
@@ -72,6 +80,8 @@ void combine(const std::vector<std::vector<Setting>>& axes,
   }
 }
 
+constexpr std::string_view kPhantomPath = "patient.simulated_phantom.phantom";
+
 }  // namespace
 
 Result<Plan> make_sweep(const std::string& scenario,
@@ -82,6 +92,11 @@ Result<Plan> make_sweep(const std::string& scenario,
   plan.name = "sweep";
   plan.scenario = scenario;
   plan.seed = ask.seed;
+  const auto document = load_scenario(scenario);
+  if (!document) return tl::unexpected(document.error());
+  const auto base = make_scenario(scenario, *document);
+  if (!base) return tl::unexpected(base.error());
+  plan.tissue = ask.tissue.empty() ? base->phantom.name : ask.tissue;
   std::vector<std::vector<Setting>> values;
   for (const std::string& axis : axes) {
     const std::size_t equals = axis.find('=');
@@ -108,6 +123,8 @@ Result<Plan> make_sweep(const std::string& scenario,
       one.settings = settings;
       if (!ask.coupling.empty())
         one.settings.insert(one.settings.begin(), {"coupling.name", ask.coupling});
+      if (!ask.tissue.empty())
+        one.settings.insert(one.settings.begin(), {std::string{kPhantomPath}, ask.tissue});
       for (const Setting& setting : settings) one.labels.push_back(setting.value);
       plan.cases.push_back(std::move(one));
     }

@@ -14,7 +14,7 @@
 namespace palp::lab {
 
 /// A field of LabScenario and its value. "coupling.*" is set at both sites; "rtt_ms" is half of it
-/// as delay each way.
+/// as delay each way; a path's "spec" replaces the numbers it had.
 struct Setting {
   std::string path;
   std::string value;
@@ -61,7 +61,8 @@ struct PlanAsk {
 /// The stability map of eq. (1): spring by round trip by grip.
 [[nodiscard]] Plan make_map(const PlanAsk& ask);
 
-/// All combinations of "path=value,value,..." over a scenario, with `repeats` seeds each.
+/// All combinations of "path=value,value,..." over a scenario, with `repeats` seeds each. Coupling
+/// and tissue (a phantom) are the scenario's where `ask` leaves them empty.
 [[nodiscard]] Result<Plan> make_sweep(const std::string& scenario,
                                       const std::vector<std::string>& axes,
                                       std::uint64_t repeats,

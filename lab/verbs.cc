@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
-#include <map>
 
 #include <nlohmann/json.hpp>
 
 #include "common/config/report.h"
 #include "common/config/settings_text.h"
 #include "common/coupling/any_coupling.h"
-#include "common/plot/line_plot.h"
 #include "lab/batch_report.h"
+#include "lab/metric_plot.h"
 #include "lab/metric_table.h"
 #include "lab/stability_map.h"
 
@@ -53,7 +52,7 @@ PlanAsk ask_of(const BatchArguments& arguments) {
   ask.count = arguments.count;
   ask.seed = arguments.seed.value_or(1);
   if (!arguments.coupling.empty()) ask.coupling = arguments.coupling;
-  ask.tissue = arguments.tissue;
+  if (!arguments.tissue.empty()) ask.tissue = arguments.tissue;
   return ask;
 }
 
@@ -63,7 +62,15 @@ struct Run {
   BatchAccount account;
 };
 
+Result<void> check_metric(const BatchArguments& arguments) {
+  if (metric_index(arguments.metric)) return {};
+  std::string sentence = "there is no metric '" + arguments.metric + "', there are:";
+  for (const Metric& metric : metric_table()) sentence.append(" ").append(metric.name);
+  return fail(sentence);
+}
+
 Result<Run> run(Plan plan, const BatchArguments& arguments, const Machine& machine) {
+  if (auto known = check_metric(arguments); !known) return tl::unexpected(known.error());
   if (!arguments.shard.empty()) {
     const auto shard = parse_shard(arguments.shard);
     if (!shard) return tl::unexpected(shard.error());
@@ -89,37 +96,8 @@ Result<Run> run(Plan plan, const BatchArguments& arguments, const Machine& machi
   return Run{std::move(plan), std::move(*results), account};
 }
 
-/// The metric over the first label that is a number, one curve per value of all other labels.
 std::string plot(const Run& done, const std::string& metric, const std::string& title) {
-  const auto at = metric_index(metric);
-  if (!at || done.plan.label_names.empty()) return {};
-  std::map<std::string, plot::Curve> curves;
-  for (const CaseResult& result : done.results) {
-    std::string name;
-    for (std::size_t i = 1; i < result.labels.size(); ++i) {
-      if (std::any_of(done.results.begin(), done.results.end(), [&](const CaseResult& other) {
-            return other.labels[i] != result.labels[i];
-          })) {
-        name += (name.empty() ? "" : " ") + result.labels[i];
-      }
-    }
-    plot::Curve& curve = curves[name];
-    curve.name = name;
-    double x = 0;
-    const std::string& label = result.labels.front();
-    std::from_chars(label.data(), label.data() + label.size(), x);
-    curve.x.push_back(x);
-    curve.y.push_back(result.values[*at]);
-  }
-  std::vector<plot::Curve> list;
-  list.reserve(curves.size());
-  for (auto& [name, curve] : curves) list.push_back(std::move(curve));
-  plot::Axes axes;
-  axes.title = title;
-  axes.x_name = done.plan.label_names.front();
-  axes.y_name = metric;
-  axes.x_logarithmic = axes.x_name == "rtt_ms";
-  return plot::curves_svg(axes, list);
+  return metric_plot(done.plan.label_names, done.results, metric, title);
 }
 
 Ending finish(const Run& done, const BatchArguments& arguments, const std::string& svg) {
@@ -143,7 +121,9 @@ Ending montecarlo(const BatchArguments& arguments, const Machine& machine, bool 
 
 Ending sweep(const BatchArguments& arguments, const Machine& machine) {
   PlanAsk ask = ask_of(arguments);
+  // What is not asked for stays as the scenario has it.
   ask.coupling = arguments.coupling;
+  ask.tissue = arguments.tissue;
   auto plan = make_sweep(arguments.scenario, arguments.list, arguments.repeats, ask);
   if (!plan) return refusal(plan.error());
   auto done = run(std::move(*plan), arguments, machine);
@@ -247,6 +227,7 @@ Ending compare(const BatchArguments& arguments, const Machine& machine) {
 }
 
 Ending merge(const BatchArguments& arguments) {
+  if (auto known = check_metric(arguments); !known) return refusal(known.error());
   Run all;
   for (const std::string& path : arguments.list) {
     const auto text = config::read_whole_file(path);
@@ -265,14 +246,13 @@ Ending merge(const BatchArguments& arguments) {
   }
   all.plan.name = arguments.set;
   all.plan.seed = arguments.seed.value_or(1);
-  all.plan.tissue = arguments.tissue;
+  all.plan.tissue = ask_of(arguments).tissue;
   all.account.coupling = ask_of(arguments).coupling;
   return finish(all, arguments, plot(all, arguments.metric, "set " + all.plan.name));
 }
 
 void declare_common(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {
   verb.whole("--seed", arguments.seed, {.min = 0, .max = kSeedMax}, "of everything random; 1");
-  verb.text("--tissue", arguments.tissue, "NAME", "closed-form, fe, or a phantom");
   verb.report(arguments.report, schema);
   verb.text("--cases", arguments.cases, "FILE", "one row per case as CSV");
   verb.text("--svg", arguments.svg, "FILE", "plot");
@@ -287,7 +267,11 @@ void declare_running(config::CommandLine& verb, BatchArguments& arguments, const
 }  // namespace
 
 void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
+  const auto tissue_flag = [&](config::CommandLine& verb) {
+    verb.text("--tissue", arguments.tissue, "NAME", "closed-form, fe, or a phantom; closed-form");
+  };
   const auto set_flags = [&](config::CommandLine& verb, bool with_set) {
+    tissue_flag(verb);
     if (with_set) {
       verb.text("--set", arguments.set, "NAME", "which (palp-lab scenarios lists them)");
     }
@@ -307,11 +291,13 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   declare_running(side_by_side, arguments, kCompare);
   auto& stability = line.verb("map", "stability of eq. (1): spring, round trip, grip");
   stability.text("--coupling", arguments.coupling, "NAME", "direct");
+  tissue_flag(stability);
   declare_running(stability, arguments, kMap);
   auto& axes = line.verb("sweep", "all combinations of settings: PATH=VALUE,VALUE,...");
   axes.text("--scenario", arguments.scenario, "NAME", "what they change; standard");
   axes.text("--coupling", arguments.coupling, "NAME", "instead of the scenario's");
   axes.whole("--repeats", arguments.repeats, {.min = 1, .max = 100000}, "seeds of each; 1");
+  axes.text("--tissue", arguments.tissue, "PHANTOM", "instead of the scenario's");
   axes.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
   axes.arguments("AXIS", arguments.list, "PATH=VALUE,VALUE,...; coupling.* at both sites; rtt_ms");
   axes.required();
@@ -319,6 +305,7 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   auto& joined = line.verb("merge", "cases files of all shards become one report");
   joined.text("--set", arguments.set, "NAME", "how to call it");
   joined.text("--coupling", arguments.coupling, "NAME", "the law they were run with");
+  tissue_flag(joined);
   joined.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
   joined.arguments("FILE", arguments.list, "as --cases wrote them");
   joined.required();

@@ -26,7 +26,7 @@ struct BatchArguments {
   std::string set{"mc"};
   std::string scenario{"standard"};
   std::string coupling;
-  std::string tissue{"closed-form"};
+  std::string tissue;
   std::string shard;
   std::string report;
   std::string cases;

@@ -18,6 +18,7 @@ constexpr double kRight = 170;
 constexpr double kTop = 40;
 constexpr double kBottom = 50;
 constexpr int kTicks = 5;
+constexpr std::size_t kTicksMax = 14;
 // Okabe and Ito's colours: told apart by nearly everybody.
 constexpr std::array kColours{
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
@@ -41,6 +42,18 @@ struct Range {
   }
 };
 
+/// 1, 2 and 5 times the powers of ten, between two logarithms to the base of ten.
+std::vector<double> decade_ticks(double from, double to) {
+  std::vector<double> ticks;
+  for (double power = std::floor(from); power <= to; ++power) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double tick = factor * std::pow(10, power);
+      if (std::log10(tick) >= from - 1e-9 && std::log10(tick) <= to + 1e-9) ticks.push_back(tick);
+    }
+  }
+  return ticks;
+}
+
 /// Draws one panel whose upper left corner is (0, top).
 class PanelWriter {
  public:
@@ -58,7 +71,11 @@ class PanelWriter {
     if (!(across_.from <= across_.to)) across_ = {0, 1};
     y_ticks_ = round_ticks(up_.from, up_.to, kTicks);
     up_ = {y_ticks_.front(), y_ticks_.back()};
-    if (axes_.x_logarithmic) return;
+    if (axes_.x_logarithmic) {
+      x_ticks_ = curves_.empty() ? std::vector<double>{} : curves_.front().x;
+      if (x_ticks_.size() > kTicksMax) x_ticks_ = decade_ticks(across_.from, across_.to);
+      return;
+    }
     x_ticks_ = round_ticks(across_.from, across_.to, kTicks);
     across_ = {x_ticks_.front(), x_ticks_.back()};
   }
@@ -96,8 +113,7 @@ class PanelWriter {
              y_of(y));
       label(text, kLeft - 6, y_of(y) + 4, "end", short_number(y));
     }
-    const bool at_points = axes_.x_logarithmic && !curves_.empty();
-    for (const double x : at_points ? curves_.front().x : x_ticks_) {
+    for (const double x : x_ticks_) {
       append(text,
              "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#999\"/>\n",
              x_of(x),

@@ -9,8 +9,8 @@ enum class Mark { Line, Dashes, Points };
 
 struct Curve {
   std::string name{};     ///< empty: not in the legend
-  std::vector<double> x;  ///< [as the axis]
-  std::vector<double> y;  ///< [as the axis]; not finite: no point
+  std::vector<double> x{};  ///< [as the axis]
+  std::vector<double> y{};  ///< [as the axis]; not finite: no point
   Mark mark{Mark::Line};
   int colour{-1};  ///< of the palette; -1: the curve's place in the list
 };
@@ -19,7 +19,7 @@ struct Axes {
   std::string title{};
   std::string x_name{};
   std::string y_name{};
-  bool x_logarithmic{};  ///< from 1 on; ticks where the first curve has points
+  bool x_logarithmic{};  ///< from 1 on; ticks where the first curve has points, if few
   double y_from{};       ///< [as the axis]
   double y_to{};         ///< [as the axis]; equal to y_from: as the curves need
 };

@@ -140,6 +140,29 @@ TEST(PlanTest, ASweepIsAllCombinations) {
   }
 }
 
+TEST(PlanTest, ASweepTakesTissueFromItsScenarioOrFromWhoAsks) {
+  PlanAsk ask{.tissue = ""};
+  auto plan = make_sweep("standard", {"rtt_ms=20"}, 1, ask);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(make_case(*plan, plan->cases[0])->phantom.name, plan->tissue);
+  ask.tissue = "none";
+  plan = make_sweep("standard", {"rtt_ms=20"}, 1, ask);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(make_case(*plan, plan->cases[0])->phantom.name, "none");
+}
+
+TEST(PlanTest, ARoundTripBesideTheWordsOfALinkIsRefusedNotIgnored) {
+  const auto plan = make_sweep("metro", {"rtt_ms=20"}, 1, {.tissue = ""});
+  ASSERT_TRUE(plan);
+  const auto refused = make_case(*plan, plan->cases[0]);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text.find("up.delay_ms"), std::string::npos) << refused.error().text;
+  // Words replace the numbers of "standard".
+  const auto words = make_sweep("standard", {"up.spec=delay 7ms"}, 1, {.tissue = ""});
+  ASSERT_TRUE(words);
+  EXPECT_TRUE(make_case(*words, words->cases[0]));
+}
+
 TEST(SpreadTest, CountsUndefinedValuesAsTheWorst) {
   std::vector<CaseResult> results(20);
   for (std::size_t i = 0; i < results.size(); ++i) {

@@ -1,0 +1,112 @@
+#include "lab/metric_plot.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "common/plot/line_plot.h"
+#include "lab/metric_table.h"
+
+namespace palp::lab {
+namespace {
+
+constexpr std::size_t kCurvesMax = 7;  // as many colours
+
+std::optional<double> number_in(const std::string& label) {
+  double value = 0;
+  const char* const end = label.data() + label.size();
+  const auto read = std::from_chars(label.data(), end, value);
+  if (read.ec != std::errc{} || read.ptr != end) return std::nullopt;
+  return value;
+}
+
+std::optional<std::size_t> numeric_label(std::size_t labels,
+                                         const std::vector<CaseResult>& results) {
+  for (std::size_t i = 0; i < labels; ++i) {
+    if (std::all_of(results.begin(), results.end(), [i](const CaseResult& result) {
+          return number_in(result.labels[i]).has_value();
+        })) {
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
+/// What tells a case from others at the same place: its labels that are not equal in all of them.
+std::string curve_of(const CaseResult& one,
+                     std::size_t along,
+                     const std::vector<CaseResult>& results) {
+  std::string name;
+  for (std::size_t i = 0; i < one.labels.size(); ++i) {
+    if (i == along) continue;
+    if (std::all_of(results.begin(), results.end(), [&](const CaseResult& other) {
+          return other.labels[i] == one.labels[i];
+        })) {
+      continue;
+    }
+    name += (name.empty() ? "" : " ") + one.labels[i];
+  }
+  return name;
+}
+
+using Values = std::map<double, std::vector<double>>;  ///< [as the metric], by place
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// A line through the medians and, where there are several values, each of them.
+void add_curve(const std::string& name, const Values& values, std::vector<plot::Curve>& curves) {
+  const int colour = static_cast<int>(curves.empty() ? 0 : curves.back().colour + 1);
+  plot::Curve line{.name = name, .colour = colour};
+  plot::Curve points{.mark = plot::Mark::Points, .colour = colour};
+  bool several = false;
+  for (const auto& [x, all] : values) {
+    line.x.push_back(x);
+    line.y.push_back(median(all));
+    several = several || all.size() > 1;
+    points.x.insert(points.x.end(), all.size(), x);
+    points.y.insert(points.y.end(), all.begin(), all.end());
+  }
+  curves.push_back(std::move(line));
+  if (several) curves.push_back(std::move(points));
+}
+
+}  // namespace
+
+std::string metric_plot(const std::vector<std::string>& label_names,
+                        const std::vector<CaseResult>& results,
+                        const std::string& metric,
+                        const std::string& title) {
+  const auto at = metric_index(metric);
+  const auto along = numeric_label(label_names.size(), results);
+  if (!at || !along || results.empty()) return {};
+  std::map<std::string, Values> groups;
+  plot::Curve all{.mark = plot::Mark::Points};
+  for (const CaseResult& result : results) {
+    const double value = result.values[*at];
+    if (!std::isfinite(value)) continue;
+    const double place = *number_in(result.labels[*along]);
+    groups[curve_of(result, *along, results)][place].push_back(value);
+    all.x.push_back(place);
+    all.y.push_back(value);
+  }
+  std::vector<plot::Curve> curves;
+  if (groups.size() > kCurvesMax) {
+    curves.push_back(std::move(all));
+  } else {
+    for (const auto& [name, values] : groups) add_curve(name, values, curves);
+  }
+  plot::Axes axes;
+  axes.title = title;
+  axes.x_name = label_names[*along];
+  axes.y_name = metric;
+  axes.x_logarithmic = axes.x_name == "rtt_ms";
+  return plot::curves_svg(axes, curves);
+}
+
+}  // namespace palp::lab
