@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/core/depth_text.h"
+#include "common/core/number_text.h"
 #include "lab/digest.h"
 #include "lab/metric_table.h"
 #include "patient_site/estimator/depth_summary.h"
@@ -95,6 +96,30 @@ Json metrics_json(const TrialMetrics& m) {
   text += line.data();
 }
 
+/// "-0.3 %" of a ratio; what nothing was measured of is "-".
+std::string percent(double ratio) {
+  std::string text;
+  if (std::isfinite(ratio)) append(text, "%+.1f %%", 100 * ratio);
+  return text.empty() ? "-" : text;
+}
+
+std::string measured(double value, int decimals, const char* unit) {
+  return std::isfinite(value) ? number_text("", value, decimals, unit) : "-";
+}
+
+std::string tap_text(const TapMetrics& tap) {
+  std::string text;
+  append(text, "tap %s%-2d    ", name_of(tap.site), tap.index);
+  if (!std::isfinite(tap.stiffness_felt)) return text + "no contact\n";
+  append(text,
+         "felt %6.1f N/m, true %6.1f N/m (%s), hand to %.2f mm\n",
+         tap.stiffness_felt,
+         tap.stiffness_true,
+         percent(tap.stiffness_felt / tap.stiffness_true - 1).c_str(),
+         tap.hand_max * 1e3);
+  return text;
+}
+
 }  // namespace
 
 std::string run_report(const Scenario& scenario,
@@ -132,16 +157,7 @@ std::string run_summary(const Scenario& scenario,
          scenario.coupling.name.c_str(),
          scenario.phantom.name.c_str());
   const TrialMetrics& m = result.metrics;
-  for (const TapMetrics& tap : m.taps) {
-    append(text,
-           "tap %s%d     felt %6.1f N/m, true %6.1f N/m (%+.1f %%), hand to %.2f mm\n",
-           name_of(tap.site),
-           tap.index,
-           tap.stiffness_felt,
-           tap.stiffness_true,
-           100 * (tap.stiffness_felt / tap.stiffness_true - 1),
-           tap.hand_max * 1e3);
-  }
+  for (const TapMetrics& tap : m.taps) text += tap_text(tap);
   for (const DepthEstimate& estimate : result.depths) {
     append(text,
            "stroke %s    h %.4f N, %s",
@@ -155,18 +171,12 @@ std::string run_summary(const Scenario& scenario,
     text += '\n';
   }
   append(text, "stability  %s\n", m.unstable ? m.unstable_reason : "stable");
-  append(text,
-         "taps 2-4   A %+.1f %%, B %+.1f %%, ratio %+.1f %%; holds A %+.1f %%, B %+.1f %%\n",
-         100 * m.tap_error[0],
-         100 * m.tap_error[1],
-         100 * m.ratio_error,
-         100 * m.static_error[0],
-         100 * m.static_error[1]);
-  append(text,
-         "hand       drag %.3f N rms, worst step %.2f N in 10 ms, energy out %.3f mJ\n",
-         m.drag_rms,
-         m.force_step_10ms,
-         m.energy_operator * 1e3);
+  text += "taps 2-4   A " + percent(m.tap_error[0]) + ", B " + percent(m.tap_error[1]) +
+          ", ratio " + percent(m.ratio_error) + "; holds A " + percent(m.static_error[0]) + ", B " +
+          percent(m.static_error[1]) + "\n";
+  text += "hand       drag " + measured(m.drag_rms, 3, " N rms") + ", worst step " +
+          measured(m.force_step_10ms, 2, " N in 10 ms") + ", energy out " +
+          measured(m.energy_operator * 1e3, 3, " mJ") + "\n";
   append(text,
          "outcome    %s after %.1f s of virtual time in %.2f s of processor time: %.0f times\n",
          std::string{surgeon::to_string(result.outcome)}.c_str(),

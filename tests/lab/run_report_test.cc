@@ -27,5 +27,13 @@ TEST(RunReportTest, ReportAndSummaryTellTheDigest) {
   }
 }
 
+TEST(RunReportTest, WhatWasNotMeasuredIsADash) {
+  TrialResult result;
+  result.metrics.taps.resize(1);
+  const std::string text = run_summary(metro(), result, {.scenario = "metro", .cpu = 1});
+  EXPECT_NE(text.find("holds A -, B -"), std::string::npos) << text;
+  EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace palp::lab
