@@ -59,7 +59,23 @@ void read_controls(msghdr& header, Duration monotonic, Duration wall, ReceivedDa
 int open_socket(const io::Endpoint& of) {
   const int descriptor = ::socket(of.family(), SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (descriptor < 0) cannot("cannot open a UDP socket");
+  const int on = 1;
+  ::setsockopt(descriptor, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
+  // Each family has one of the two.
+  ::setsockopt(descriptor, IPPROTO_IP, IP_RECVTOS, &on, sizeof on);
+  ::setsockopt(descriptor, IPPROTO_IPV6, IPV6_RECVTCLASS, &on, sizeof on);
+  // The privileged call goes beyond the system's limit, the plain one up to it: either will do.
+  const int size = kReceiveBuffer;
+  if (::setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0) {
+    ::setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &size, sizeof size);
+  }
   return descriptor;
+}
+
+/// A socket of IPv6 speaks IPv4 as well, to addresses made for that.
+bool speaks_ipv6(const io::Endpoint& to) noexcept {
+  if (to.family() != AF_INET6) return false;
+  return !IN6_IS_ADDR_V4MAPPED(&reinterpret_cast<const sockaddr_in6*>(to.address())->sin6_addr);
 }
 
 }  // namespace
@@ -98,27 +114,18 @@ struct DatagramSocket::Batch {
 };
 
 DatagramSocket::DatagramSocket(int descriptor, std::size_t datagram_max)
-    : descriptor_{descriptor}, batch_{std::make_unique<Batch>(datagram_max)} {
-  const int on = 1;
-  ::setsockopt(descriptor_, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
-  // Each family has one of the two.
-  ::setsockopt(descriptor_, IPPROTO_IP, IP_RECVTOS, &on, sizeof on);
-  ::setsockopt(descriptor_, IPPROTO_IPV6, IPV6_RECVTCLASS, &on, sizeof on);
-  // The privileged call goes beyond the system's limit, the plain one up to it: either will do.
-  if (::setsockopt(
-          descriptor_, SOL_SOCKET, SO_RCVBUFFORCE, &kReceiveBuffer, sizeof kReceiveBuffer) != 0) {
-    ::setsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof kReceiveBuffer);
-  }
-}
+    : descriptor_{descriptor}, batch_{std::make_unique<Batch>(datagram_max)} {}
 
 DatagramSocket::DatagramSocket(DatagramSocket&& other) noexcept
     : descriptor_{std::exchange(other.descriptor_, -1)},
       batch_{std::move(other.batch_)},
+      peer_ipv6_{other.peer_ipv6_},
       errors_{other.errors_} {}
 
 DatagramSocket& DatagramSocket::operator=(DatagramSocket&& other) noexcept {
   std::swap(descriptor_, other.descriptor_);
   std::swap(batch_, other.batch_);
+  std::swap(peer_ipv6_, other.peer_ipv6_);
   std::swap(errors_, other.errors_);
   return *this;
 }
@@ -137,10 +144,21 @@ DatagramSocket DatagramSocket::bound(const io::Endpoint& local, std::size_t data
 
 DatagramSocket DatagramSocket::connected(const io::Endpoint& peer, std::size_t datagram_max) {
   DatagramSocket socket{open_socket(peer), datagram_max};
-  if (::connect(socket.descriptor_, peer.address(), peer.size()) != 0) {
+  socket.connect(peer);
+  return socket;
+}
+
+void DatagramSocket::reconnect(const io::Endpoint& peer) {
+  const int former = std::exchange(descriptor_, open_socket(peer));
+  ::close(former);
+  connect(peer);
+}
+
+void DatagramSocket::connect(const io::Endpoint& peer) {
+  if (::connect(descriptor_, peer.address(), peer.size()) != 0) {
     cannot("cannot forward to " + peer.to_string());
   }
-  return socket;
+  peer_ipv6_ = speaks_ipv6(peer);
 }
 
 io::Endpoint DatagramSocket::local() const {
@@ -184,6 +202,7 @@ std::size_t DatagramSocket::send(std::span<const OutgoingDatagram> datagrams,
                                  const io::Endpoint* to) noexcept {
   Batch& batch = *batch_;
   const std::size_t count = std::min(datagrams.size(), kDatagramBatch);
+  const bool ipv6 = to != nullptr ? speaks_ipv6(*to) : peer_ipv6_;
   for (std::size_t i = 0; i < count; ++i) {
     // The kernel only reads what is sent; its interface has no const.
     batch.out_parts[i] = {const_cast<std::byte*>(datagrams[i].bytes.data()),
@@ -197,8 +216,8 @@ std::size_t DatagramSocket::send(std::span<const OutgoingDatagram> datagrams,
     header.msg_control = batch.out_controls[i].data();
     header.msg_controllen = batch.out_controls[i].size();
     cmsghdr* part = CMSG_FIRSTHDR(&header);
-    part->cmsg_level = IPPROTO_IP;
-    part->cmsg_type = IP_TOS;
+    part->cmsg_level = ipv6 ? IPPROTO_IPV6 : IPPROTO_IP;
+    part->cmsg_type = ipv6 ? IPV6_TCLASS : IP_TOS;
     part->cmsg_len = CMSG_LEN(sizeof(int));
     const int tos = datagrams[i].tos;
     std::memcpy(CMSG_DATA(part), &tos, sizeof tos);

@@ -45,6 +45,10 @@ class DatagramSocket {
   static DatagramSocket connected(const io::Endpoint& peer,
                                   std::size_t datagram_max = link::kDatagramSizeMax);
 
+  /// From another port of this machine on, as far as the peer can see; errors are counted on.
+  /// @throws std::system_error.
+  void reconnect(const io::Endpoint& peer);
+
   DatagramSocket(DatagramSocket&& other) noexcept;
   DatagramSocket& operator=(DatagramSocket&& other) noexcept;
   ~DatagramSocket();
@@ -70,9 +74,11 @@ class DatagramSocket {
  private:
   struct Batch;
   DatagramSocket(int descriptor, std::size_t datagram_max);
+  void connect(const io::Endpoint& peer);
 
   int descriptor_;
   std::unique_ptr<Batch> batch_;
+  bool peer_ipv6_{};
   std::uint64_t errors_{};
 };
 

@@ -148,6 +148,10 @@ void check_together(WordReader& words, Impairment& impairment) {
   if (words.said("distribution") && !words.said("jitter")) {
     words.refuse(end, "a delay with a jitter for the distribution, as in 'delay 50ms 10ms'");
   }
+  const bool positive = delay.shape == DelayShape::Gamma || delay.shape == DelayShape::LogNormal;
+  if (positive && delay.jitter > Duration{} && delay.mean == Duration{}) {
+    words.refuse(end, "a delay above 0: a gamma or lognormal law of mean 0 has no spread");
+  }
   ReorderLaw& reorder = impairment.reorder;
   if (words.said("gap") && !words.said("reorder")) reorder.chance.share = 1;
   if (reorder.chance.share > 0 && reorder.gap == 0) reorder.gap = 1;

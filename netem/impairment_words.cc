@@ -8,13 +8,15 @@
 #include <cstdlib>
 #include <limits>
 
+#include "common/core/printable.h"
+
 namespace palp::netem {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r\n";
 
 std::string quoted(std::string_view text) {
-  return text.empty() ? std::string{"the end"} : "'" + std::string{text} + "'";
+  return text.empty() ? std::string{"the end"} : "'" + palp::printable(text) + "'";
 }
 
 std::string lower(std::string_view text) {

@@ -67,7 +67,10 @@ void KernelFates::change(const PreparedLaw& law) noexcept {
   loss_ = as_share(impairment.loss.share);
   corrupt_ = as_share(impairment.corrupt.share);
   reorder_ = as_share(impairment.reorder.chance.share);
-  duplicate_state_.rho = as_share(impairment.duplicate.correlation);
+  // tc sends the duplicates' correlation with the others', if there is one: never alone.
+  const bool sent = impairment.loss.correlation > 0 || impairment.corrupt.correlation > 0 ||
+                    impairment.reorder.chance.correlation > 0 || impairment.delay.correlation > 0;
+  duplicate_state_.rho = sent ? as_share(impairment.duplicate.correlation) : 0;
   loss_state_.rho = as_share(impairment.loss.correlation);
   corrupt_state_.rho = as_share(impairment.corrupt.correlation);
   reorder_state_.rho = as_share(impairment.reorder.chance.correlation);

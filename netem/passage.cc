@@ -252,8 +252,10 @@ void Passage::settle(TimePoint now) noexcept {
     }
     return;
   }
-  // Linux's timer rings after its time: whoever comes on the same instant still finds the other.
-  const TimePoint gone = impairment().mode == Mode::Netem61 ? now - Duration{1} : now;
+  // Linux's timer rings after its time: who comes on the same instant still finds the other. But
+  // each arrival is followed by a look, so the next one of that instant does not.
+  const bool looked = impairment().mode == Mode::Exact || now == last_arrival_;
+  const TimePoint gone = looked ? now : now - Duration{1};
   for (const Entry* first = first_on_way(); first != nullptr && first->release() <= gone;
        first = first_on_way()) {
     due_.push(take_first_on_way());

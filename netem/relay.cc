@@ -48,7 +48,6 @@ Relay::Relay(const RelayConfig& config)
     : client_side_{DatagramSocket::bound(config.listen, config.datagram_max)},
       server_side_{DatagramSocket::connected(config.forward, config.datagram_max)},
       forward_{config.forward},
-      datagram_max_{config.datagram_max},
       start_{monotonic_now()},
       up_{config.up, config.seed, Direction::Up, config.in_flight_max, start_, config.datagram_max},
       down_{config.down,
@@ -207,7 +206,7 @@ void Relay::rebind_if_asked() {
   const std::uint64_t asked = up_.passage().rebinds() + down_.passage().rebinds();
   if (asked == rebinds_) return;
   rebinds_ = asked;
-  server_side_ = DatagramSocket::connected(forward_, datagram_max_);
+  server_side_.reconnect(forward_);
 }
 
 /// Waits in the kernel until something arrives or shortly before the next release; then it looks

@@ -123,7 +123,6 @@ class Relay {
   DatagramSocket client_side_;
   DatagramSocket server_side_;
   io::Endpoint forward_;
-  std::size_t datagram_max_;
   TimePoint start_;
   Channel up_;
   Channel down_;

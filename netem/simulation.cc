@@ -105,13 +105,14 @@ SimulationResult sums(const SimulationConfig& config) {
   Occupancy occupancy{std::min(limit_of(law), most)};
   Account account{config.packets >= kManyPackets ? kEighth : 0, may_overtake(law)};
   Arrival arrival{.length = payload_of(config), .room = kCopiesMax};
-  const Duration tie{law.mode == Mode::Netem61 ? 1 : 0};
+  const Duration tie{law.mode == Mode::Netem61 ? 1 : 0};  // see Passage::settle()
   fates.with_fates([&](auto& judge) {
     send_all(
         config,
         [&](TimePoint at) {
+          const TimePoint gone = at == arrival.at ? at : at - tie;
           arrival.at = at;
-          if (crowded) arrival.room = occupancy.room(at - tie, kCopiesMax);
+          if (crowded) arrival.room = occupancy.room(gone, kCopiesMax);
           const auto copies = judge.next(arrival);
           const CopyFate& original = copies.front();
           account.add(original.verdict,

@@ -29,6 +29,7 @@ class SlotGrid {
     packets_max_ = slot.packets > 0 ? slot.packets : kEndless;
     bytes_max_ = slot.bytes > 0 ? slot.bytes : kEndless;
     ahead_end_ = number_;
+    mean_step_ = std::max(nearest(least_ + width_ / 2), Duration{1});
   }
   [[nodiscard]] bool on() const noexcept { return on_; }
 
@@ -38,6 +39,7 @@ class SlotGrid {
     const auto full = [&] {
       return counts_ && (packets_ >= packets_max_ || (bytes_ > 0 && bytes_ + length > bytes_max_));
     };
+    if (release - at_ > kGapMax * mean_step_) skip(release);
     for (int walked = 0; at_ < release || full(); ++walked) {
       step(walked < kStepsPerGapMax ? at_ : std::max(at_, release));
     }
@@ -50,8 +52,17 @@ class SlotGrid {
 
  private:
   static constexpr auto kEndless = std::numeric_limits<std::uint64_t>::max();
-  /// Slots that are walked through one by one in a gap; then the grid is entered afresh.
-  static constexpr int kStepsPerGapMax = 256;
+  /// A gap of so many slots is not walked through: most of it is passed in whole mean steps, so
+  /// that an even grid stays itself and an uneven one is met at any place, as after a walk.
+  static constexpr std::int64_t kGapMax = 256;
+  static constexpr std::int64_t kWalked = 64;
+  static constexpr int kStepsPerGapMax = 2 * kGapMax;  ///< then the grid is entered afresh
+
+  void skip(TimePoint release) noexcept {
+    at_ += ((release - at_) / mean_step_ - kWalked) * mean_step_;
+    packets_ = 0;
+    bytes_ = 0;
+  }
 
   void step(TimePoint from) noexcept {
     if (number_ == ahead_end_) look_ahead();
@@ -76,6 +87,7 @@ class SlotGrid {
   bool counts_{};   ///< a slot has not room for all
   double least_{};  ///< [ns], from one slot to the next
   double width_{};  ///< [ns], from the least to the most of it
+  Duration mean_step_{1};
   std::uint64_t packets_max_{};
   std::uint64_t bytes_max_{};  ///< [bytes]
   std::uint64_t number_{};     ///< of the next step

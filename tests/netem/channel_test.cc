@@ -151,6 +151,18 @@ TEST(ChannelTest, LimitCountsWhatWasCollectedBeforeTheClockOfArrivalsGotThere) {
   EXPECT_EQ(channel.counters().over_limit, 1U);
 }
 
+TEST(ChannelTest, InKernelModeWhatIsDueAtOnceTakesNoPlaceFromTheNextOfThatInstant) {
+  // Linux looks at its queue after each arrival, so what waits for nothing is gone by the next.
+  Channel channel{*parse_impairment("mode netem-6.1 limit 9"), 1, Direction::Up, 999};
+  for (std::uint64_t i = 0; i < 500; ++i) channel.push(numbered(i), at_ms(0));
+  EXPECT_EQ(channel.counters().over_limit, 0U);
+  // What is delayed by no more than the time that passed is still there for the first of an
+  // instant, as the timer rings after it, and for nobody else.
+  Channel delayed{*parse_impairment("mode netem-6.1 delay 1ms limit 1"), 1, Direction::Up, 999};
+  for (int i = 0; i < 3; ++i) delayed.push(numbered(0), at_ms(i));
+  EXPECT_EQ(delayed.counters().over_limit, 1U);
+}
+
 TEST(ChannelTest, WhatIsDueTogetherLeavesAsItCame) {
   // The floor makes half of the delays equal.
   Channel channel{

@@ -13,6 +13,7 @@
 namespace palp::netem {
 namespace {
 
+using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
 TEST(ExactFatesTest, SwapsLetAFewOvertakeAsManyAsAsked) {
@@ -92,6 +93,29 @@ TEST(ExactFatesTest, SlotsReleaseOnTheirGridWithinTheirBudget) {
       EXPECT_GE(at - last, milliseconds{4});
     }
     last = at;
+  }
+}
+
+TEST(ExactFatesTest, AnEvenGridStaysItselfOverAGapOfAnyLength) {
+  for (const Duration period : {microseconds{255'300}, microseconds{5'100'700}}) {
+    for (const Fate& fate : fates_of(impaired("slot 1ms"), 200, period)) {
+      EXPECT_EQ(fate.copies[0].release.time_since_epoch() % milliseconds{1}, Duration{});
+    }
+  }
+}
+
+TEST(ExactFatesTest, ASlotOfAnUnevenGridIsAsNearAfterALongGapAsAfterAShortOne) {
+  const auto wait = [](Duration period) {
+    const auto fates = fates_of(impaired("slot 1ms 3ms"), 20'000, period);
+    Duration sum{};
+    for (std::size_t i = 0; i < fates.size(); ++i) {
+      sum += fates[i].copies[0].release - TimePoint{period * static_cast<std::int64_t>(i)};
+    }
+    return seconds(sum) / 20'000;
+  };
+  // E[step^2] / (2 E[step]) of steps even between 1 and 3 ms is 1.083 ms; its spread 0.71.
+  for (const Duration period : {microseconds{100'300}, microseconds{3'000'300}}) {
+    EXPECT_NEAR(wait(period), 1.083e-3, 4 * 0.71e-3 / std::sqrt(20'000));
   }
 }
 

@@ -144,6 +144,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"delay 1000000.1s", 7, "'1000000.1s'", "to 1000000s"},
         Refusal{"delay nanms", 7, "'nanms'", "s, ms, us"},
         Refusal{"delay 5ms 1ms distribution no-such", 28, "'no-such'", "uniform, normal"},
+        Refusal{"delay 0ms 5ms distribution gamma", 33, "the end", "above 0"},
         Refusal{"delay 5ms distribution normal", 30, "the end", "jitter"},
         Refusal{"delay 5ms correlation-time 1ms", 11, "'correlation-time'", "jitter"},
         Refusal{"delay 5ms 1ms 25% correlation-time 1ms", 19, "'correlation-time'", "one corr"},

@@ -151,6 +151,25 @@ TEST_F(RelayTest, StopsWhenItsDescriptorBecomesReadable) {
   ::close(ends[1]);
 }
 
+TEST_F(RelayTest, ServiceClassesCrossOnBothFamilies) {
+  for (const char* any : {"127.0.0.1:0", "[::1]:0"}) {
+    const io::Endpoint local = *io::resolve_endpoint(any);
+    DatagramSocket server = DatagramSocket::bound(local);
+    Relay relay{{.listen = local, .forward = server.local(), .in_flight_max = 16}};
+    DatagramSocket client = DatagramSocket::connected(relay.listening_on());
+    const auto datagram = saying(1);
+    const OutgoingDatagram marked{.bytes = datagram, .tos = 0xba};
+    ASSERT_EQ(client.send({&marked, 1}, nullptr), 1U) << any;
+    std::optional<std::uint8_t> tos;
+    for (const TimePoint until = monotonic_now() + kDeadline; !tos && monotonic_now() < until;) {
+      relay.serve(milliseconds{1});
+      const auto heard = server.receive();
+      if (!heard.empty()) tos = heard.front().tos;
+    }
+    EXPECT_EQ(tos, std::optional<std::uint8_t>{0xba}) << any;
+  }
+}
+
 TEST_F(RelayTest, AnAddressInUseIsAnException) {
   EXPECT_THROW(DatagramSocket::bound(server_.local()), std::system_error);
 }
@@ -166,6 +185,22 @@ TEST(DatagramSocketTest, AnEarlierRefusalDoesNotCostTheDatagramAtHand) {
   // On loopback the refusal is there before the call returns; the next call hears of it.
   EXPECT_TRUE(socket.send(saying(2), std::nullopt));
   EXPECT_EQ(socket.errors(), 1U);
+}
+
+TEST(DatagramSocketTest, AnotherPortDoesNotForgetTheErrors) {
+  DatagramSocket peer = DatagramSocket::bound(kAnyPort);
+  const io::Endpoint gone = DatagramSocket::bound(kAnyPort).local();
+  DatagramSocket socket = DatagramSocket::connected(gone);
+  socket.send(saying(1), std::nullopt);
+  socket.send(saying(2), std::nullopt);
+  const std::uint64_t errors = socket.errors();
+  ASSERT_GT(errors, 0U);
+  const io::Endpoint before = socket.local();
+  socket.reconnect(peer.local());
+  EXPECT_FALSE(socket.local() == before);
+  EXPECT_EQ(socket.errors(), errors);
+  EXPECT_TRUE(socket.send(saying(3), std::nullopt));
+  EXPECT_FALSE(peer.receive().empty());
 }
 
 }  // namespace

@@ -48,5 +48,22 @@ TEST(OccupancyTest, CountsThoseWhoOvertake) {
   EXPECT_EQ(occupancy.room(at(50), 3), 3U);
 }
 
+RC_GTEST_PROP(OccupancyTest, CountsAsIfEachWereLookedAt, ()) {
+  const auto most = *rc::gen::inRange<std::size_t>(1, 40);
+  Occupancy occupancy{most};
+  std::vector<TimePoint> inside;
+  TimePoint now{};
+  const auto span = *rc::gen::inRange(1, 200);
+  for (const int ahead : *rc::gen::container<std::vector<int>>(300, rc::gen::inRange(0, span))) {
+    now += milliseconds{ahead % 7};
+    std::erase_if(inside, [now](TimePoint release) { return release <= now; });
+    const std::size_t room = most - inside.size();
+    RC_ASSERT(occupancy.room(now, 2) == std::min<std::size_t>(room, 2));
+    if (room == 0) continue;
+    inside.push_back(now + milliseconds{ahead});
+    occupancy.enter(now + milliseconds{ahead});
+  }
+}
+
 }  // namespace
 }  // namespace palp::netem
