@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "lab/adversary.h"
 
 namespace palp::lab {
@@ -10,7 +10,7 @@ namespace {
 
 std::unique_ptr<link::Codec> make_codec(const Scenario& scenario) {
   if (scenario.bare) return std::make_unique<link::RawCodec>();
-  return std::make_unique<link::ProtobufCodec>();
+  return std::make_unique<link::WireCodec>();
 }
 
 std::unique_ptr<link::Codec> patient_codec(const Scenario& scenario) {

@@ -13,7 +13,7 @@
 #include "common/io/diagnostics.h"
 #include "common/io/steady_clock.h"
 #include "common/io/terminal.h"
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "common/site_program/build_info.h"
 #include "common/site_program/check_command.h"
 #include "common/site_program/ending.h"
@@ -113,7 +113,7 @@ class Program {
         phantom_{std::move(plan.phantom)},
         device_{phantom_, settings_.simulation},
         law_{std::move(plan.law)},
-        link_{settings_.link, std::make_unique<link::ProtobufCodec>()},
+        link_{settings_.link, std::make_unique<link::WireCodec>()},
         runner_{plan.runner},
         recording_{settings_.record, std::move(plan.info), 2},
         worker_{settings_.estimator, {contact_, depth_, recording_.recorder(1)}},

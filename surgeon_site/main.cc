@@ -12,7 +12,7 @@
 #include "common/io/diagnostics.h"
 #include "common/io/steady_clock.h"
 #include "common/io/terminal.h"
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "common/site_program/build_info.h"
 #include "common/site_program/certificates_command.h"
 #include "common/site_program/check_command.h"
@@ -126,7 +126,7 @@ class Program {
       : settings_{std::move(plan.settings)},
         device_{settings_.hand, std::move(plan.script)},
         law_{std::move(plan.law)},
-        link_{settings_.link, std::make_unique<link::ProtobufCodec>()},
+        link_{settings_.link, std::make_unique<link::WireCodec>()},
         runner_{plan.runner},
         recording_{settings_.record, std::move(plan.info), 1},
         node_{settings_.node, {device_, law_, link_, recording_.recorder(0)}},

@@ -74,10 +74,11 @@ bool well_formed(const WireTelegram& telegram) noexcept {
          well_formed(site.depth) && well_formed(telegram.telegram.port);
 }
 
-std::size_t RawCodec::encode(const WireTelegram& telegram, std::span<std::byte> out) noexcept {
+std::size_t RawCodec::encode(const WireTelegram& telegram,
+                             std::span<std::byte, kTelegramSizeMax> out) noexcept {
   static_assert(std::is_trivially_copyable_v<WireTelegram>);
   static_assert(sizeof(WireTelegram) <= kTelegramSizeMax);
-  if (out.size() < sizeof telegram || !well_formed(telegram)) return 0;
+  if (!well_formed(telegram)) return 0;
   std::memcpy(out.data(), &telegram, sizeof telegram);
   return sizeof telegram;
 }

@@ -46,9 +46,9 @@ struct WireTelegram {
 class Codec {
  public:
   virtual ~Codec() = default;
-  /// @returns bytes written, 0 where the telegram is not well formed or `out` is too small.
+  /// @returns bytes written, 0 where the telegram is not well formed.
   [[nodiscard]] virtual std::size_t encode(const WireTelegram& telegram,
-                                           std::span<std::byte> out) noexcept = 0;
+                                           std::span<std::byte, kTelegramSizeMax> out) noexcept = 0;
   /// Any bytes may be given. What comes out is well formed.
   [[nodiscard]] virtual std::optional<WireTelegram> decode(
       std::span<const std::byte> bytes) noexcept = 0;
@@ -58,7 +58,7 @@ class Codec {
 class RawCodec final : public Codec {
  public:
   [[nodiscard]] std::size_t encode(const WireTelegram& telegram,
-                                   std::span<std::byte> out) noexcept override;
+                                   std::span<std::byte, kTelegramSizeMax> out) noexcept override;
   [[nodiscard]] std::optional<WireTelegram> decode(
       std::span<const std::byte> bytes) noexcept override;
 };

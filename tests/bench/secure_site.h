@@ -8,7 +8,7 @@
 #include "common/io/handover_desk.h"
 #include "common/io/periodic_thread.h"
 #include "common/io/session_server.h"
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "common/link/link.h"
 
 namespace palp::bench {
@@ -42,7 +42,7 @@ struct SecureSite {
   }
 
   io::HandoverDesk desk;
-  link::Link link{{}, std::make_unique<link::ProtobufCodec>()};
+  link::Link link{{}, std::make_unique<link::WireCodec>()};
   io::SessionServer server;
   Mailbox<link::LinkHealth> health;  ///< writer: rt, reader: main
   std::unique_ptr<io::PeriodicThread> rt;

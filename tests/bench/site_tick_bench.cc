@@ -14,7 +14,7 @@
 #include "common/core/denormals.h"
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "common/record/queue_recorder.h"
 #include "lab/meeting.h"
 #include "lab/scenario_file.h"
@@ -50,8 +50,8 @@ Costs measure(const std::string& coupling, Duration span) {
 
   TimePoint now{std::chrono::seconds{1}};
   netem::Pipe pipe{scenario.up, scenario.down, 1, kQueue, now};
-  link::Link surgeon_link{scenario.link, std::make_unique<link::ProtobufCodec>()};
-  link::Link patient_link{scenario.link, std::make_unique<link::ProtobufCodec>()};
+  link::Link surgeon_link{scenario.link, std::make_unique<link::WireCodec>()};
+  link::Link patient_link{scenario.link, std::make_unique<link::WireCodec>()};
   lab::Meeting surgeon_meeting{scenario, link::Role::Surgeon, pipe.surgeon_end()};
   lab::Meeting patient_meeting{scenario, link::Role::Patient, pipe.patient_end()};
   surgeon_meeting.start(surgeon_link, now);

@@ -6,10 +6,11 @@
 
 #include "common/core/check.h"
 #include "common/link/codec_control.h"
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "common/link/packet_protection.h"
 #include "common/link/transport.h"
 #include "tests/common/link/bytes_equal.h"
+#include "tests/common/link/protobuf_codec.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace palp::link {
@@ -59,13 +60,21 @@ void limit_laws(const WireTelegram& telegram) {
 }
 
 void telegram_laws(std::span<const std::byte> bytes) {
-  ProtobufCodec codec;
+  WireCodec codec;
+  static ProtobufCodec reference;
   const auto telegram = codec.decode(bytes);
+  const auto expected = reference.decode(bytes);
+  PALP_CHECK(telegram.has_value() == expected.has_value(), "what protobuf reads is read");
   if (!telegram) return;
+  PALP_CHECK(same(*telegram, *expected), "as protobuf reads it");
   limit_laws(*telegram);
   std::array<std::byte, kTelegramSizeMax> first{};
   const std::size_t first_size = codec.encode(*telegram, first);
   PALP_CHECK(first_size > 0, "what is well formed encodes");
+  std::array<std::byte, kTelegramSizeMax> by_protobuf{};
+  PALP_CHECK(equal(std::span{by_protobuf}.first(reference.encode(*telegram, by_protobuf)),
+                   std::span{first}.first(first_size)),
+             "as protobuf writes it");
   const auto again = codec.decode(std::span{first}.first(first_size));
   PALP_CHECK(again && same(*telegram, *again), "what was decoded survives the wire exactly");
   std::array<std::byte, kTelegramSizeMax> second{};

@@ -225,7 +225,7 @@ class Play {
     telegram.telegram.site.state = static_cast<SiteState>(input_.below(kSiteStateCount));
     telegram.older_count = static_cast<std::uint8_t>(input_.below(3));
     Bytes plain(kTelegramSizeMax);
-    plain.resize(ProtobufCodec{}.encode(telegram, plain));
+    plain.resize(WireCodec{}.encode(telegram, std::span<std::byte, kTelegramSizeMax>{plain}));
     const auto id = static_cast<std::uint32_t>(2 * session_id_);
     const Header header{.type = PacketType::Data,
                         .key = 0,

@@ -1,4 +1,5 @@
 // Writes the first inputs of the targets datagram, link_script and session: fuzz_wire_seeds CORPUS.
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -7,7 +8,7 @@
 #include <vector>
 
 #include "common/link/codec_control.h"
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "common/link/packet_protection.h"
 #include "tests/common/link/some_telegram.h"
 
@@ -36,8 +37,8 @@ void write_datagram(const fs::path& path, PacketType type, std::span<const std::
 }
 
 void datagrams(const fs::path& corpus) {
-  ProtobufCodec codec;
-  std::vector<std::byte> content(kTelegramSizeMax);
+  WireCodec codec;
+  std::array<std::byte, kTelegramSizeMax> content{};
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const std::size_t size = codec.encode(some_telegram(seed), content);
     write_datagram(corpus / "datagram" / ("telegram-" + std::to_string(seed)),

@@ -19,7 +19,7 @@
 
 #include "common/core/denormals.h"
 #include "common/io/handover_desk.h"
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "common/record/queue_recorder.h"
 #include "common/record/session_writer.h"
 #include "lab/scenario_file.h"
@@ -228,13 +228,13 @@ class Rehearsal {
   Desk surgeon_desk_;
   Desk patient_desk_;
 
-  link::Link surgeon_link_{scenario_.link, std::make_unique<link::ProtobufCodec>()};
+  link::Link surgeon_link_{scenario_.link, std::make_unique<link::WireCodec>()};
   surgeon::SimulatedHand hand_{scenario_.hand, scenario_.script};
   coupling::SurgeonCoupling surgeon_law_{*coupling::make_surgeon_coupling(scenario_.coupling)};
   surgeon::SurgeonNode surgeon_{scenario_.surgeon,
                                 {hand_, surgeon_law_, surgeon_link_, surgeon_desk_.recorder()}};
 
-  link::Link patient_link_{scenario_.link, std::make_unique<link::ProtobufCodec>()};
+  link::Link patient_link_{scenario_.link, std::make_unique<link::WireCodec>()};
   patient::SimulatedPhantom tissue_{scenario_.phantom, scenario_.tissue};
   coupling::PatientCoupling patient_law_{*coupling::make_patient_coupling(scenario_.coupling)};
   SpscQueue<ContactSample> contact_{kContactQueue};

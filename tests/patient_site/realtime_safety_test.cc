@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "patient_site/patient_node.h"
 #include "patient_site/simulated_phantom.h"
 #include "tests/support/realtime_guard.h"
@@ -74,8 +74,8 @@ TEST(PatientRealtimeTest, ATickNeitherAllocatesNorWaits) {
   coupling::PatientCoupling law{*coupling::make_patient_coupling({})};
   Lane up;
   Lane down;
-  link::Link surgeon{{}, std::make_unique<link::ProtobufCodec>()};
-  link::Link patient{{}, std::make_unique<link::ProtobufCodec>()};
+  link::Link surgeon{{}, std::make_unique<link::WireCodec>()};
+  link::Link patient{{}, std::make_unique<link::WireCodec>()};
   CountingRecorder recorder;
   SpscQueue<ContactSample> contact{64};
   Mailbox<DepthEstimate> depth;

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 
 namespace palp::io {
 namespace {
@@ -50,7 +50,7 @@ class HandoverDeskTest : public testing::Test {
   std::vector<std::thread::id> freed_on_;
   TimePoint now_{milliseconds{1000}};
   HandoverDesk desk_;
-  link::Link link_{{}, std::make_unique<link::ProtobufCodec>()};
+  link::Link link_{{}, std::make_unique<link::WireCodec>()};
 };
 
 TEST_F(HandoverDeskTest, WhatWasReplacedIsFreedByIoOnly) {

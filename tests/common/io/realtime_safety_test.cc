@@ -5,7 +5,7 @@
 #include "common/io/handover_desk.h"
 #include "common/io/udp_socket.h"
 #include "common/link/aead_protection.h"
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "tests/common/io/loopback.h"
 #include "tests/common/link/some_keys.h"
 #include "tests/support/realtime_guard.h"
@@ -53,7 +53,7 @@ TEST(RealtimeSafetyTest, DeskIsCleanWhileSessionsComeAndGo) {
   const SteadyClock clock;
   test::PlainSocket peer;
   HandoverDesk desk;
-  link::Link link{{}, std::make_unique<link::ProtobufCodec>()};
+  link::Link link{{}, std::make_unique<link::WireCodec>()};
   const auto offer = [&](std::uint64_t id) {
     const RealtimeGuard::Pause pause;
     desk.destroy_retired();

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "common/core/random.h"
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "common/link/link.h"
 #include "tests/common/io/keys_folder.h"
 #include "tests/common/io/loopback.h"

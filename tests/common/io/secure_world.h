@@ -11,7 +11,7 @@
 
 #include "common/io/detour.h"
 #include "common/io/secure_conversation.h"
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "common/link/link.h"
 #include "tests/common/io/keys_folder.h"
 
@@ -120,7 +120,7 @@ struct Site {
   Endpoint hears;  ///< whom the data socket is connected to
   Detour detour;   ///< of that socket
   SecureConversation conversation;
-  link::Link link{{}, std::make_unique<link::ProtobufCodec>()};
+  link::Link link{{}, std::make_unique<link::WireCodec>()};
   Wire wire;
   std::deque<Letter> letters;
   std::vector<link::Established> established;

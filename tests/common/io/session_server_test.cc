@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "tests/common/io/keys_folder.h"
 #include "tests/common/io/loopback.h"
 
@@ -52,7 +52,7 @@ class Site {
   }
   [[nodiscard]] bool live() const { return state == LinkState::Live; }
 
-  link::Link link{{}, std::make_unique<link::ProtobufCodec>()};
+  link::Link link{{}, std::make_unique<link::WireCodec>()};
   HandoverDesk desk;
   SessionServer server;
   std::vector<SessionNews> news;

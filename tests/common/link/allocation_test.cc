@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "common/link/aead_protection.h"
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "common/link/link.h"
 #include "proto/link.pb.h"
 #include "tests/common/link/some_keys.h"
@@ -57,7 +57,7 @@ void exercise(Codec& codec) {
 
 TEST(AllocationTest, TheCounterSeesTheParserAllocate) {
   std::array<std::byte, kTelegramSizeMax> bytes{};
-  ProtobufCodec codec;
+  WireCodec codec;
   const std::size_t size = codec.encode(some_telegram(1), bytes);
   EXPECT_GT(allocations_of([&] {
               wire::Telegram message;
@@ -67,21 +67,21 @@ TEST(AllocationTest, TheCounterSeesTheParserAllocate) {
 }
 
 TEST(AllocationTest, CodecsAllocateNothing) {
-  ProtobufCodec protobuf;
+  WireCodec wire_codec;
   RawCodec raw;
-  EXPECT_EQ(allocations_of([&] { exercise(protobuf); }), 0U);
+  EXPECT_EQ(allocations_of([&] { exercise(wire_codec); }), 0U);
   EXPECT_EQ(allocations_of([&] { exercise(raw); }), 0U);
 }
 
 TEST(AllocationTest, CodecsAllocateNothingInAnotherThread) {
-  ProtobufCodec protobuf;
+  WireCodec wire_codec;
   std::uint64_t there = 1;
-  std::thread{[&] { there = allocations_of([&] { exercise(protobuf); }); }}.join();
+  std::thread{[&] { there = allocations_of([&] { exercise(wire_codec); }); }}.join();
   EXPECT_EQ(there, 0U);
 }
 
 TEST(AllocationTest, HostileBytesMakeNobodyAllocate) {
-  ProtobufCodec codec;
+  WireCodec codec;
   // sample { wave {} tdpa {} wave {} tdpa {} ... }, and unknown fields all over.
   std::string switching{"\x32\x00\x3A\xFC\x07", 5};
   while (switching.size() < 1024) switching += std::string{"\x22\x00\x2A\x00", 4};
@@ -124,7 +124,7 @@ class EchoingTransport final : public Transport {
 };
 
 TEST(AllocationTest, LinkAllocatesNothingUnderGoodAndBadTraffic) {
-  Link link{LinkConfig{}, std::make_unique<ProtobufCodec>()};
+  Link link{LinkConfig{}, std::make_unique<WireCodec>()};
   Handover handover{.transport = std::make_unique<EchoingTransport>(),
                     .protection = std::make_unique<PlainProtection>(),
                     .send_connection = 5,

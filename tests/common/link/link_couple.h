@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "common/link/link.h"
 #include "tests/common/link/test_pipe.h"
 
@@ -37,7 +37,7 @@ class Couple {
 
   static std::unique_ptr<Codec> make_codec(bool raw) {
     if (raw) return std::make_unique<RawCodec>();
-    return std::make_unique<ProtobufCodec>();
+    return std::make_unique<WireCodec>();
   }
 
   /// As two Sessions would: ids of the surgeon are even.

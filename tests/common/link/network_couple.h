@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/link/aead_protection.h"
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 #include "common/link/link.h"
 #include "netem/pipe.h"
 #include "tests/common/link/some_keys.h"
@@ -48,7 +48,7 @@ class ClockedTransport final : public Transport {
 class NetworkCouple {
  public:
   struct Side {
-    Link link{{}, std::make_unique<ProtobufCodec>()};
+    Link link{{}, std::make_unique<WireCodec>()};
     SiteClock clock;
     Telegram telegram;
     LinkHealth health;  ///< of the last tick

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "common/io/steady_clock.h"
-#include "common/link/codec_protobuf.h"
+#include "common/link/codec_wire.h"
 
 namespace palp::site_program {
 namespace {
@@ -35,7 +35,7 @@ struct Site {
   Site(const Site&) = delete;
   Site& operator=(const Site&) = delete;
 
-  link::Link link{{}, std::make_unique<link::ProtobufCodec>()};
+  link::Link link{{}, std::make_unique<link::WireCodec>()};
   std::atomic<bool> live{};
   Runner runner;
 };

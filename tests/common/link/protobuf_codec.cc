@@ -1,6 +1,5 @@
-#include "common/link/codec_protobuf.h"
+#include "tests/common/link/protobuf_codec.h"
 
-#include <google/protobuf/arena.h>
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/wire_format_lite.h>
 
@@ -10,18 +9,9 @@
 namespace palp::link {
 namespace {
 
-using google::protobuf::Arena;
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::internal::WireFormatLite;
-
-/// On a fixed block: made for one telegram and gone with it, so it belongs to the calling thread.
-google::protobuf::ArenaOptions on_block(std::span<char> block) {
-  google::protobuf::ArenaOptions options;
-  options.initial_block = block.data();
-  options.initial_block_size = block.size();
-  return options;
-}
 
 void write(const CouplingPayload& payload, wire::Sample& out) {
   if (const auto* wave = std::get_if<WavePayload>(&payload)) {
@@ -222,10 +212,10 @@ bool ProtobufCodec::fits(std::size_t shape,
   return true;
 }
 
-std::size_t ProtobufCodec::encode(const WireTelegram& telegram, std::span<std::byte> out) noexcept {
+std::size_t ProtobufCodec::encode(const WireTelegram& telegram,
+                                  std::span<std::byte, kTelegramSizeMax> out) noexcept {
   if (!well_formed(telegram)) return 0;
-  Arena arena{on_block(block_)};
-  auto& message = *Arena::CreateMessage<wire::Telegram>(&arena);
+  wire::Telegram message;
   message.set_sent_at_ns(telegram.sent_at_ns);
   if (telegram.echo_ns != kNothingHeard) {
     message.set_echo_ns(telegram.echo_ns);
@@ -239,15 +229,13 @@ std::size_t ProtobufCodec::encode(const WireTelegram& telegram, std::span<std::b
   if (telegram.older_count > 1) write(telegram.older[1], *message.mutable_sample_second_earlier());
 
   const std::size_t size = message.ByteSizeLong();
-  if (size > out.size()) return 0;
   message.SerializeWithCachedSizesToArray(reinterpret_cast<std::uint8_t*>(out.data()));
   return size;
 }
 
 std::optional<WireTelegram> ProtobufCodec::decode(std::span<const std::byte> bytes) noexcept {
   if (bytes.size() > kTelegramSizeMax || !fits(0, bytes, 0)) return std::nullopt;
-  Arena arena{on_block(block_)};
-  auto& message = *Arena::CreateMessage<wire::Telegram>(&arena);
+  wire::Telegram message;
   if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return std::nullopt;
   if (message.has_sample_second_earlier() && !message.has_sample_first_earlier()) {
     return std::nullopt;

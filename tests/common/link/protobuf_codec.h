@@ -9,18 +9,17 @@
 
 namespace palp::link {
 
-/// The wire of the product: message Telegram of proto/link.proto. Numbers that are `float` there
-/// are rounded once, when encoded; what was encoded is decoded exactly.
+/// What WireCodec is held against: message Telegram of proto/link.proto by protobuf's own code and
+/// the schema's own description, which know nothing of how the product writes and reads it.
 class ProtobufCodec final : public Codec {
  public:
   ProtobufCodec();
   [[nodiscard]] std::size_t encode(const WireTelegram& telegram,
-                                   std::span<std::byte> out) noexcept override;
+                                   std::span<std::byte, kTelegramSizeMax> out) noexcept override;
   [[nodiscard]] std::optional<WireTelegram> decode(
       std::span<const std::byte> bytes) noexcept override;
 
  private:
-  static constexpr std::size_t kBlockSize = 8192;  ///< [bytes]; a telegram with all takes < 1,500
   static constexpr std::size_t kFieldNumbers = 16;
   static constexpr std::size_t kDepthMax = 4;  ///< nested messages; the schema has 3
 
@@ -34,13 +33,12 @@ class ProtobufCodec final : public Codec {
   using Shape = std::array<Field, kFieldNumbers>;
   struct ShapeBuilder;
 
-  /// Refuses unknown and repeated fields before the parser, which would allocate for them.
+  /// Refuses unknown and repeated fields, which the parser would take.
   [[nodiscard]] bool fits(std::size_t shape,
                           std::span<const std::byte> bytes,
                           std::size_t depth) const noexcept;
 
   std::vector<Shape> shapes_;  ///< one per message, from the schema itself; [0]: Telegram
-  alignas(std::max_align_t) std::array<char, kBlockSize> block_{};
 };
 
 }  // namespace palp::link
