@@ -71,6 +71,7 @@ struct AeadProtection::Generation {
             std::span<const std::byte> header,
             std::span<const std::byte> sealed,
             std::span<std::byte> plain) noexcept;
+  void touch() noexcept;
 
   std::uint8_t id;
   Secret<AeadKey::kSaltSize> send_salt;
@@ -122,6 +123,22 @@ bool AeadProtection::Generation::open(std::uint64_t number,
              context, octets(plain), &done, octets(content), static_cast<int>(content.size())) ==
              1 &&
          EVP_DecryptFinal_ex(context, octets(plain) + done, &rest) == 1;
+}
+
+/// Walks over key schedules and tables, so that they are in the caches. Nothing is encrypted and no
+/// tag is made: no nonce is used, and that of this number never can be.
+void AeadProtection::Generation::touch() noexcept {
+  constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+  static_assert(kNever > kNumberMax);
+  constexpr int kAsItWas = -1;
+  constexpr std::array<std::uint8_t, kHeaderSize> kNothing{};
+  int done = 0;
+  for (const auto& [context, salt] :
+       {std::pair{sealing.get(), &send_salt}, {opening.get(), &receive_salt}}) {
+    const Nonce any = nonce(*salt, kNever);
+    (void)EVP_CipherInit_ex2(context, nullptr, nullptr, any.data(), kAsItWas, nullptr);
+    (void)EVP_CipherUpdate(context, nullptr, &done, kNothing.data(), kHeaderSize);
+  }
 }
 
 AeadProtection::AeadProtection(const TrafficKeys& keys)
@@ -179,6 +196,8 @@ tl::expected<std::size_t, Rejection> AeadProtection::open(std::span<const std::b
 
 void AeadProtection::rehearse(std::span<const std::byte> plain,
                               std::span<std::byte> room) noexcept {
+  present_->touch();
+  if (next_ != nullptr) next_->touch();
   const std::size_t size = plain.size() + kTagSize;
   if (room.size() < kHeaderSize + size + plain.size()) return;
   const std::uint64_t number = rehearsal_->sealed++;

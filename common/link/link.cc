@@ -110,9 +110,8 @@ void Link::attach_older(WireTelegram& wire, TimePoint now) const noexcept {
   }
 }
 
-void Link::send(const Telegram& telegram, TimePoint now) noexcept {
-  if (session_id_ == 0) return;
-  Conversation& conversation = conversation_;
+WireTelegram Link::compose(const Telegram& telegram, TimePoint now) const noexcept {
+  const Conversation& conversation = conversation_;
   WireTelegram wire;
   wire.sent_at_ns = nanoseconds_since(conversation.began_at, now);
   if (conversation.heard) {
@@ -123,7 +122,13 @@ void Link::send(const Telegram& telegram, TimePoint now) noexcept {
   }
   wire.telegram = telegram;
   attach_older(wire, now);
+  return wire;
+}
 
+void Link::send(const Telegram& telegram, TimePoint now) noexcept {
+  if (session_id_ == 0) return;
+  Conversation& conversation = conversation_;
+  const WireTelegram wire = compose(telegram, now);
   const std::size_t size = codec_->encode(wire, std::span{plain_}.first<kTelegramSizeMax>());
   if (size == 0) {  // a node that says what no peer would take
     ++counters_.unsent;
@@ -139,20 +144,22 @@ void Link::send(const Telegram& telegram, TimePoint now) noexcept {
     ++counters_.unsent;
     return;
   }
+  if (!transport_->send(std::span{datagram_}.first(sealed), now)) ++counters_.unsent;
+  // What follows may take its time: the telegram is on its way.
   const std::uint32_t epoch = telegram.site.epoch;
   conversation.history[header.number % kHistory] = {
       true, header.number, epoch, now, for_repetition(telegram.port)};
   conversation.epoch_sent = std::max(conversation.epoch_sent, epoch);
   ++conversation.next_number;
   ++counters_.sent;
-  if (!transport_->send(std::span{datagram_}.first(sealed), now)) ++counters_.unsent;
+  note_exchange();
 }
 
 Arrivals Link::receive(TimePoint now) noexcept {
+  note_exchange();  // of the last tick, if nothing was sent in it
   samples_.clear();
   accepted_now_ = 0;
   if (transport_) drain(now);
-  note_exchange();
   if (session_id_ != 0) {
     if (gap(now) > config_.closed_after) {
       end_session();
@@ -353,7 +360,12 @@ Duration Link::gap(TimePoint now) const noexcept {
 void Link::rehearse() noexcept {
   if (session_id_ == 0) return;
   transport_->rehearse();
-  const std::size_t size = codec_->encode(kRehearsed, std::span{plain_}.first<kTelegramSizeMax>());
+  // What the next one repeats and acknowledges has to come into the caches as well.
+  const Sent& last = conversation_.history[(conversation_.next_number + kHistory - 1) % kHistory];
+  Telegram telegram = kRehearsed;
+  telegram.site.epoch = last.epoch;
+  const WireTelegram wire = compose(telegram, last.at + config_.period);
+  const std::size_t size = codec_->encode(wire, std::span{plain_}.first<kTelegramSizeMax>());
   protection_->rehearse(std::span{plain_}.first(size), datagram_);
   (void)codec_->decode(std::span{plain_}.first(size));
 }

@@ -104,6 +104,7 @@ class Link {
   };
 
   void end_session() noexcept;
+  [[nodiscard]] WireTelegram compose(const Telegram& telegram, TimePoint now) const noexcept;
   void attach_older(WireTelegram& wire, TimePoint now) const noexcept;
   void drain(TimePoint now) noexcept;
   [[nodiscard]] tl::expected<Opened, Rejection> open(std::span<const std::byte> datagram) noexcept;
