@@ -2,20 +2,16 @@
 // stroke after stroke over many phantoms. One line each; exit code 1 if the 99 % quantile is above
 // 5 ms.
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include <time.h>
 
-#include "common/core/filters.h"
 #include "patient_site/estimator/depth_estimator.h"
 #include "patient_site/phantom.h"
-#include "patient_site/simulated_phantom.h"
+#include "tests/patient_site/tapping.h"
 
 namespace palp::patient {
 namespace {
@@ -28,40 +24,22 @@ double processor_ms() {
 }
 
 /// Milliseconds of every answer: four taps beside, four over the inclusion.
-std::vector<double> palpate(const std::string& spec, std::uint64_t seed) {
+std::vector<double> answers_over(const std::string& spec, std::uint64_t seed) {
   const auto phantom = make_phantom(spec);
   if (!phantom) {
     std::fprintf(stderr, "%s\n", phantom.error().text.c_str());
     std::exit(2);
   }
-  const double reach = std::min(4e-3, phantom->depth_max() - 0.1e-3) + 3e-3;
+  const Tapping tapping{
+      .taps = 4, .indentation = std::min(4e-3, phantom->depth_max() - 0.1e-3), .rest_time = 0.2};
   estimator::DepthEstimator estimator{{}};
   std::vector<double> out;
-  TimePoint now{};
-  for (const double lateral : {0.0, 20e-3}) {
-    SimulatedPhantomConfig sensor;
-    sensor.start_position = -3e-3;
-    sensor.start_lateral = lateral;
-    sensor.seed = seed + static_cast<std::uint64_t>(lateral * 1e3);
-    SimulatedPhantom site{*phantom, sensor};
-    LowPass co_filter{20, 1e-3};
-    co_filter.reset(-3e-3);
-    for (int i = 0; i < 4 * 1200; ++i) {
-      now += std::chrono::milliseconds{1};
-      const StageState stage = site.read(now);
-      const auto force = site.sample(now);
-      const ContactSample sample{.at = now,
-                                 .position = co_filter.step(stage.position),
-                                 .force = force->force,
-                                 .lateral = lateral};
-      const double before = processor_ms();
-      const auto estimate = estimator.add(sample);
-      const double took = processor_ms() - before;
-      if (estimate) out.push_back(took);
-      const double t = std::min(i % 1200 * 1e-3, 1.0);
-      site.move_to({-3e-3 + 0.5 * reach * (1 - std::cos(2 * std::numbers::pi * t)), lateral});
-    }
-  }
+  palpate(*phantom, {.seed = seed}, tapping, [&](const ContactSample& sample) {
+    const double before = processor_ms();
+    const auto estimate = estimator.add(sample);
+    const double took = processor_ms() - before;
+    if (estimate) out.push_back(took);
+  });
   return out;
 }
 
@@ -73,7 +51,7 @@ int run() {
       for (const int ratio : {4, 30, 800}) {
         char spec[96];
         std::snprintf(spec, sizeof spec, "ball depth=%d radius=%d ratio=%d", depth, radius, ratio);
-        const std::vector<double> one = palpate(spec, ++seed);
+        const std::vector<double> one = answers_over(spec, ++seed);
         std::printf("%-36s %2zu answers, slowest %6.2f ms\n",
                     spec,
                     one.size(),

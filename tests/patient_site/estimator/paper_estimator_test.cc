@@ -259,5 +259,57 @@ TEST(PaperEstimatorTest, NumbersThatAreNoneAreIgnored) {
   }
 }
 
+/// The touches of the place after a tap and another one's reversal. The samples of the first tap
+/// after `cut` answers are lost on the way, if that is not 0, up to the next tap.
+std::vector<estimator::Touch> touches_of(const Tapping& tapping, std::size_t cut) {
+  const auto phantom = make_phantom("ball depth=9 radius=8 ratio=200");
+  EXPECT_TRUE(phantom);
+  estimator::PaperEstimator estimator{{}};
+  const TimePoint second{from_seconds(tapping.tap_time + tapping.rest_time)};
+  std::size_t answers = 0;
+  std::vector<estimator::Touch> touches;
+  feel_taps(*phantom, ideal_sensor(), tapping, {}, [&](const ContactSample& sample) {
+    if (cut > 0 && answers == cut && sample.at < second) return;
+    if (!estimator.add(sample)) return;
+    ++answers;
+    if (sample.at < second) return;
+    const auto place = estimator.place();
+    ASSERT_TRUE(place);
+    touches.assign(place->touches.begin(), place->touches.end());
+  });
+  return touches;
+}
+
+constexpr Tapping kTwice{.taps = 2, .indentation = 3.8e-3, .rest_time = 0.2};
+constexpr Tapping kHesitantOnce{.taps = 2, .indentation = 3.8e-3, .rest_time = 0.2, .hesitant = 1};
+
+double deepest(const estimator::Touch& touch) {
+  double most = touch.front().tip;
+  for (const estimator::TouchSample& sample : touch) most = std::max(most, sample.tip);
+  return most;
+}
+
+TEST(PaperEstimatorTest, ATouchIsKeptToItsRelease) {
+  const auto touches = touches_of(kTwice, 0);
+  ASSERT_EQ(touches.size(), 2U);
+  EXPECT_LT(touches.front().back().tip, 0.5e-3);
+  EXPECT_GT(touches.back().back().tip, 3e-3);  // the second has only turned round
+}
+
+TEST(PaperEstimatorTest, AHesitantTouchIsKeptWholeToItsRelease) {
+  const auto touches = touches_of(kHesitantOnce, 0);
+  ASSERT_EQ(touches.size(), 2U);
+  EXPECT_GT(deepest(touches.front()), 3.2e-3);
+  EXPECT_LT(touches.front().back().tip, 0.5e-3);
+}
+
+/// What is lost after the second reversal takes nothing from what was felt before.
+TEST(PaperEstimatorTest, AHesitantTouchIsKeptAsFarAsItCame) {
+  const auto touches = touches_of(kHesitantOnce, 2);
+  ASSERT_EQ(touches.size(), 2U);
+  EXPECT_GT(deepest(touches.front()), 3.2e-3);
+  EXPECT_GT(touches.front().back().tip, 2.5e-3);
+}
+
 }  // namespace
 }  // namespace palp::patient
