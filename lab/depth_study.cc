@@ -199,6 +199,8 @@ Result<DepthCase> run_case(const DepthStudy& study, std::uint32_t index) {
   out.wide = plan.wide;
   out.knowledge = plan.knowledge;
   out.scale = truth.scale;
+  out.assumed_low = prior_of(plan).depth_min;
+  out.assumed_high = prior_of(plan).depth_max;
   TimePoint answered = TimePoint::max();
   for (const DepthEstimate& estimate : result.depths) {
     if (estimate.lateral < kStage) continue;

@@ -43,19 +43,21 @@ struct DepthCase {
   bool wide{};  ///< from the wider range
   Knowledge knowledge{Knowledge::Range};
   DepthVerdict verdict{DepthVerdict::Invalid};
-  double depth{};        ///< [m], true
-  double radius{};       ///< [m]
-  double ratio{};        ///< [-]
-  double scale{1};       ///< [-], of Young's modulus
-  double estimate{};     ///< [m]
-  double low{};          ///< [m]
-  double high{};         ///< [m]
-  double stddev{};       ///< [m], as claimed
-  double excluded{};     ///< [m], verdict None
-  double hash{};         ///< [N]
-  double bound{};        ///< [m], Cramer-Rao
-  double signal{};       ///< [-], standard deviations
-  double indentation{};  ///< [m], deepest
+  double depth{};         ///< [m], true
+  double radius{};        ///< [m]
+  double ratio{};         ///< [-]
+  double scale{1};        ///< [-], of Young's modulus
+  double estimate{};      ///< [m]
+  double low{};           ///< [m]
+  double high{};          ///< [m]
+  double stddev{};        ///< [m], as claimed
+  double assumed_low{};   ///< [m], what the estimator takes for possible
+  double assumed_high{};  ///< [m]
+  double excluded{};      ///< [m], verdict None
+  double hash{};          ///< [N]
+  double bound{};         ///< [m], Cramer-Rao
+  double signal{};        ///< [-], standard deviations
+  double indentation{};   ///< [m], deepest
   std::uint32_t strokes{};
 };
 

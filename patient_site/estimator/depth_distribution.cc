@@ -10,10 +10,15 @@ namespace {
 constexpr std::size_t kEntries = 1000;
 constexpr double kForgotten = 20;    // [-], logarithm of a mass below the largest
 constexpr double kNarrowest = 1e-7;  // [-]
+constexpr double kAbove = 0.01;      // [-], left out of an interval
+constexpr double kBelow = 0.04;      // [-]
+constexpr double kWindow = 0.25;     // [-], of the stddev: in which densities are compared
+constexpr double kLikeliest = 0.9;   // [-], of the largest density: not told apart from it
 
 }  // namespace
 
-DepthDistribution::DepthDistribution(std::span<const DepthMass> masses, double low, double high) {
+DepthDistribution::DepthDistribution(std::span<const DepthMass> masses, double low, double high)
+    : from_{low}, to_{high} {
   double most = -std::numeric_limits<double>::infinity();
   for (const DepthMass& mass : masses) most = std::max(most, mass.log_mass);
   log_total_ = most;
@@ -69,6 +74,34 @@ DepthDistribution::DepthDistribution(std::span<const DepthMass> masses, double l
     sum += slope * step_;
   }
   for (double& value : cumulated_) value /= std::max(cumulated_.back(), kNarrowest);
+}
+
+double DepthDistribution::share_above(double depth) const noexcept {
+  const double place = (std::log(depth) - low_) / step_;
+  if (!(place > 0)) return 0;
+  const auto entry = static_cast<std::size_t>(place);
+  if (entry + 1 >= cumulated_.size()) return 1;
+  const double part = place - static_cast<double>(entry);
+  return cumulated_[entry] + part * (cumulated_[entry + 1] - cumulated_[entry]);
+}
+
+DepthDistribution::Interval DepthDistribution::interval() const noexcept {
+  Interval out{quantile(kAbove), quantile(1 - kBelow)};
+  const double window = std::min(kWindow * stddev_, to_ - from_);
+  if (cumulated_.empty() || !(window > 0)) return out;
+  double most = 0;
+  double above = 0;
+  for (double at = from_; at < to_;) {
+    at += window;
+    const double reached = share_above(at);
+    most = std::max(most, reached - above);
+    above = reached;
+  }
+  const double first = share_above(from_ + window);
+  const double last = 1 - share_above(to_ - window);
+  if (std::max(first, last) < kLikeliest * most) return out;
+  return first > last ? Interval{from_, quantile(1 - kAbove - kBelow)}
+                      : Interval{quantile(kAbove + kBelow), to_};
 }
 
 double DepthDistribution::quantile(double share) const noexcept {

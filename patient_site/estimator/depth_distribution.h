@@ -24,7 +24,20 @@ class DepthDistribution {
   /// Share of the depths above (less deep than) the quantile. [-] -> [m]
   [[nodiscard]] double quantile(double share) const noexcept;
 
+  struct Interval {
+    double low{};   ///< [m]
+    double high{};  ///< [m]
+  };
+  /// That holds 95 %. What is left out lies above by a fifth: that nothing lies above is what a
+  /// hand relies on. Where the likeliest depth is an end of the range, the interval runs to it: the
+  /// truth may lie there, or beyond.
+  [[nodiscard]] Interval interval() const noexcept;
+
  private:
+  [[nodiscard]] double share_above(double depth) const noexcept;
+
+  double from_{};                  ///< [m], nothing lies outside
+  double to_{};                    ///< [m]
   double low_{};                   ///< [-], logarithm, of the first entry
   double step_{};                  ///< [-]
   double log_total_{};             ///< [-]

@@ -20,7 +20,7 @@ inline constexpr double kShowingRatio = 10;
 struct DepthPosterior {
   double depth{};         ///< [m], median, given that there is an inclusion
   double depth_stddev{};  ///< [m]
-  double depth_low{};     ///< [m], 95 % interval, 2.5 % on each side
+  double depth_low{};     ///< [m], 95 % interval
   double depth_high{};    ///< [m]
   double log_evidence{};  ///< [-], of an inclusion over none
   double gain{};          ///< [-], twice the log-likelihood the best inclusion gains over none

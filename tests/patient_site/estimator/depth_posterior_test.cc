@@ -28,6 +28,33 @@ TEST(DepthDistributionTest, NothingLiesOutsideTheRange) {
   EXPECT_GE(depths.quantile(0.001), 3e-3 * (1 - 1e-9));
 }
 
+/// A ramp of masses over 5 to 10 mm, rising towards one end.
+DepthDistribution rising(bool deeper, double low, double high) {
+  std::vector<DepthMass> masses;
+  for (int i = 0; i < 200; ++i) {
+    const double depth = 5e-3 + (i + 0.5) * 25e-6;
+    const double share = deeper ? i + 0.5 : 199.5 - i;
+    masses.push_back({std::log(depth), 25e-6 / depth, std::log(share)});
+  }
+  return {masses, low, high};
+}
+
+/// Its cumulated share is a square, so that the quantiles are roots.
+TEST(DepthDistributionTest, AnIntervalRunsToTheEndThatIsLikeliest) {
+  const auto deep = rising(true, 3e-3, 10e-3).interval();
+  EXPECT_EQ(deep.high, 10e-3);
+  EXPECT_NEAR(deep.low, 5e-3 + 5e-3 * std::sqrt(0.05), 2e-5);
+  const auto shallow = rising(false, 5e-3, 12e-3).interval();
+  EXPECT_EQ(shallow.low, 5e-3);
+  EXPECT_NEAR(shallow.high, 10e-3 - 5e-3 * std::sqrt(0.05), 2e-5);
+}
+
+TEST(DepthDistributionTest, AnIntervalWithinTheRangeLeavesLessAboveThanBelow) {
+  const auto inside = rising(true, 3e-3, 12e-3).interval();
+  EXPECT_NEAR(inside.low, 5e-3 + 5e-3 * std::sqrt(0.01), 2e-5);
+  EXPECT_NEAR(inside.high, 5e-3 + 5e-3 * std::sqrt(0.96), 2e-5);
+}
+
 TEST(CurveLatticeTest, GivesBackTheCurvesOfTheDatabase) {
   const auto database = fem::default_database();
   ASSERT_TRUE(database);
