@@ -1,5 +1,6 @@
 #include "patient_site/estimator/bayes_estimator.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace palp::estimator {
@@ -7,6 +8,8 @@ namespace {
 
 constexpr double kSofter = 4;  // standard deviations from which another place is the reference
 constexpr std::size_t kTouchesFresh = 5;  // of a place, looked at anew with each answer
+static_assert(kTouchesFresh < PaperEstimator::kTouchesKept);
+constexpr std::size_t kWeightMax = 32;  // touches; then what is settled is half forgotten
 constexpr std::size_t kPlacesMax = 32;
 
 }  // namespace
@@ -72,8 +75,9 @@ BayesEstimator::Settled& BayesEstimator::settled_at(const PaperEstimator::PlaceD
     if (one.lateral != place.lateral) continue;
     if (one.generation != place.generation) {
       one.generation = place.generation;
-      one.count = 0;
+      one.count = one.weight = 0;
       one.sums = TouchSums{place.surface};
+      one.best.reset();
     }
     return one;
   }
@@ -88,15 +92,22 @@ BayesEstimator::Settled& BayesEstimator::settled_at(const PaperEstimator::PlaceD
 void BayesEstimator::settle(const PaperEstimator::PlaceData& place,
                             DepthModel::Input& input,
                             Settled& settled) {
-  if (place.touches.size() > settled.count + kTouchesFresh) {
-    const std::size_t more = place.touches.size() - kTouchesFresh - settled.count;
-    input.touches = place.touches.subspan(settled.count, more);
-    model_.settle(input, settled.best, settled.sums);
+  const std::size_t forgotten = place.touched - place.touches.size();
+  settled.count = std::max(settled.count, forgotten);
+  if (settled.best && place.touched > settled.count + kTouchesFresh) {
+    const std::size_t more = place.touched - kTouchesFresh - settled.count;
+    input.touches = place.touches.subspan(settled.count - forgotten, more);
+    model_.settle(input, *settled.best, settled.sums);
     settled.count += more;
+    settled.weight += more;
   }
-  input.touches = place.touches.subspan(settled.count);
-  if (settled.count > 0) input.settled = &settled.sums;
-  if (place.touches.size() > 1) input.expected = settled.best;
+  if (settled.weight >= kWeightMax) {
+    settled.sums.scale(0.5);
+    settled.weight /= 2;
+  }
+  input.touches = place.touches.subspan(settled.count - forgotten);
+  if (settled.weight > 0) input.settled = &settled.sums;
+  input.expected = settled.best;
 }
 
 }  // namespace palp::estimator

@@ -39,13 +39,14 @@ class BayesEstimator {
   [[nodiscard]] const DepthPosterior& posterior() const noexcept { return posterior_; }
 
  private:
-  /// Touches of one place that were added up and need not be looked at again.
+  /// Touches of one place that were added up and are not looked at again.
   struct Settled {
     double lateral{};  ///< [m]
     std::uint64_t generation{};
-    std::size_t count{};
+    std::size_t count{};   ///< of the generation's touches, settled or too early for it
+    std::size_t weight{};  ///< [touches], in the sums
     TouchSums sums{0};
-    TouchModel best;
+    std::optional<TouchModel> best;  ///< nothing: no answer yet
   };
 
   void judge(DepthEstimate& estimate, const PaperEstimator::PlaceData& place);

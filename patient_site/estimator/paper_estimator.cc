@@ -116,6 +116,7 @@ std::optional<PaperEstimator::PlaceData> PaperEstimator::place() const {
                    ? std::max(kNoiseFloor, std::sqrt(place.contact_squares / place.contact_count))
                    : noise_,
       .touches = place.touches,
+      .touched = place.touched,
       .generation = place.generation};
 }
 
@@ -163,6 +164,7 @@ std::size_t PaperEstimator::find_place(double lateral, double first_contact) {
               .law = std::nullopt,
               .strokes = 0,
               .touches = {},
+              .touched = 0,
               .generation = ++generations_,
               .contact_squares = 0,
               .contact_count = 0,
@@ -228,6 +230,7 @@ bool PaperEstimator::learn_loading(Place& place,
     place.law.reset();
     place.strokes = 0;
     place.touches.clear();
+    place.touched = 0;
     place.generation = ++generations_;
     place.contact_squares = place.contact_count = 0;
     law.reset();
@@ -250,14 +253,14 @@ bool PaperEstimator::learn_loading(Place& place,
   }
   place.law = law;
   place.curve.add(own.curve);
+  if (place.touches.size() == kTouchesKept) place.touches.erase(place.touches.begin());
   place.touches.push_back(touch_of(place));
+  ++place.touched;
   place.contact_squares += own.contact_squares;
   place.contact_count += own.contact_count;
   if (++place.strokes == kStrokesMax) {
     place.curve.scale(0.5);
     place.strokes /= 2;
-    place.touches.erase(place.touches.begin(), place.touches.begin() + place.strokes);
-    place.generation = ++generations_;
   }
   describe(estimate, *law, own.curve, measured.position_max);
   return true;
@@ -317,6 +320,7 @@ Touch PaperEstimator::touch_of(const Place& place) const {
   while (first < samples.size() && samples[first].tip < begin) ++first;
   const std::size_t stride = 1 + (samples.size() - first) / kTouchSamplesMax;
   Touch out;
+  out.reserve((samples.size() - first) / stride + 1);
   for (std::size_t i = first; i < samples.size(); i += stride) {
     if (std::abs(samples[i].measured.force) >= config_.force_range) break;
     const std::size_t before = i < first + stride ? i - 1 : i - stride;

@@ -51,15 +51,18 @@ class PaperEstimator {
   /// @returns the estimate when a stroke's reversal was seen.
   [[nodiscard]] std::optional<DepthEstimate> add(const ContactSample& sample);
 
-  /// What is known of the place of the last estimate, and its strokes as they were measured. The
-  /// last of them ends at its reversal, and grows until it is released.
+  static constexpr std::size_t kTouchesKept = 6;  ///< of a place
+
+  /// What is known of the place of the last estimate, and its last strokes as they were measured.
+  /// The last of them ends at its reversal, and grows until it is released.
   struct PlaceData {
     double lateral{};                ///< [m]
     double surface{};                ///< [m], as found
     double rate_factor{};            ///< [s/m], as found
     double noise{};                  ///< [N], of one sample
-    std::span<const Touch> touches;  ///< valid until the next add()
-    std::uint64_t generation{};      ///< another one: touches were forgotten
+    std::span<const Touch> touches;  ///< kTouchesKept at most; valid until the next add()
+    std::size_t touched{};           ///< so many touches there were, these the last of them
+    std::uint64_t generation{};      ///< another one: another tissue
   };
   /// nullopt: the last estimate found no contact.
   [[nodiscard]] std::optional<PlaceData> place() const;
@@ -75,11 +78,12 @@ class PaperEstimator {
     ContactCurve curve;
     std::optional<ContactLaw> law;
     int strokes{};
-    std::vector<Touch> touches;  ///< one a stroke
-    std::uint64_t generation{};  ///< of the touches
-    double contact_squares{};    ///< [N^2], measured force minus law, in contact
-    double contact_count{};      ///< [-]
-    std::uint64_t used{};        ///< for replacing the one that was not used for longest
+    std::vector<Touch> touches;  ///< of the last strokes
+    std::size_t touched{};       ///< since the generation began
+    std::uint64_t generation{};
+    double contact_squares{};  ///< [N^2], measured force minus law, in contact
+    double contact_count{};    ///< [-]
+    std::uint64_t used{};      ///< for replacing the one that was not used for longest
   };
 
   struct Measured {

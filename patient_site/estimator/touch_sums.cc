@@ -177,6 +177,15 @@ void TouchSums::add(const TouchSums& other) noexcept {
   squares_ += other.squares_;
 }
 
+void TouchSums::scale(double factor) noexcept {
+  for (std::size_t i = 0; i < kColumns; ++i) {
+    for (double& value : matrix_[i]) value *= factor;
+    right_[i] *= factor;
+  }
+  weights_ *= factor;
+  squares_ *= factor;
+}
+
 /// To first order the force seen from elsewhere is the force plus the step times its slope, which
 /// is the second block of columns: the first block takes up so much of it.
 void TouchSums::move_to(double surface) noexcept {

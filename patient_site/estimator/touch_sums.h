@@ -64,6 +64,7 @@ class TouchSums {
   };
   void add(std::span<const TouchSample> touch, const Reading& reading);
   void add(const TouchSums& other) noexcept;  ///< seen from the same surface
+  void scale(double factor) noexcept;         ///< of every weight: forget in part
   /// As if seen from a surface near the present one [m].
   void move_to(double surface) noexcept;
 

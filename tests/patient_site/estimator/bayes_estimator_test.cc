@@ -79,6 +79,54 @@ TEST(BayesEstimatorTest, AStrokeThatIsNotMonotoneCountsForTheNext) {
   EXPECT_LT(last.depth_stddev, 0.65 * alone.depth_stddev);
 }
 
+/// The estimates of so many taps over the inclusion, the surface 2 mm deeper than at first.
+std::vector<DepthEstimate> tapped_over(estimator::DepthEstimator& estimator,
+                                       const Tapping& tapping,
+                                       TimePoint* now) {
+  const auto phantom = make_phantom("ball depth=9 radius=8 ratio=200");
+  EXPECT_TRUE(phantom);
+  std::vector<DepthEstimate> out;
+  *now = feel_taps(
+      *phantom, {.surface_offset = 2e-3}, tapping, *now, [&](const ContactSample& sample) {
+        if (const auto estimate = estimator.add(sample)) out.push_back(*estimate);
+      });
+  return out;
+}
+
+/// Of long palpations only sums are kept, and of those half is forgotten now and then.
+TEST(BayesEstimatorTest, FortyTapsKnowNoLessThanSixteen) {
+  estimator::DepthEstimatorConfig config = knowing();
+  config.bayes.stiffness.scale_stddev = 1e-3;
+  estimator::DepthEstimator estimator{config};
+  TimePoint now{};
+  Tapping tapping = kTaps;
+  tapping.taps = 40;
+  const auto estimates = tapped_over(estimator, tapping, &now);
+  ASSERT_EQ(estimates.size(), 40U);
+  EXPECT_LT(estimates[15].depth_stddev, 0.8 * estimates[3].depth_stddev);
+  for (std::size_t i = 15; i < estimates.size(); ++i) {
+    EXPECT_LT(estimates[i].depth_stddev, 1.05 * estimates[15].depth_stddev) << i;
+    EXPECT_NEAR(estimates[i].depth, 9e-3, 4 * estimates[i].depth_stddev) << i;
+  }
+}
+
+TEST(BayesEstimatorTest, AStrokeTooShortForAnAnswerDoesNotMisleadTheNext) {
+  estimator::DepthEstimatorConfig config = knowing();
+  config.bayes.stiffness.scale_stddev = 1e-3;
+  estimator::DepthEstimator estimator{config};
+  TimePoint now{};
+  Tapping tapping = kTaps;
+  tapping.taps = 1;
+  tapping.indentation = 1.3e-3;
+  const auto first = tapped_over(estimator, tapping, &now);
+  ASSERT_EQ(first.size(), 1U);
+  ASSERT_EQ(first.front().reason, DepthReason::StrokeTooShort);
+  const auto next = tapped_over(estimator, kTaps, &now);
+  ASSERT_EQ(next.size(), 4U);
+  EXPECT_EQ(next.front().verdict, DepthVerdict::Found);
+  EXPECT_NEAR(next.front().depth, 9e-3, 4 * next.front().depth_stddev);
+}
+
 TEST(BayesEstimatorTest, WithoutInclusionItSaysWhatIsExcluded) {
   const auto estimates = estimates_over("none", {});
   ASSERT_EQ(estimates.size(), 4U);

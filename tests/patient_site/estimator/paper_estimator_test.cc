@@ -311,5 +311,23 @@ TEST(PaperEstimatorTest, AHesitantTouchIsKeptAsFarAsItCame) {
   EXPECT_GT(touches.front().back().tip, 2.5e-3);
 }
 
+TEST(PaperEstimatorTest, KeepsTheLastTouchesAlone) {
+  const auto phantom = make_phantom("ball depth=9 radius=8 ratio=200");
+  ASSERT_TRUE(phantom);
+  estimator::PaperEstimator estimator{{}};
+  Tapping tapping = kTwice;
+  tapping.taps = 40;
+  std::size_t strokes = 0;
+  feel_taps(*phantom, ideal_sensor(), tapping, {}, [&](const ContactSample& sample) {
+    if (!estimator.add(sample)) return;
+    const auto place = estimator.place();
+    ASSERT_TRUE(place);
+    EXPECT_EQ(place->touched, ++strokes);
+    EXPECT_EQ(place->touches.size(),
+              std::min<std::size_t>(strokes, estimator::PaperEstimator::kTouchesKept));
+  });
+  EXPECT_EQ(strokes, 40U);
+}
+
 }  // namespace
 }  // namespace palp::patient
