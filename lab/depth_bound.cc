@@ -160,7 +160,9 @@ std::vector<TipState> motion_of(const TapPlan& plan) {
   const double omega = 2 * std::numbers::pi / plan.tap_time;
   for (int tap = 0; tap < plan.reference_taps + plan.taps; ++tap) {
     const bool last = tap == plan.reference_taps + plan.taps - 1;
-    for (double t = 0; t < (last ? 0.5 : 1) * plan.tap_time; t += plan.sensing.period) {
+    const double samples = (last ? 0.5 : 1) * plan.tap_time / plan.sensing.period;
+    for (int i = 0; i < static_cast<int>(std::ceil(samples)); ++i) {
+      const double t = i * plan.sensing.period;
       out.push_back({.indentation = -plan.clearance + swing * (1 - std::cos(omega * t)),
                      .rate = swing * omega * std::sin(omega * t),
                      .over = tap >= plan.reference_taps});
@@ -176,8 +178,9 @@ double sample_information(double force, double noise, double quantum) {
   const auto density = [](double z) {
     return std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
   };
-  const double reach = 2 + std::ceil(6 * noise / quantum);
-  for (double code = middle - reach; code <= middle + reach; ++code) {
+  const int reach = 2 + static_cast<int>(std::ceil(6 * noise / quantum));
+  for (int i = -reach; i <= reach; ++i) {
+    const double code = middle + i;
     const double low = ((code - 0.5) * quantum - force) / noise;
     const double high = ((code + 0.5) * quantum - force) / noise;
     const double share = normal_cdf(high) - normal_cdf(low);

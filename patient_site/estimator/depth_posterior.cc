@@ -274,6 +274,7 @@ std::vector<DepthModel::Cell> DepthModel::cells_of(const CurveMatcher& points,
   cells = refine(points, std::move(cells), std::numeric_limits<double>::infinity());
   for (int pass = 0; pass < kPasses; ++pass) {
     std::vector<DepthMass> masses;
+    masses.reserve(cells.size());
     for (const Cell& cell : cells) {
       masses.push_back(
           {cell.log_depth,

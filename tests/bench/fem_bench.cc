@@ -104,8 +104,13 @@ Floor floor_of(const Case& one, Accuracy accuracy, int rounds) {
   return floor;
 }
 
-/// Largest difference of the forces from 0.5 mm on.
-double mesh_error(const fem::CurveRequest& request) {
+/// Largest difference of the forces from 0.5 mm on, to three quarters of the cover: farther the
+/// fine mesh may find no equilibrium.
+double mesh_error(fem::CurveRequest request) {
+  if (request.specimen.inclusion.shape != fem::InclusionShape::None) {
+    const double most = 0.75 * request.specimen.inclusion.depth;
+    std::erase_if(request.indentations, [&](double indentation) { return indentation > most; });
+  }
   fem::CurveRequest fine = request;
   fine.accuracy = Accuracy::Fine;
   const auto one = solve_curve(request);

@@ -5,30 +5,18 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include <time.h>
 
 #include "common/core/denormals.h"
-#include "common/core/mailbox.h"
-#include "common/core/spsc_queue.h"
-#include "common/link/codec_wire.h"
-#include "common/record/queue_recorder.h"
-#include "lab/meeting.h"
-#include "lab/scenario_file.h"
-#include "netem/impairment.h"
-#include "netem/pipe.h"
-#include "patient_site/estimator_worker.h"
-#include "patient_site/patient_node.h"
-#include "surgeon_site/surgeon_node.h"
+#include "tests/bench/two_sites.h"
 
 namespace palp::bench {
 namespace {
 
 constexpr double kMedianMax = 20;  ///< [us]
-constexpr std::size_t kQueue = 8192;
 
 double now_us() {
   timespec time{};
@@ -42,49 +30,21 @@ struct Costs {
 };
 
 Costs measure(const std::string& coupling, Duration span) {
-  lab::Scenario scenario =
-      lab::make_scenario("standard", lab::load_scenario("standard").value()).value();
-  scenario.coupling.name = coupling;
-  scenario.up = netem::parse_impairment("delay 10ms 1ms distribution normal loss 1%").value();
-  scenario.down = scenario.up;
-
   TimePoint now{std::chrono::seconds{1}};
-  netem::Pipe pipe{scenario.up, scenario.down, 1, kQueue, now};
-  link::Link surgeon_link{scenario.link, std::make_unique<link::WireCodec>()};
-  link::Link patient_link{scenario.link, std::make_unique<link::WireCodec>()};
-  lab::Meeting surgeon_meeting{scenario, link::Role::Surgeon, pipe.surgeon_end()};
-  lab::Meeting patient_meeting{scenario, link::Role::Patient, pipe.patient_end()};
-  surgeon_meeting.start(surgeon_link, now);
-  patient_meeting.start(patient_link, now);
-  record::QueueRecorder surgeon_records{kQueue};
-  record::QueueRecorder patient_records{kQueue};
-
-  surgeon::SimulatedHand hand{scenario.hand, scenario.script};
-  auto surgeon_law = coupling::make_surgeon_coupling(scenario.coupling).value();
-  surgeon::SurgeonNode surgeon{scenario.surgeon,
-                               {hand, surgeon_law, surgeon_link, surgeon_records}};
-  patient::SimulatedPhantom tissue{scenario.phantom, scenario.tissue};
-  auto patient_law = coupling::make_patient_coupling(scenario.coupling).value();
-  SpscQueue<ContactSample> contact{kQueue};
-  Mailbox<DepthEstimate> depth;
-  patient::PatientNode patient{
-      scenario.patient,
-      {tissue, tissue, patient_law, patient_link, patient_records, contact, depth}};
-
+  const lab::Scenario scenario = standard_scenario(coupling);
+  TwoSites sites{scenario, now};
   Costs costs;
   for (const TimePoint end = now + span; now < end;) {
     now += scenario.link.period;
     const double begin = now_us();
-    surgeon.tick(now);
+    sites.tick_surgeon(now);
     const double between = now_us();
-    patient.tick(now);
+    sites.tick_patient(now);
     const double done = now_us();
     costs.surgeon.push_back(between - begin);
     costs.patient.push_back(done - between);
-    surgeon_records.drain([](const record::Record&) {});
-    patient_records.drain([](const record::Record&) {});
-    ContactSample sample;
-    while (contact.try_dequeue(sample)) continue;
+    sites.drop_records();
+    sites.drop_contact();
   }
   return costs;
 }
