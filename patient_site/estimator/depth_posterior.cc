@@ -198,8 +198,7 @@ std::vector<DepthModel::Cell> DepthModel::refine(const CurveMatcher& points,
   return fine;
 }
 
-/// Of the best depth's logarithm, within the cell: an even spread of the variance that its two even
-/// spreads have together. Their plain sum makes intervals of strong signals up to 8 % too wide.
+/// Of the best depth's logarithm, within the cell: even, with the variance of both shifts together.
 double DepthModel::blur(const Cell& cell) noexcept {
   return 2 * std::hypot(cell.radius_shift, cell.ratio_shift);
 }
