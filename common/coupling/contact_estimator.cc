@@ -27,6 +27,9 @@ constexpr double kFullSpeed = 2e-3;          // [m/s], of the tip: below it data
 constexpr double kBreathSpeed = 10e-3;       // [m/s], the same where the surface breathes
 constexpr double kBreathWeightMin = 0.4;     // [-], and what is too slow to say anything there
 constexpr double kStillWeight = 0.2;         // [-], of an equation that repeats the last one
+constexpr std::uint32_t kDoubtTicks = 60;    // after the first contact
+constexpr double kDoubtShare = 0.25;         // [-], of the force that counts as contact
+constexpr double kDoubtRetreat = 0.1e-3;     // [m], a tip that went farther out says nothing
 constexpr std::size_t kNear = 4;             // candidates around the best that are always judged
 constexpr std::size_t kStride = 12;          // of the others, one in so many
 constexpr std::size_t kEdge = 3;             // so near the grid's end it is moved
@@ -107,6 +110,16 @@ void ContactEstimator::begin_again() noexcept {
   ContactModel believed{0, {}, kModelDepthMax};
   std::copy_n(expected_.begin(), kModelTerms, believed.c.begin());
   place_grid(tip_mean_ - depth_of(believed, force_mean_));
+}
+
+/// What passed for a contact was noise: there is no tissue here.
+void ContactEstimator::withdraw() noexcept {
+  placed_ = contact_here_ = false;
+  doubtful_ = 0;
+  expected_ = expected_here_;
+  ++model_.version;
+  model_.c = {};
+  model_.relaxing = {};
 }
 
 void ContactEstimator::filter_shapes(double position) noexcept {
@@ -311,6 +324,11 @@ void ContactEstimator::step(double position, double force) noexcept {
   const double threshold = std::max(config_.detection_force, 1.4 * noise);
   const bool contact = force_mean_ >= threshold && noise_ticks_ >= kNoiseTicksMin;
   if (placed_ && !contact && tip_.value() > centre_ + kMisplaced) placed_ = false;
+  if (doubtful_ > 0) {
+    --doubtful_;
+    if (tip_.value() < doubted_ - kDoubtRetreat) doubtful_ = 0;
+    if (doubtful_ > 0 && force_mean_ < kDoubtShare * threshold) withdraw();
+  }
   if (!placed_) {
     if (!contact) {
       sense_noise(force);
@@ -327,6 +345,8 @@ void ContactEstimator::step(double position, double force) noexcept {
     Solution prior;
     prior.c = expected_;
     deepest_ = tip_mean_;
+    doubted_ = tip_.value();
+    doubtful_ = kDoubtTicks;
     publish(prior);
   }
   if (!contact && contact_here_) deepest_in_air_ = std::max(deepest_in_air_, raw_tip_);

@@ -18,7 +18,7 @@ struct ContactEstimatorConfig {
   double sensor_quantum{0.05};      ///< [N], its step; 0: none
   double stiffness_expected{1897};  ///< [N/m^1.5], of plain tissue: where learning begins
   double memory{2};                 ///< [s] of motion in or near contact
-  double detection_force{0.022};    ///< [N], least mean force that counts as contact
+  double detection_force{0.026};    ///< [N], least mean force that counts as contact
   double surface_spread{0.5e-3};    ///< [m], of the surface from place to place
 };
 
@@ -61,6 +61,7 @@ class ContactEstimator {
   void search() noexcept;
   void publish(const Solution& solution) noexcept;
   void begin_again() noexcept;
+  void withdraw() noexcept;
   void watch_surface(double position) noexcept;
   [[nodiscard]] Solution solve(std::size_t candidate) noexcept;
   [[nodiscard]] double surface_of(std::size_t candidate) const noexcept;
@@ -87,7 +88,9 @@ class ContactEstimator {
   // The grid.
   bool placed_{};
   bool contact_here_{};
-  double centre_{};  ///< [m]
+  std::uint32_t doubtful_{};  ///< ticks in which the first contact may prove to be noise
+  double doubted_{};          ///< [m], the tip where it was
+  double centre_{};           ///< [m]
   std::uint32_t ticks_outside_{};
   alignas(64) std::array<Lane, kModelTerms> shapes_{};  ///< [-], filtered
   alignas(64) std::array<Lane, kTerms> box_{};          ///< sum over the box

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/core/filters.h"
+#include "common/core/random.h"
 #include "common/coupling/contact_model.h"
 
 namespace palp::coupling {
@@ -149,6 +150,35 @@ TEST(ContactEstimatorTest, SaysNothingWithoutAContact) {
   ContactEstimator estimator{ContactEstimatorConfig{}};
   for (int tick = 0; tick < 2000; ++tick) estimator.step(-5e-3, 0.05 * ((tick % 20) == 0));
   EXPECT_EQ(estimator.model().version, 0U);
+}
+
+/// Noise of 15 mN behind a step of 50 mN: a reading in ten is not 0.
+TEST(ContactEstimatorTest, NoiseBehindASensorsStepsIsNoContact) {
+  constexpr std::uint64_t kApproaches = 8;
+  for (std::uint64_t approach = 0; approach < kApproaches; ++approach) {
+    ContactEstimator estimator{ContactEstimatorConfig{}};
+    for (std::uint64_t tick = 0; tick < 100'000; ++tick) {
+      const double noise = 0.015 * random_normal(1, approach, tick);
+      estimator.step(-5e-3, 0.05 * std::round(noise / 0.05));
+    }
+    EXPECT_EQ(estimator.model().version, 0U) << approach;
+  }
+}
+
+TEST(ContactEstimatorTest, WhatProvesToBeNoiseIsTakenBack) {
+  ContactEstimator estimator{ContactEstimatorConfig{}};
+  const auto stand = [&](int ticks, double force) {
+    for (int tick = 0; tick < ticks; ++tick) estimator.step(-5e-3, force);
+  };
+  stand(1000, 0);
+  stand(8, 0.05);
+  ASSERT_GT(contact_model(estimator.model()).force(2e-3), 0.1) << "it is shown at once";
+  stand(60, 0);
+  EXPECT_EQ(contact_model(estimator.model()).force(2e-3), 0);
+  // A light touch that stays is none.
+  stand(60, 0.05);
+  stand(400, 0.03);
+  EXPECT_GT(contact_model(estimator.model()).force(2e-3), 0.01);
 }
 
 TEST(ContactEstimatorTest, KeepsShowingTheOldPlaceUntilTheNewOneIsTouched) {
