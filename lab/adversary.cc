@@ -23,7 +23,7 @@ LyingCodec::LyingCodec(std::unique_ptr<link::Codec> codec, std::uint64_t seed, D
           static_cast<std::uint64_t>(std::max<std::int64_t>(1, kLieLength / period))} {}
 
 std::size_t LyingCodec::encode(const link::WireTelegram& telegram,
-                               std::span<std::byte> out) noexcept {
+                               std::span<std::byte, link::kTelegramSizeMax> out) noexcept {
   const std::uint64_t lie = told_++ / telegrams_per_lie_;
   const auto uniform = [&](std::uint64_t which) {
     return random_uniform(seed_, kLieStream + which, lie);

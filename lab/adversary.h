@@ -12,8 +12,9 @@ namespace palp::lab {
 class LyingCodec final : public link::Codec {
  public:
   LyingCodec(std::unique_ptr<link::Codec> codec, std::uint64_t seed, Duration period);
-  [[nodiscard]] std::size_t encode(const link::WireTelegram& telegram,
-                                   std::span<std::byte> out) noexcept override;
+  [[nodiscard]] std::size_t encode(
+      const link::WireTelegram& telegram,
+      std::span<std::byte, link::kTelegramSizeMax> out) noexcept override;
   [[nodiscard]] std::optional<link::WireTelegram> decode(
       std::span<const std::byte> bytes) noexcept override;
 
