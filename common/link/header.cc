@@ -1,24 +1,33 @@
 #include "common/link/header.h"
 
+#include <utility>
+
 #include "common/core/check.h"
 
 namespace palp::link {
 namespace {
 
-/// The lowest bytes of `value`, as many as `out` has room for.
-void put(std::uint64_t value, std::span<std::byte> out) noexcept {
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = static_cast<std::byte>((value >> (8U * (out.size() - 1U - i))) & 0xFFU);
-  }
+// Without a loop the compiler sees what it is: one number, its bytes in the other order.
+
+template <class Unsigned, std::size_t... kAt>
+void put(Unsigned value, std::span<std::byte> out, std::index_sequence<kAt...> /*all*/) noexcept {
+  ((out[kAt] = static_cast<std::byte>(value >> (8U * (sizeof value - 1U - kAt)) & 0xFFU)), ...);
+}
+
+template <class Unsigned>
+void put(Unsigned value, std::span<std::byte> out) noexcept {
+  put(value, out, std::make_index_sequence<sizeof value>{});
+}
+
+template <class Unsigned, std::size_t... kAt>
+Unsigned take(std::span<const std::byte> in, std::index_sequence<kAt...> /*all*/) noexcept {
+  return static_cast<Unsigned>(
+      ((std::to_integer<std::uint64_t>(in[kAt]) << (8U * (sizeof(Unsigned) - 1U - kAt))) | ...));
 }
 
 template <class Unsigned>
 Unsigned take(std::span<const std::byte> in) noexcept {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < sizeof(Unsigned); ++i) {
-    value = value << 8U | std::to_integer<std::uint64_t>(in[i]);
-  }
-  return static_cast<Unsigned>(value);
+  return take<Unsigned>(in, std::make_index_sequence<sizeof(Unsigned)>{});
 }
 
 }  // namespace

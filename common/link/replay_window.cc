@@ -5,6 +5,19 @@
 #include "common/core/check.h"
 
 namespace palp::link {
+namespace {
+
+/// The bits in the other order: neighbours change places, then pairs, and so on.
+constexpr std::uint32_t mirrored(std::uint32_t bits) noexcept {
+  bits = (bits >> 1U & 0x55555555U) | (bits & 0x55555555U) << 1U;
+  bits = (bits >> 2U & 0x33333333U) | (bits & 0x33333333U) << 2U;
+  bits = (bits >> 4U & 0x0F0F0F0FU) | (bits & 0x0F0F0F0FU) << 4U;
+  bits = (bits >> 8U & 0x00FF00FFU) | (bits & 0x00FF00FFU) << 8U;
+  return bits >> 16U | bits << 16U;
+}
+static_assert(mirrored(0x80000001U) == 0x80000001U && mirrored(0x00000002U) == 0x40000000U);
+
+}  // namespace
 
 bool ReplayWindow::bit(std::uint64_t number) const noexcept {
   return (words_[number / kWordBits % kWords] >> number % kWordBits & 1U) != 0;
@@ -35,11 +48,7 @@ std::uint32_t ReplayWindow::before_newest() const noexcept {
   // The 64 numbers below the newest one, the nearest in the highest bit.
   std::uint64_t below = place == 0 ? 0 : words_[word % kWords] << (kWordBits - place);
   if (word > 0) below |= words_[(word - 1) % kWords] >> place;
-  std::uint32_t bits = 0;
-  for (std::uint32_t k = 0; k < 32; ++k, below <<= 1U) {
-    bits |= static_cast<std::uint32_t>(below >> (kWordBits - 1)) << k;
-  }
-  return bits;
+  return mirrored(static_cast<std::uint32_t>(below >> 32U));
 }
 
 }  // namespace palp::link
