@@ -162,12 +162,9 @@ plot::Panel formula_panel(const PaperStudy& study) {
     printed.y.push_back(kPaperFormula.depth_mm(h));
   }
   plot::Curve model{
-      .name = "paper's model (Table I)", .x = {}, .y = {}, .mark = plot::Mark::Points, .colour = 1};
-  plot::Curve measured{.name = "paper measured (Table I)",
-                       .x = {},
-                       .y = {},
-                       .mark = plot::Mark::Points,
-                       .colour = 2};
+      .name = "the paper's model", .x = {}, .y = {}, .mark = plot::Mark::Points, .colour = 1};
+  plot::Curve measured{
+      .name = "the paper measured", .x = {}, .y = {}, .mark = plot::Mark::Points, .colour = 2};
   for (const TableRow& row : kTable) {
     model.x.push_back(row.hash_n);
     model.y.push_back(row.depth_mm);

@@ -15,6 +15,7 @@ constexpr double kSize = 2 * kMargin + kScale * kRange;
 constexpr double kSpread = 1.8;      // [mm], to each side of a listed depth
 constexpr std::size_t kDrawn = 300;  // random phantoms; more hide each other
 constexpr double kBin = 3;           // [mm], of true depth, in which held intervals are counted
+constexpr double kFirstBin = 1;      // [mm]; so that the prior's 4 to 25 mm are whole bins
 constexpr double kShares = 240;      // pixels, height of the picture below: 50 to 100 %
 
 struct Place {
@@ -142,10 +143,10 @@ void draw_shares(Picture& picture, const std::vector<DepthCase>& cases) {
   picture.words(kMargin,
                 kSize + 18,
                 "start",
-                "Share of the intervals that hold the truth (phantoms as the estimator assumes); "
-                "bars: error of counting");
+                "Share of the intervals that hold the truth; bars: the error of counting so many.");
   picture.share_axes();
-  for (double from = 0; from < kRange; from += kBin) {
+  for (int bin = 0; kFirstBin + bin * kBin < kRange; ++bin) {
+    const double from = kFirstBin + bin * kBin;
     std::size_t count = 0;
     std::size_t inside = 0;
     for (const DepthCase& one : cases) {
