@@ -19,8 +19,6 @@ constexpr double kMeanGain = 0.1;              // per tick: 10 ms
 constexpr std::uint32_t kBox = 5;              // ticks per equation: what the pole lets through
 constexpr std::uint32_t kNoiseTicks = 1000;    // 1 s in the air
 constexpr std::uint32_t kNoiseTicksMin = 200;  // before them nobody knows what noise is
-constexpr double kSwingForce = 0.08;           // [N], where a contact shows the surface
-constexpr double kSwingSlope = 150;            // [N/m], that shows it as well as needed
 constexpr double kMisplaced = 2e-3;          // [m], below the surface as believed, and nothing felt
 constexpr std::uint32_t kForgetShapes = 60;  // ticks until the filtered shapes are zero again
 constexpr double kFullSpeed = 2e-3;          // [m/s], of the tip: below it data repeat themselves
@@ -89,7 +87,7 @@ void ContactEstimator::place_grid(double centre) noexcept {
 }
 
 void ContactEstimator::new_place() noexcept {
-  swing_.new_mean();
+  swing_.new_place();
   contact_here_ = false;
   deepest_ = -1;
   deepest_in_air_ = -1;
@@ -273,6 +271,13 @@ void ContactEstimator::publish(const Solution& solution) noexcept {
   std::copy_n(solution.c.begin(), kModelTerms, model_.c.begin());
   std::copy_n(solution.c.begin() + kModelTerms, model_.relaxing.size(), model_.relaxing.begin());
   model_.surface = surface_of(best_);
+  if (swing_.believed()) {
+    // What was found together with the swing: the rest was learned before it was known.
+    model_.c = {};
+    std::copy(swing_.shapes().begin(), swing_.shapes().end(), model_.c.begin() + 1);
+    model_.relaxing = {};
+    model_.surface = swing_.surface();
+  }
   model_.depth_max = std::max(0.0, deepest_ - model_.surface);
 }
 
@@ -281,18 +286,14 @@ void ContactEstimator::watch_surface(double position) noexcept {
   raw_tip_ += gain_ * (position - raw_tip_);
   raw_tip_mean_ += kMeanGain * (raw_tip_ - raw_tip_mean_);
   swing_.step();
-  if (++swing_ticks_ % kBox != 0 || model_.version == 0 || force_mean_ < kSwingForce) return;
-  const ContactModel believed = contact_model(model_);
+  if (model_.version == 0) return;
   double gain = 1;
   double elastic = force_mean_;
   for (std::size_t k = 0; k < past_.size(); ++k) {
     gain += model_.relaxing[k];
     elastic += model_.relaxing[k] * past_[k];
   }
-  elastic /= gain;
-  const double depth = depth_of(believed, elastic);
-  const double slope = believed.slope(depth) / kSwingSlope;
-  swing_.see(raw_tip_mean_ - depth, std::min(1.0, slope * slope));
+  swing_.see(raw_tip_mean_, elastic / gain);
 }
 
 void ContactEstimator::step(double position, double force) noexcept {

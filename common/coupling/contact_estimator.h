@@ -114,7 +114,6 @@ class ContactEstimator {
   double surface_expected_{};  ///< [m]
   ModelPayload model_;
   SurfaceSwing swing_;
-  std::uint32_t swing_ticks_{};
   double raw_tip_mean_{};      ///< [m], as tip_mean_, in a frame that does not swing
   double raw_tip_{};           ///< [m], behind the transducer's pole
   double deepest_{};           ///< [m], tip in contact at this place

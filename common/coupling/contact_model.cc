@@ -93,11 +93,23 @@ void RelaxingContact::forget() noexcept {
 }
 
 void RelaxingContact::age(double depth, double span) noexcept {
+  remember(depth, span);
+  find_onset();
+}
+
+void RelaxingContact::age_into(const ContactModel& elastic,
+                               const Shares& relaxing,
+                               double depth,
+                               double span) noexcept {
+  remember(depth, span);
+  become(elastic, relaxing);
+}
+
+void RelaxingContact::remember(double depth, double span) noexcept {
   const double now = elastic_.force(depth);
   for (std::size_t k = 0; k < past_.size(); ++k) {
     past_[k] += std::min(1.0, span / kModelTimes[k]) * (now - past_[k]);
   }
-  find_onset();
 }
 
 void RelaxingContact::find_onset() noexcept {

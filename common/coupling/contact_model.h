@@ -35,6 +35,11 @@ class RelaxingContact {
   void forget() noexcept;
   /// `span` [s] at `depth` [m].
   void age(double depth, double span) noexcept;
+  /// Both in one: so aged, it becomes another.
+  void age_into(const ContactModel& elastic,
+                const Shares& relaxing,
+                double depth,
+                double span) noexcept;
 
   [[nodiscard]] double force(double depth) const noexcept;   ///< [m] -> [N]
   [[nodiscard]] double energy(double depth) const noexcept;  ///< [m] -> [J], integral of force
@@ -42,6 +47,7 @@ class RelaxingContact {
   [[nodiscard]] const Shares& relaxing() const noexcept { return relaxing_; }
 
  private:
+  void remember(double depth, double span) noexcept;
   void find_onset() noexcept;
 
   ContactModel elastic_;

@@ -64,9 +64,10 @@ void MmtSurgeon::hear(std::span<const Incoming> arrived, Duration round_trip) no
   swung_ += swing_.after(swing_age_) - foreseen;
 }
 
-/// The shown model moves towards the newest one; in the air at once, for nothing is stored there.
+/// The shown model ages at `depth` and moves towards the newest one; in the air at once, for
+/// nothing is stored there.
 void MmtSurgeon::approach_candidate(double position, double depth, double dt) noexcept {
-  if (!candidate_) return;
+  if (!candidate_) return shown_.age(depth, dt);
   ContactModel aim = *candidate_;
   for (double& coefficient : aim.c) coefficient *= presence_.value();
   // The surface swings on by itself; what is blended is the rest.
@@ -76,7 +77,7 @@ void MmtSurgeon::approach_candidate(double position, double depth, double dt) no
   aim.surface += swung;
   swung_ = swung;
   if (!showing_ || (depth <= 0 && position <= aim.surface)) {
-    shown_.become(aim, candidate_relaxing_);
+    shown_.age_into(aim, candidate_relaxing_, depth, dt);
     showing_ = true;
     return;
   }
@@ -90,7 +91,7 @@ void MmtSurgeon::approach_candidate(double position, double depth, double dt) no
   for (std::size_t k = 0; k < relaxing.size(); ++k) {
     relaxing[k] += share * (candidate_relaxing_[k] - relaxing[k]);
   }
-  shown_.become(elastic, relaxing);
+  shown_.age_into(elastic, relaxing, depth, dt);
 }
 
 /// The least offset with which energy and force stay below their limits.
@@ -164,7 +165,6 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   const double force_before = shown_.force(depth_before);
   tank_ = std::min(config_.tank_max, tank_ + work - (moved - stored_));
 
-  shown_.age(depth_before, span);
   approach_candidate(in.position, depth_before, span);
   const double slew = slew_for(in.position, speed, in.round_trip);
   const double force_max =

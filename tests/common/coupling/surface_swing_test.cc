@@ -1,54 +1,79 @@
 #include "common/coupling/surface_swing.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
+
+#include "common/core/random.h"
 
 namespace palp::coupling {
 namespace {
 
 constexpr double kPeriod = 1e-3;
 
-/// 20 s of contact with a surface that moves as `displacement`(t), seen every 5 ms.
-template <class Displacement>
-SurfaceSwing watch(const Displacement& displacement) {
-  SurfaceSwing swing{kPeriod};
-  for (int tick = 0; tick < 20'000; ++tick) {
-    swing.step();
-    if (tick % 5 == 0) swing.see(displacement(kPeriod * tick), 1);
-  }
-  return swing;
+double hertz(double depth) { return depth > 0 ? 1897 * depth * std::sqrt(depth) : 0; }
+
+/// Four taps of 4 mm from 3 mm above the surface at rest, then a press of 3 mm.
+double palpating(double t) {
+  if (t > 6) return std::min(3e-3, -3e-3 + 10e-3 * (t - 6));
+  const double phase = std::fmod(t, 1.5);
+  return -3e-3 + (phase < 1 ? 3.5e-3 * (1 - std::cos(2 * std::numbers::pi * phase)) : 0);
 }
 
-TEST(SurfaceSwingTest, FindsABreathAtAnyPaceAndForeseesIt) {
-  for (const double pace : {0.17, 0.25, 0.33}) {
-    const double rate = 6.283185307 * pace;
-    const auto breath = [rate](double t) { return 0.3e-3 + 1e-3 * std::sin(rate * t + 0.4); };
-    const Swing found = watch(breath).swing();
-    EXPECT_NEAR(found.rate / rate, 1, 0.03) << pace;
-    for (const double ahead : {0.0, 0.1, 0.25}) {
-      const double coming = breath(20 + ahead) - 0.3e-3;
-      EXPECT_NEAR(found.after(ahead), coming, 0.12e-3) << pace << " Hz, " << ahead << " s ahead";
+/// A tip that palpates for `span` [s] at a surface that moves as `displacement`(t) [m], from
+/// `begin` [s] on.
+template <class Displacement>
+void palpate(SurfaceSwing& swing, double begin, double span, const Displacement& displacement) {
+  const int ticks = static_cast<int>(span / kPeriod);
+  for (int tick = 0; tick < ticks; ++tick) {
+    const double t = kPeriod * tick;
+    const double tip = palpating(t);
+    const double noise = 3e-3 * random_normal(1, 2, static_cast<std::uint64_t>(tick));
+    swing.step();
+    swing.see(tip, hertz(tip - displacement(begin + t)) + noise);
+  }
+}
+
+TEST(SurfaceSwingTest, FindsABreathOfAnyPaceAndSizeWithTheTissueUnderItAndForeseesIt) {
+  for (const double pace : {0.15, 0.25, 0.4}) {
+    for (const double size : {0.5e-3, 2e-3}) {
+      const double rate = 2 * std::numbers::pi * pace;
+      const auto breath = [&](double t) { return 0.3e-3 + size * std::sin(rate * t + 0.4); };
+      SurfaceSwing swing{kPeriod};
+      palpate(swing, 0, 16, breath);
+      ASSERT_TRUE(swing.believed()) << pace << ' ' << size;
+      const Swing found = swing.swing();
+      EXPECT_NEAR(found.rate / rate, 1, 0.01) << pace << ' ' << size;
+      for (const double ahead : {0.0, 0.1, 0.25}) {
+        EXPECT_NEAR(swing.surface() + found.after(ahead), breath(16 + ahead), 0.05e-3)
+            << pace << " Hz, " << size << " m, " << ahead << " s ahead";
+      }
+      const auto& shapes = swing.shapes();
+      const double at_three = shapes[0] * 3 * std::sqrt(3 / 1.3) + shapes[1] * 9 + shapes[2] * 27;
+      EXPECT_NEAR(at_three / hertz(3e-3), 1, 0.03) << pace << ' ' << size;
     }
   }
 }
 
-TEST(SurfaceSwingTest, SaysNothingOfASurfaceThatStandsStillOrOnlyDrifts) {
-  EXPECT_EQ(watch([](double) { return 0.3e-3; }).swing().now, 0);
-  EXPECT_EQ(watch([](double t) { return 0.05e-3 * std::sin(1.5 * t); }).swing().now, 0);
+TEST(SurfaceSwingTest, SaysNothingOfASurfaceThatStandsStillOrTrembles) {
+  for (const double size : {0.0, 0.05e-3}) {
+    SurfaceSwing swing{kPeriod};
+    palpate(swing, 0, 16, [&](double t) { return 0.3e-3 + size * std::sin(1.5 * t); });
+    EXPECT_FALSE(swing.believed()) << size;
+    EXPECT_EQ(swing.swing().now, 0) << size;
+    EXPECT_TRUE(swing.still()) << size;
+  }
 }
 
 TEST(SurfaceSwingTest, AnotherPlaceBreathesWithTheSameBreath) {
   const auto breath = [](double t) { return 1e-3 * std::sin(1.6 * t); };
-  SurfaceSwing swing = watch(breath);
-  const Swing before = swing.swing();
-  swing.new_mean();
-  for (int tick = 0; tick < 4000; ++tick) {
-    swing.step();
-    if (tick > 2000 && tick % 5 == 0) swing.see(2e-3 + breath(20 + kPeriod * tick), 1);
-  }
-  EXPECT_NE(before.now, 0);
-  EXPECT_NEAR(swing.swing().now, breath(24), 0.15e-3);
+  SurfaceSwing swing{kPeriod};
+  palpate(swing, 0, 16, breath);
+  ASSERT_TRUE(swing.believed());
+  swing.new_place();
+  palpate(swing, 16, 9, [&](double t) { return 2e-3 + breath(t); });
+  EXPECT_NEAR(swing.surface() + swing.swing().now, 2e-3 + breath(25), 0.1e-3);
 }
 
 }  // namespace

@@ -1,0 +1,74 @@
+// Goal: the map of eq. (1) says what its loop's gain says. Method: with delay alone in the loop the
+// closed form (small gain) decides for every delay at once; some cells of the map are run.
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "lab/plan.h"
+#include "lab/trial.h"
+
+namespace palp::lab {
+namespace {
+
+struct Grip {
+  double mass{};       ///< [kg], of the hand
+  double damping{};    ///< [N s/m]
+  double stiffness{};  ///< [N/m]
+};
+constexpr Grip kLight{0.01, 1, 80};
+constexpr Grip kMid{0.04, 4, 300};
+constexpr Grip kFirm{0.12, 10, 900};
+
+/// Largest gain of the loop through hand, stage (20 Hz, damping 0.9), tissue up to 500 N/m and
+/// transducer (20 Hz), over all frequencies: below 1 no delay makes it unstable.
+double loop_gain(const Grip& grip, double spring) {
+  constexpr double kServo = 2 * std::numbers::pi * 20;
+  double most = 0;
+  for (double hertz = 0.02; hertz < 110; hertz *= 1.01) {
+    const double omega = 2 * std::numbers::pi * hertz;
+    const std::complex<double> s{0, omega};
+    const auto stage = kServo * kServo / (s * s + 1.8 * kServo * s + kServo * kServo);
+    const auto sensor = 1.0 / (1.0 + s / kServo);
+    const std::complex<double> hand{grip.stiffness + spring - (0.075 + grip.mass) * omega * omega,
+                                    omega * (grip.damping + 0.05)};
+    for (double tissue = 0; tissue <= 500; tissue += 25) {
+      most = std::max(most, std::abs((tissue * sensor - spring) * stage / hand));
+    }
+  }
+  return most;
+}
+
+bool is_unstable(const std::string& grip, const std::string& spring, const std::string& trip) {
+  const Plan plan = make_map({});
+  for (const Case& one : plan.cases) {
+    if (one.labels[0] != spring || one.labels[1] != trip || one.labels[6] != grip) continue;
+    const auto scenario = make_case(plan, one);
+    if (!scenario) throw std::runtime_error{scenario.error().text};
+    return run_trial(*scenario).metrics.unstable;
+  }
+  throw std::runtime_error{"no such cell"};
+}
+
+TEST(StabilityMapTest, EquationOneIsStableAtAnyDelayWhereItsLoopGainIsBelowOne) {
+  ASSERT_LT(loop_gain(kFirm, 1600), 1);
+  EXPECT_FALSE(is_unstable("firm", "1600", "500"));
+  EXPECT_FALSE(is_unstable("firm", "1600", "1000"));
+  ASSERT_LT(loop_gain(kMid, 200), 1);
+  EXPECT_FALSE(is_unstable("mid", "200", "200"));
+}
+
+TEST(StabilityMapTest, SomeDelayLosesItWhereTheGainIsAboveOne) {
+  ASSERT_GT(loop_gain(kLight, 25), 1);
+  EXPECT_TRUE(is_unstable("light", "25", "20"));
+  ASSERT_GT(loop_gain(kMid, 1600), 1);
+  EXPECT_TRUE(is_unstable("mid", "1600", "100"));
+}
+
+}  // namespace
+}  // namespace palp::lab
