@@ -185,7 +185,6 @@ Ending serve(const Flags& flags) {
   if (!asked) return config::refusal("palp-netem", asked.error());
   config.up = asked->up;
   config.down = asked->down;
-  config.mode = asked->up.impairment.mode;
   config.preset = flags.preset.empty() ? asked->preset : flags.preset;
   config.seed = flags.seed ? *flags.seed : asked->seed.value_or(1);
   config.record = flags.record;

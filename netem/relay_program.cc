@@ -22,7 +22,7 @@ class Attendant {
   Attendant(Relay& relay, const RelayProgramConfig& config)
       : relay_{relay},
         config_{config},
-        context_{.mode = config.mode, .up = config.up.impairment, .down = config.down.impairment},
+        context_{.up = config.up.impairment, .down = config.down.impairment},
         writer_{relay.recording, relay.start(), wall_now() - (monotonic_now() - relay.start())},
         sides_{.client_side = relay.listening_on(),
                .server_side = relay.forwarding_from(),
@@ -85,7 +85,8 @@ class Attendant {
 
   std::string send(const ControlRequest& request, std::string_view line) {
     const TimePoint now = monotonic_now();
-    const TimePoint at = request.now ? now : std::max(now, relay_.start() + request.change_up.at);
+    const Change& asked = request.up ? request.change_up : request.change_down;
+    const TimePoint at = request.now ? now : std::max(now, relay_.start() + asked.at);
     const auto hand_over = [&](Direction direction, const Change& change, Impairment& current) {
       if (!relay_.commands.try_enqueue({prepare(change), direction, at, std::string{line}})) {
         return false;
@@ -94,7 +95,7 @@ class Attendant {
       if (law) current = change.impairment;
       return true;
     };
-    const bool rebind = request.change_up.kind == Change::Kind::Rebind;
+    const bool rebind = asked.kind == Change::Kind::Rebind;
     bool taken = true;
     if (request.up) taken = hand_over(Direction::Up, request.change_up, context_.up);
     if (request.down && !(rebind && request.up)) {

@@ -18,7 +18,6 @@ struct RelayProgramConfig {
   io::Endpoint listen;
   io::Endpoint forward;
   std::string preset;  ///< or the name of the timeline's file; empty: neither
-  Mode mode{Mode::Exact};
   PathPlan up{};
   PathPlan down{};
   std::uint64_t seed{1};

@@ -52,16 +52,26 @@ struct FieldError {
 
 bool is_time_s(double value) { return value >= 0 && value <= kTimeMaxS; }
 
-/// What an event does to one direction that stands at `current`; `current` moves on with it.
+/// As the words of a refusal spell it.
+const char* name_of(Mode mode) { return mode == Mode::Exact ? "exact" : "netem-6.1"; }
+
+/// What an event does to one direction that stands at `current`; `current` moves on with it. Its
+/// mode stays: the two of them are other machines, which cannot take over from each other.
 tl::expected<Change, FieldError> make_change(const TimelineEvent& event,
-                                             Mode mode,
                                              Impairment& current,
                                              const FileReader& read) {
   using Kind = Change::Kind;
   const auto wrong = [](const char* field, const std::string& text) {
     return tl::unexpected<FieldError>(FieldError{field, text});
   };
-  const auto words = [&](const std::string& text) { return parse_impairment(text, mode, read); };
+  const auto words = [&](const std::string& text) -> Result<Impairment> {
+    auto impairment = parse_impairment(text, current.mode, read);
+    if (impairment && impairment->mode != current.mode) {
+      return fail(std::string{"a change keeps the mode, which is "} + name_of(current.mode) +
+                  " here, not " + name_of(impairment->mode));
+    }
+    return impairment;
+  };
   Change change;
   if (!is_time_s(event.at_s())) return wrong("at_s", "at_s must be from 0 to 1000000 s");
   change.at = from_seconds(event.at_s());
@@ -127,10 +137,10 @@ class Builder {
   Result<void> add(const proto::timeline::Timeline& message, int index, Timeline& timeline) {
     const TimelineEvent& event = message.event(index);
     if (event.dir() != TimelineEvent::DOWN) {
-      if (auto added = add(event, index, timeline.mode, up_, timeline.up); !added) return added;
+      if (auto added = add(event, index, up_, timeline.up); !added) return added;
     }
     if (event.dir() != TimelineEvent::UP) {
-      return add(event, index, timeline.mode, down_, timeline.down);
+      return add(event, index, down_, timeline.down);
     }
     return {};
   }
@@ -149,9 +159,14 @@ class Builder {
   }
 
  private:
-  Result<void> add(
-      const TimelineEvent& event, int index, Mode mode, Impairment& current, PathPlan& plan) {
-    auto change = make_change(event, mode, current, read_);
+  Result<void> add(const TimelineEvent& event, int index, Impairment& current, PathPlan& plan) {
+    // What is set at the start is no change: it may choose the mode of its direction.
+    const bool begins = plan.changes.empty() && event.has_set() && !(event.at_s() > 0);
+    if (begins) {
+      const auto asked = parse_impairment(event.set(), current.mode, read_);
+      if (asked) current.mode = asked->mode;
+    }
+    auto change = make_change(event, current, read_);
     if (!change) {
       return refuse(name_, place_of_event(index, change.error().field), change.error().text);
     }
@@ -169,7 +184,7 @@ class Builder {
   Impairment down_;
 };
 
-/// What is set at the start holds from the start.
+/// What is set at the start holds from the start, its mode too.
 void settle_start(PathPlan& plan) {
   if (plan.changes.empty()) return;
   const Change& first = plan.changes.front();
@@ -274,14 +289,23 @@ Result<ControlRequest> parse_control_line(std::string_view line,
     default:
       break;
   }
-  Impairment up = context.up;
-  Impairment down = context.down;
-  auto change_up = make_change(event, context.mode, up, read);
-  if (!change_up) return fail(change_up.error().text);
-  auto change_down = make_change(event, context.mode, down, read);
-  if (!change_down) return fail(change_down.error().text);
-  request.change_up = *std::move(change_up);
-  request.change_down = *std::move(change_down);
+  // Each direction has its own mode, so what one understands the other need not.
+  const auto change = [&](Impairment law, Change& into) -> Result<void> {
+    auto made = make_change(event, law, read);
+    if (!made) return fail(made.error().text);
+    into = *std::move(made);
+    return {};
+  };
+  if (request.up) {
+    if (auto made = change(context.up, request.change_up); !made) {
+      return tl::unexpected<Error>(made.error());
+    }
+  }
+  if (request.down) {
+    if (auto made = change(context.down, request.change_down); !made) {
+      return tl::unexpected<Error>(made.error());
+    }
+  }
   return request;
 }
 

@@ -44,14 +44,13 @@ struct ControlRequest {
   std::string prefix;  ///< of a recording
 };
 
-/// What the relay does now, for requests that change a part of it.
+/// What the relay does now, for requests that change a part of it; each direction has its mode.
 struct ControlContext {
-  Mode mode{Mode::Exact};
   Impairment up{};
   Impairment down{};
 };
 
-/// Reads one JSON object: a TimelineEvent.
+/// Reads one JSON object: a TimelineEvent. The change of a direction that is not asked is empty.
 [[nodiscard]] Result<ControlRequest> parse_control_line(std::string_view line,
                                                         const ControlContext& context,
                                                         const FileReader& read = read_data_file);

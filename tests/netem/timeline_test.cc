@@ -146,6 +146,38 @@ TEST(TimelineTest, AChangeDoesNotReshuffleTheFuture) {
   }
 }
 
+TEST(TimelineTest, AChangeKeepsTheModeOfItsDirection) {
+  const auto later = parsed("event { at_s: 1 set: \"mode netem-6.1 delay 5ms\" }");
+  ASSERT_FALSE(later);
+  EXPECT_EQ(later.error().text,
+            "day:1:17: a change keeps the mode, which is exact here, not netem-6.1");
+  EXPECT_FALSE(parsed("event { at_s: 1 ramp { over_s: 1 set: \"mode netem-6.1\" } }"));
+  EXPECT_FALSE(parsed("mode: NETEM_6_1 event { at_s: 1 set: \"mode exact\" }"));
+  EXPECT_FALSE(parsed("event { stall { ms: 1 } } event { set: \"mode netem-6.1\" }"));
+}
+
+TEST(TimelineTest, WhatIsSetAtTheStartChoosesTheModeOfItsDirection) {
+  const auto timeline = parsed(
+      "event { dir: UP set: \"mode netem-6.1 delay 5ms\" }"
+      "event { at_s: 1 dir: UP set: \"delay 7ms\" } event { at_s: 1 dir: DOWN set: \"floor 1%\" }");
+  ASSERT_TRUE(timeline) << timeline.error().text;
+  EXPECT_EQ(timeline->up.impairment.mode, Mode::Netem61);
+  EXPECT_EQ(timeline->up.changes.at(0).impairment.mode, Mode::Netem61);
+  EXPECT_EQ(timeline->down.impairment.mode, Mode::Exact);
+}
+
+TEST(ControlLineTest, EachDirectionUnderstandsItsOwnMode) {
+  const ControlContext context{.up = *parse_impairment("mode netem-6.1 delay 5ms"), .down = {}};
+  const auto down = parse_control_line(R"({"dir":"DOWN","set":"delay 5ms floor 10%"})", context);
+  ASSERT_TRUE(down) << down.error().text;
+  EXPECT_EQ(down->change_down.impairment.mode, Mode::Exact);
+  const auto up = parse_control_line(R"({"dir":"UP","set":"delay 7ms"})", context);
+  ASSERT_TRUE(up) << up.error().text;
+  EXPECT_EQ(up->change_up.impairment.mode, Mode::Netem61);
+  EXPECT_FALSE(parse_control_line(R"({"dir":"UP","set":"delay 5ms floor 10%"})", context));
+  EXPECT_FALSE(parse_control_line(R"({"dir":"DOWN","set":"mode netem-6.1"})", context));
+}
+
 TEST(ControlLineTest, ReadsAnEventAsJsonAndItsOwnQuestions) {
   const ControlContext context;
   const auto set = parse_control_line(R"({"dir":"UP","set":"delay 5ms"})", context, files);

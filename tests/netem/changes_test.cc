@@ -1,0 +1,127 @@
+#include <array>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "netem/channel.h"
+#include "netem/timeline.h"
+
+/// Goal: whatever can be said while a path runs can be done to it. Method: random sequences of
+/// lines of live control, those that are understood are applied to a channel under traffic.
+namespace palp::netem {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+constexpr std::array kBeginnings{"none",
+                                 "delay 5ms loss 5% 50%",
+                                 "replay first.csv",
+                                 "mode netem-6.1 delay 5ms",
+                                 "mode netem-6.1 delay 2ms slot 3ms 5ms packets 2 limit 20"};
+
+constexpr std::array kLines{
+    R"({"set":"none"})",
+    R"({"set":"delay 7ms 2ms 25% distribution normal"})",
+    R"({"set":"delay 7ms 2ms distribution gamma correlation-time 40ms stall 5/s 10ms"})",
+    R"({"set":"mode netem-6.1 delay 5ms"})",
+    R"({"set":"mode netem-6.1 delay 3ms slot 2ms 4ms"})",
+    R"({"set":"mode exact delay 5ms"})",
+    R"({"set":"slot 2ms 4ms packets 2"})",
+    R"({"set":"loss 30% 90% duplicate 20% corrupt 10% order netem"})",
+    R"({"set":"loss state 10% 20% loss gilbert-time 10ms 5ms"})",
+    R"({"set":"rate 1mbit queue packets 5 codel"})",
+    R"({"set":"rate 1mbit limit 4"})",
+    R"({"set":"order swap 20% depth 4 delay 5ms reorder 10% gap 2"})",
+    R"({"set":"histogram bins.txt"})",
+    R"({"set":"trace walk.csv loop"})",
+    R"({"set":"replay first.csv"})",
+    R"({"set":"replay second.csv"})",
+    R"({"ramp":{"over_s":0.02,"set":"delay 20ms 3ms loss 50% 80%"}})",
+    R"({"ramp":{"over_s":0.02,"set":"histogram bins.txt"}})",
+    R"({"ramp":{"over_s":0.02,"set":"trace walk.csv"}})",
+    R"({"ramp":{"over_s":0.02,"set":"mode netem-6.1 delay 20ms"}})",
+    R"({"trace":{"file":"walk.csv","loop":true,"dither":true}})",
+    R"({"stall":{"ms":10}})",
+    R"({"blackout":{"ms":10}})",
+    R"({"flood":{"copies":15,"ms":10}})",
+    R"({"rebind":{}})"};
+
+/// A recording of a thousand datagrams with one delay.
+std::string recorded(Duration delay) {
+  std::string text = "index,sent_ns,arrived_ns,copy,verdict,flipped_bit\n";
+  for (std::int64_t i = 0; i < 1000; ++i) {
+    text += std::to_string(i) + "," + std::to_string(i) + "," + std::to_string(i + delay.count()) +
+            ",0,delivered,\n";
+  }
+  return text;
+}
+
+Result<std::string> files(const std::string& name) {
+  if (name == "walk.csv") return std::string{"t_ms,delay_ms\n0,5\n100,7\n"};
+  if (name == "bins.txt") return std::string{"10 1\n20 1\n"};
+  if (name == "first.csv") return recorded(milliseconds{10});
+  if (name == "second.csv") return recorded(milliseconds{30});
+  return fail("no file '" + name + "'");
+}
+
+/// A channel and what is said to it.
+class Path {
+ public:
+  Path(std::string_view words, std::uint64_t seed)
+      : law_{*parse_impairment(words, Mode::Exact, files)},
+        channel_{law_, seed, Direction::Up, 64} {}
+
+  /// @returns whether the line was understood, and so applied.
+  bool say(std::string_view line) {
+    auto request = parse_control_line(line, {.up = law_, .down = law_}, files);
+    if (!request) return false;
+    const Change& change = request->change_up;
+    const bool law = change.kind == Change::Kind::Set || change.kind == Change::Kind::Ramp;
+    if (law) law_ = change.impairment;
+    PreparedChange prepared = prepare(change);
+    channel_.apply(prepared, now_);
+    return true;
+  }
+  /// A datagram after `pause`, and whoever is due. @returns what was decided.
+  std::vector<Decision> send(Duration pause) {
+    now_ += pause;
+    const std::array<std::byte, 100> datagram{};
+    const auto decided = channel_.push(datagram, now_);
+    const std::vector<Decision> decisions{decided.begin(), decided.end()};
+    while (channel_.pop_in_place(now_)) {
+    }
+    return decisions;
+  }
+  [[nodiscard]] bool conserves() const {
+    const ChannelCounters& counters = channel_.counters();
+    return counters.pushed + counters.copies == counters.popped + counters.lost +
+                                                    counters.header_hit + counters.blackout +
+                                                    counters.over_limit + channel_.in_flight();
+  }
+
+ private:
+  Impairment law_;
+  Channel channel_;
+  TimePoint now_{};
+};
+
+RC_GTEST_PROP(ChangesTest, WhateverCanBeSaidCanBeDone, ()) {
+  Path path{*rc::gen::elementOf(kBeginnings), *rc::gen::arbitrary<std::uint64_t>()};
+  for (int i = *rc::gen::inRange(1, 12); i > 0; --i) {
+    (void)path.say(*rc::gen::elementOf(kLines));
+    for (int k = *rc::gen::inRange(0, 40); k > 0; --k) {
+      const auto decisions = path.send(microseconds{*rc::gen::inRange(0, 3000)});
+      for (const Decision& decision : decisions) {
+        RC_ASSERT(decision.verdict != Verdict::Delivered ||
+                  decision.released_at >= decision.arrived_at);
+      }
+      RC_ASSERT(path.conserves());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palp::netem
