@@ -59,6 +59,7 @@ void ExactFates::change(const PreparedLaw& law) noexcept {
   stall_.change(impairment.stall, last_at_);
   bottleneck_.change(impairment);
   calm_until_ = TimePoint::min();
+  recording_.rewind();
   delays_.change(law);
   slots_.change(law);
 }

@@ -1,5 +1,7 @@
 #include "netem/recording_reader.h"
 
+#include <algorithm>
+
 namespace palp::netem {
 
 std::size_t RecordingReader::fates(const Recording& recording,
@@ -8,6 +10,13 @@ std::size_t RecordingReader::fates(const Recording& recording,
                                    const Arrival& arrival,
                                    std::span<CopyFate> into) noexcept {
   const auto& rows = recording.rows;
+  if (lost_) {
+    // By halves: the number may be a million, and this is no place to count up to it.
+    const auto found = std::partition_point(
+        rows.begin(), rows.end(), [&](const Recording::Row& row) { return row.index < index; });
+    at_ = static_cast<std::size_t>(found - rows.begin());
+    lost_ = false;
+  }
   while (at_ < rows.size() && rows[at_].index < index) ++at_;
   std::size_t count = 0;
   std::size_t room = arrival.room;

@@ -14,6 +14,8 @@ namespace palp::netem {
 /// rt.
 class RecordingReader {
  public:
+  /// Another recording, or the same from anywhere.
+  void rewind() noexcept { lost_ = true; }
   /// The fates of datagram `index`, which comes at `at`, and its copies; beyond the recording those
   /// of a perfect link. Numbers rise. @returns how many were put in front of `into`.
   [[nodiscard]] std::size_t fates(const Recording& recording,
@@ -23,7 +25,8 @@ class RecordingReader {
                                   std::span<CopyFate> into) noexcept;
 
  private:
-  std::size_t at_{};  ///< the next row
+  std::size_t at_{};  ///< the next row ...
+  bool lost_{true};   ///< ... which has to be looked for
 };
 
 }  // namespace palp::netem

@@ -123,5 +123,21 @@ RC_GTEST_PROP(ChangesTest, WhateverCanBeSaidCanBeDone, ()) {
   }
 }
 
+TEST(ChangesTest, AReplaySetAnewGivesEachDatagramItsOwnRow) {
+  Path path{"replay first.csv", 1};
+  const auto all_intended = [&](int count, Duration delay) {
+    for (int i = 0; i < count; ++i) {
+      EXPECT_EQ(path.send(milliseconds{1}).at(0).intended, delay) << i;
+    }
+  };
+  all_intended(100, milliseconds{10});
+  EXPECT_TRUE(path.say(R"({"set":"replay second.csv"})"));
+  all_intended(100, milliseconds{30});
+  EXPECT_TRUE(path.say(R"({"set":"delay 5ms"})"));
+  all_intended(100, milliseconds{5});
+  EXPECT_TRUE(path.say(R"({"set":"replay first.csv"})"));
+  all_intended(100, milliseconds{10});
+}
+
 }  // namespace
 }  // namespace palp::netem
