@@ -35,16 +35,14 @@ Duration line_time(const RateLaw& law, std::uint64_t frame) noexcept {
 Bottleneck::Bottleneck(const Impairment& impairment)
     : rate_{impairment.rate},
       queue_{impairment.queue},
-      queued_{!off() && impairment.queue != QueueLaw{}} {
-  if (queued_) waiting_.resize(kWaitingMax);
-}
+      queued_{!off() && impairment.queue != QueueLaw{}},
+      waiting_{std::make_unique_for_overwrite<Waiting[]>(kWaitingMax)} {}
 
 void Bottleneck::change(const Impairment& impairment) noexcept {
   rate_ = impairment.rate;
   queue_ = impairment.queue;
   timed_length_ = 0;
   queued_ = !off() && queue_ != QueueLaw{};
-  if (queued_ && waiting_.empty()) waiting_.resize(kWaitingMax);
 }
 
 TimePoint Bottleneck::pass_queue(TimePoint at, std::uint64_t length) noexcept {

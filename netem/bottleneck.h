@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <memory>
 
 #include "common/core/time.h"
 #include "netem/impairment.h"
@@ -33,8 +33,8 @@ class Bottleneck {
 
  private:
   struct Waiting {
-    TimePoint begins{};      ///< to be sent; from then on it no longer waits
-    std::uint64_t length{};  ///< [bytes]
+    TimePoint begins;      ///< to be sent; from then on it no longer waits
+    std::uint64_t length;  ///< [bytes]
   };
   [[nodiscard]] TimePoint pass_queue(TimePoint at, std::uint64_t length) noexcept;
   TimePoint serve(TimePoint head, std::uint64_t length) noexcept {
@@ -54,8 +54,9 @@ class Bottleneck {
   bool queued_{};                 ///< somebody may be dropped: who waits is kept
   std::uint64_t timed_length_{};  ///< [bytes] that time_ belongs to; 0: none yet
   Duration time_{};
-  TimePoint free_at_{};           ///< when the line has sent all it was given
-  std::vector<Waiting> waiting_;  ///< a ring
+  TimePoint free_at_{};  ///< when the line has sent all it was given
+  /// A ring, there from the start, as a queue may come later; not touched before it is used.
+  std::unique_ptr<Waiting[]> waiting_;
   std::size_t first_{};
   std::size_t count_{};
   std::uint64_t bytes_{};  ///< [bytes], waiting

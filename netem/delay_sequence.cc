@@ -33,13 +33,12 @@ void DelaySequence::choose_source(bool random) noexcept {
   if (source_ != before) ahead_end_ = 0;
 }
 
-void DelaySequence::lean(const Impairment& towards, double share) noexcept {
+void DelaySequence::lean(const PreparedLaw& towards, double share) noexcept {
   const auto between = [share](double from, double to) { return from + share * (to - from); };
-  const auto count = [](Duration span) { return static_cast<double>(span.count()); };
-  const DelayLaw& law = law_->impairment.delay;
-  mean_ = between(count(law.mean), count(towards.delay.mean));
-  jitter_ = between(count(law.jitter), count(towards.delay.jitter));
-  least_ = between(law.floor, towards.delay.floor) * mean_;
+  // Of the curves: a histogram says neither in words.
+  mean_ = between(law_->curve.mean(), towards.curve.mean());
+  jitter_ = between(law_->curve.jitter(), towards.curve.jitter());
+  least_ = between(law_->impairment.delay.floor, towards.impairment.delay.floor) * mean_;
   choose_source(jitter_ > 0);
 }
 

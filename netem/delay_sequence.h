@@ -30,8 +30,9 @@ class DelaySequence {
   }
   /// From the next datagram on; `law` outlives this object or the next change.
   void change(const PreparedLaw& law) noexcept;
-  /// Delays go this share of the way from the law to another one.
-  void lean(const Impairment& towards, double share) noexcept;
+  /// Delays go this share of the way from the law to another one: mean and spread, in the shape of
+  /// the law. @pre neither follows a trace.
+  void lean(const PreparedLaw& towards, double share) noexcept;
 
   /// The next datagram, `index`, comes `gap` after the last one.
   void begin(std::uint64_t index, Duration gap) noexcept {

@@ -1,6 +1,7 @@
 #include "netem/exact_fates.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace palp::netem {
 namespace {
@@ -64,18 +65,19 @@ void ExactFates::change(const PreparedLaw& law) noexcept {
   slots_.change(law);
 }
 
-void ExactFates::lean(const Impairment& towards, double share) noexcept {
+void ExactFates::lean(const PreparedLaw& towards, double share) noexcept {
   catch_up();
   quiet_end_ = 0;
   const auto mix = [share](const Chance& one, const Chance& to) {
-    return Chance{one.share + share * (to.share - one.share),
-                  one.correlation + share * (to.correlation - one.correlation)};
+    return Chance{std::lerp(one.share, to.share, share),
+                  std::lerp(one.correlation, to.correlation, share)};
   };
   const Impairment& from = law_->impairment;
+  const Impairment& to = towards.impairment;
   delays_.lean(towards, share);
-  loss_.change(mix(from.loss, towards.loss));
-  duplicate_.change(mix(from.duplicate, towards.duplicate));
-  corrupt_.change(mix(from.corrupt, towards.corrupt));
+  loss_.lean(mix(from.loss, to.loss));
+  duplicate_.lean(mix(from.duplicate, to.duplicate));
+  corrupt_.lean(mix(from.corrupt, to.corrupt));
 }
 
 std::span<const CopyFate> ExactFates::next(const Arrival& arrival) noexcept {

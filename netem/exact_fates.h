@@ -33,8 +33,9 @@ class ExactFates {
     flood_ = copies;
     quiet_end_ = 0;
   }
-  /// Delay, jitter and random losses go this share of the way towards those of another law.
-  void lean(const Impairment& towards, double share) noexcept;
+  /// Delay, jitter and random losses go this share of the way towards those of another law; what
+  /// is going on, a run of losses say, goes on.
+  void lean(const PreparedLaw& towards, double share) noexcept;
 
  private:
   /// What befalls the original by chance.

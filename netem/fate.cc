@@ -20,16 +20,17 @@ FateSequence::FateSequence(const Impairment& impairment,
                            std::uint64_t seed,
                            Direction direction,
                            TimePoint start)
-    : law_{std::make_unique<PreparedLaw>(impairment)},
+    : first_law_{std::make_unique<const PreparedLaw>(impairment)},
+      law_{first_law_.get()},
       fates_{make_fates(*law_, Streams{seed, direction}, start)} {}
 
-void FateSequence::change(std::unique_ptr<PreparedLaw>& law) noexcept {
-  PALP_CHECK(law->impairment.mode == law_->impairment.mode, "a change keeps the mode");
-  std::swap(law, law_);
+void FateSequence::change(const PreparedLaw& law) noexcept {
+  PALP_CHECK(law.impairment.mode == law_->impairment.mode, "a change keeps the mode");
+  law_ = &law;
   std::visit([&](auto& fates) { fates.change(*law_); }, fates_);
 }
 
-void FateSequence::lean(const Impairment& towards, double share) noexcept {
+void FateSequence::lean(const PreparedLaw& towards, double share) noexcept {
   if (auto* exact = std::get_if<ExactFates>(&fates_)) exact->lean(towards, share);
 }
 

@@ -43,17 +43,18 @@ class FateSequence {
   }
 
   /// From the next datagram on another law holds; the streams go on where they are, so the future
-  /// is not reshuffled. The mode must be the same. The old law comes back in `law`.
-  void change(std::unique_ptr<PreparedLaw>& law) noexcept;
+  /// is not reshuffled. The mode must be the same. `law` outlives this object or the next change.
+  void change(const PreparedLaw& law) noexcept;
   /// Delay, jitter and random losses go a share of the way; in mode exact only.
-  void lean(const Impairment& towards, double share) noexcept;
+  void lean(const PreparedLaw& towards, double share) noexcept;
   /// Copies beside those of the law, of each datagram from now on; in mode exact only.
   void flood(std::size_t copies) noexcept;
 
   [[nodiscard]] const PreparedLaw& law() const noexcept { return *law_; }
 
  private:
-  std::unique_ptr<PreparedLaw> law_;
+  std::unique_ptr<const PreparedLaw> first_law_;
+  const PreparedLaw* law_;  ///< that holds now
   std::variant<ExactFates, KernelFates> fates_;
 };
 

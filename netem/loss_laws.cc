@@ -34,10 +34,22 @@ std::uint64_t run(double scale, std::uint64_t bits) noexcept {
 
 }  // namespace
 
-void ChanceProcess::begin(const Chance& law) noexcept {
+void ChanceProcess::take_law(const Chance& law) noexcept {
   law_ = law;
   hits_ = run_scale(law.share + law.correlation * (1 - law.share));
   misses_ = run_scale(1 - law.share * (1 - law.correlation));
+}
+
+/// What is left of a geometric run is geometric again, so it may be drawn afresh: the next datagram
+/// is in this run, as was decided, and who comes behind it follows the new law.
+void ChanceProcess::rescale(const Chance& law) noexcept {
+  take_law(law);
+  hit_ = hit_ && law.share > 0;
+  left_ = 1 + run(hit_ ? hits_ : misses_, stream_.bits(number_++));
+}
+
+void ChanceProcess::begin(const Chance& law) noexcept {
+  take_law(law);
   hit_ = law.share <= 0 || stream_.uniform(number_++) >= law.share;
   turn();
 }

@@ -23,6 +23,10 @@ class ChanceProcess {
   void change(const Chance& law) noexcept {
     if (law != law_) begin(law);
   }
+  /// A law nearby, on a ramp: the present run goes on, and ends as the new law has it.
+  void lean(const Chance& law) noexcept {
+    if (law != law_) rescale(law);
+  }
 
   /// Of the next datagram.
   [[nodiscard]] bool next() noexcept {
@@ -44,6 +48,8 @@ class ChanceProcess {
 
  private:
   void begin(const Chance& law) noexcept;
+  void rescale(const Chance& law) noexcept;
+  void take_law(const Chance& law) noexcept;
   void turn() noexcept;
 
   RandomStream stream_;

@@ -48,7 +48,6 @@ Passage::Passage(const PathPlan& plan,
       limit_{},
       start_{start},
       last_arrival_{TimePoint::min()},
-      plan_words_{plan.changes},
       plan_loop_{plan.loop},
       dark_until_{TimePoint::min()},
       held_until_{TimePoint::min()},
@@ -150,16 +149,24 @@ std::optional<Decision> Passage::pop(TimePoint now) noexcept {
 }
 
 void Passage::apply(PreparedChange& change, TimePoint now) noexcept {
+  apply_due(now);
+  act(change, now);
+  // The law is this passage's from here on; the one that it replaced may go.
+  if (change.kind == Change::Kind::Set) std::swap(own_law_, change.law);
+  if (change.kind == Change::Kind::Ramp) std::swap(own_ramp_, change.law);
+}
+
+void Passage::act(const PreparedChange& change, TimePoint now) noexcept {
   const TimePoint until = now + change.span;
   switch (change.kind) {
     case Change::Kind::Set:
-      ramp_.reset();
-      fates_.change(change.law);
+      ramp_ = nullptr;
+      fates_.change(*change.law);
       hold_law();
       break;
     case Change::Kind::Ramp:
-      if (ramp_) lean(now);
-      std::swap(ramp_, change.law);
+      if (ramp_ != nullptr) lean(now);
+      ramp_ = change.law.get();
       ramp_from_ = now;
       ramp_span_ = change.span;
       break;
@@ -184,31 +191,43 @@ void Passage::apply(PreparedChange& change, TimePoint now) noexcept {
 /// The plan's changes up to `at`, and what changes with time itself.
 void Passage::apply_due(TimePoint at) noexcept {
   while (plan_at_ < plan_.size() && start_ + plan_shift_ + plan_[plan_at_].at <= at) {
-    PreparedChange& change = plan_[plan_at_];
-    apply(change, start_ + plan_shift_ + change.at);
-    // What a law replaced is not what the plan says: when it comes round it is made again.
-    if (plan_loop_ > Duration{}) change = prepare(plan_words_[plan_at_]);
+    skip_rounds(at);
+    const PreparedChange& change = plan_[plan_at_];
+    act(change, start_ + plan_shift_ + change.at);
     if (++plan_at_ == plan_.size() && plan_loop_ > Duration{}) {
       plan_at_ = 0;
       plan_shift_ += plan_loop_;
     }
   }
-  if (ramp_) lean(at);
+  if (ramp_ != nullptr) lean(at);
   if (flooding_ && at >= flood_until_) {
     flooding_ = false;
     fates_.flood(0);
   }
 }
 
+/// Of rounds that began and ended while nobody came the last one says all: what it leaves behind
+/// does not depend on the one before.
+void Passage::skip_rounds(TimePoint at) noexcept {
+  if (plan_loop_ == Duration{}) return;
+  const auto begun = (at - start_) / plan_loop_;
+  const auto here = plan_shift_ / plan_loop_;
+  if (begun - here < 2) return;
+  const auto missed = static_cast<std::uint64_t>(begun - here - 1);
+  changes_applied_ += missed * plan_.size() - plan_at_;
+  plan_at_ = 0;
+  plan_shift_ = (begun - 1) * plan_loop_;
+}
+
 void Passage::lean(TimePoint at) noexcept {
   const Duration since = at - ramp_from_;
-  if (since >= ramp_span_) {
-    fates_.change(ramp_);
-    hold_law();
-    ramp_.reset();
-  } else {
-    fates_.lean(ramp_->impairment, seconds(since) / seconds(ramp_span_));
-  }
+  if (since < ramp_span_) return fates_.lean(*ramp_, seconds(since) / seconds(ramp_span_));
+  fates_.lean(*ramp_, 1);
+  fates_.change(*ramp_);
+  hold_law();
+  // One from outside holds now: it is in the way of the next ramp no more.
+  if (ramp_ == own_ramp_.get()) std::swap(own_law_, own_ramp_);
+  ramp_ = nullptr;
 }
 
 std::size_t Passage::room() const noexcept {

@@ -74,8 +74,8 @@ class Passage {
   /// The next one due at `now`; its place is free again at the next push.
   [[nodiscard]] std::optional<Decision> pop(TimePoint now) noexcept;
 
-  /// Applies a change now; the next datagram is the first to feel it. What it needs no more comes
-  /// back in `change`, to be freed elsewhere.
+  /// Applies a change now, behind those that the plan has up to now; the next datagram is the first
+  /// to feel it. What it needs no more comes back in `change`, to be freed elsewhere.
   void apply(PreparedChange& change, TimePoint now) noexcept;
 
   /// On their way, or due and not collected.
@@ -86,7 +86,7 @@ class Passage {
   /// What push() said of releases is final; not so where slots decide when they come.
   [[nodiscard]] bool decides_at_once() const noexcept { return !kernel_slots_; }
   [[nodiscard]] const Impairment& impairment() const noexcept { return fates_.law().impairment; }
-  /// Of the plan, counted from the start: how many changes have been applied.
+  /// From the start, those of the plan's rounds that nobody saw included.
   [[nodiscard]] std::uint64_t changes_applied() const noexcept { return changes_applied_; }
   [[nodiscard]] std::uint64_t rebinds() const noexcept { return rebinds_; }
 
@@ -104,7 +104,9 @@ class Passage {
                : static_cast<std::int32_t>(left.number - right.number) > 0;
   }
   void hold_law() noexcept;
+  void act(const PreparedChange& change, TimePoint now) noexcept;
   void apply_due(TimePoint at) noexcept;
+  void skip_rounds(TimePoint at) noexcept;
   void lean(TimePoint at) noexcept;
   [[nodiscard]] std::size_t room() const noexcept;
   [[nodiscard]] const Entry* first_on_way() const noexcept;
@@ -120,14 +122,17 @@ class Passage {
   TimePoint last_arrival_;
   std::uint64_t index_{};
 
-  std::vector<PreparedChange> plan_;
-  std::vector<Change> plan_words_;  ///< to prepare the plan again when it loops
+  std::vector<PreparedChange> plan_;  ///< its laws stay whole: a round goes on where one ended
   std::size_t plan_at_{};
   Duration plan_shift_{};
   Duration plan_loop_{};
   std::uint64_t changes_applied_{};
   std::uint64_t rebinds_{};
-  std::unique_ptr<PreparedLaw> ramp_;
+  const PreparedLaw* ramp_{};  ///< where it leads; null: none is on
+  /// Of changes from outside, which are their hosts' until then: what holds, and where a ramp
+  /// leads. Each stays here until the next one of its kind takes its place.
+  std::unique_ptr<PreparedLaw> own_law_;
+  std::unique_ptr<PreparedLaw> own_ramp_;
   TimePoint ramp_from_{};
   Duration ramp_span_{};
   TimePoint dark_until_;

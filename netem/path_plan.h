@@ -25,7 +25,7 @@ struct Change {
   Impairment impairment{};
   Duration span{};
   std::size_t copies{};
-  std::string words;  ///< for logs
+  std::string words{};  ///< for logs
 };
 
 /// What one direction of a path does over time: an impairment and, if there are any, changes.

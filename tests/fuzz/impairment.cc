@@ -1,7 +1,12 @@
-// Input: an impairment as text, the text of a timeline, and a line of live control.
+// Input: an impairment as text, the text of a timeline, and lines of live control, which are done
+// to a path under traffic.
 #include "netem/impairment.h"
 
+#include <algorithm>
+#include <array>
+
 #include "common/core/check.h"
+#include "netem/channel.h"
 #include "netem/fate.h"
 #include "netem/timeline.h"
 #include "tests/fuzz/fuzz.h"
@@ -58,6 +63,51 @@ Result<std::string> any_file(const std::string& name) {
   return fail("no file");
 }
 
+/// A few datagrams, `pause` apart, and whoever is due: none is lost sight of.
+void pass(Channel& channel, TimePoint& now, Duration pause) {
+  const std::array<std::byte, 50> datagram{};
+  for (int i = 0; i < 5; ++i, now += pause) {
+    (void)channel.push(datagram, now);
+    while (channel.pop_in_place(now)) {
+    }
+  }
+  const ChannelCounters& counters = channel.counters();
+  PALP_CHECK(counters.pushed + counters.copies == counters.popped + counters.lost +
+                                                      counters.header_hit + counters.blackout +
+                                                      counters.over_limit + channel.in_flight(),
+             "datagrams are conserved");
+}
+
+/// Whatever a timeline has is done when its time comes, over hours too.
+void run(const PathPlan& plan) {
+  Channel channel{plan, 1, Direction::Up, 32, TimePoint{}, 1472};
+  TimePoint now{};
+  for (const Duration pause : {Duration{std::chrono::milliseconds{7}},
+                               Duration{std::chrono::seconds{1}},
+                               Duration{std::chrono::hours{1}}}) {
+    pass(channel, now, pause);
+  }
+}
+
+/// Whatever can be said line by line while a path runs can be done to it.
+void say_all(std::string_view text, std::string_view beginning) {
+  Impairment law = *parse_impairment(beginning);
+  Channel channel{law, 1, Direction::Up, 32};
+  TimePoint now{};
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const auto request =
+        parse_control_line(text.substr(0, end), {.up = law, .down = law}, any_file);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (!request || request->kind != ControlRequest::Kind::Change) continue;
+    const Change& change = request->up ? request->change_up : request->change_down;
+    PreparedChange prepared = prepare(change);
+    if (prepared.law) law = change.impairment;
+    channel.apply(prepared, now);
+    pass(channel, now, std::chrono::milliseconds{2});
+  }
+}
+
 void round_trip(const Impairment& impairment) {
   const std::string words = to_string(impairment);
   const auto again = parse_impairment(words, Mode::Exact, any_file);
@@ -86,6 +136,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     for (const auto& plan : {timeline->up, timeline->down}) {
       palp::netem::limits(plan.impairment);
       for (const auto& change : plan.changes) palp::netem::limits(change.impairment);
+      palp::netem::run(plan);
     }
   } else {
     PALP_CHECK(!timeline.error().text.empty(), "a refusal says why");
@@ -94,6 +145,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     palp::netem::limits(request->change_up.impairment);
   } else {
     PALP_CHECK(!request.error().text.empty(), "a refusal says why");
+  }
+  for (const char* beginning : {"none", "mode netem-6.1 delay 5ms"}) {
+    palp::netem::say_all(text, beginning);
   }
   return 0;
 }

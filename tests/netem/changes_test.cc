@@ -7,6 +7,7 @@
 
 #include "netem/channel.h"
 #include "netem/timeline.h"
+#include "tests/support/realtime_guard.h"
 
 /// Goal: whatever can be said while a path runs can be done to it. Method: random sequences of
 /// lines of live control, those that are understood are applied to a channel under traffic.
@@ -137,6 +138,53 @@ TEST(ChangesTest, AReplaySetAnewGivesEachDatagramItsOwnRow) {
   all_intended(100, milliseconds{5});
   EXPECT_TRUE(path.say(R"({"set":"replay first.csv"})"));
   all_intended(100, milliseconds{10});
+}
+
+TEST(ChangesTest, ALoopingPlanAllocatesNothingOnceItRuns) {
+  constexpr const char* kPlan = R"(
+    loop: true length_s: 0.5
+    event { set: "delay 5ms 2ms 25% distribution gamma loss 5% 50%" }
+    event { at_s: 0.1 ramp { over_s: 0.05 set: "histogram bins.txt" } }
+    event { at_s: 0.2 set: "rate 1mbit queue packets 100 codel delay 5ms" }
+    event { at_s: 0.3 set: "slot 1ms 3ms packets 5 order swap 10% depth 8 delay 5ms" }
+    event { at_s: 0.35 trace { file: "walk.csv" loop: true } }
+    event { at_s: 0.4 set: "replay second.csv" }
+    event { at_s: 0.45 stall { ms: 20 } }
+    event { at_s: 0.46 flood { copies: 15 ms: 20 } }
+    event { at_s: 0.48 blackout { ms: 10 } })";
+  const auto no_preset = [](const std::string&) -> Result<Timeline> { return fail("no preset"); };
+  const auto timeline = parse_timeline("plan", kPlan, no_preset, files);
+  ASSERT_TRUE(timeline) << timeline.error().text;
+  Channel channel{timeline->up, 1, Direction::Up, 512, TimePoint{}, 1472};
+  PreparedChange set = prepare({.impairment = *parse_impairment("rate 1mbit queue packets 9")});
+  PreparedChange ramp = prepare({.kind = Change::Kind::Ramp,
+                                 .impairment = *parse_impairment("delay 9ms 1ms"),
+                                 .span = milliseconds{40}});
+  const std::array<std::byte, 100> datagram{};
+  test::RealtimeGuard guard;
+  for (int i = 0; i < 10'000; ++i) {
+    // Three rounds seen and then some that nobody sees, again and again.
+    const TimePoint now{milliseconds{i + i / 1500 * 10'000}};
+    if (i == 2222) channel.apply(set, now);
+    if (i == 3333) channel.apply(ramp, now);
+    (void)channel.push(datagram, now);
+    while (channel.pop_in_place(now)) {
+    }
+  }
+  guard.release();
+  EXPECT_TRUE(guard.clean()) << guard.first_violation();
+  EXPECT_EQ(channel.passage().changes_applied(), 9U * (10'000 + 6 * 10'000) / 500 + 2);
+}
+
+TEST(ChangesTest, WhatIsSaidComesBehindWhatThePlanHadBefore) {
+  PathPlan plan;
+  plan.changes.push_back({.at = milliseconds{10}, .impairment = *parse_impairment("delay 5ms")});
+  Channel channel{plan, 1, Direction::Up, 99, TimePoint{}, 1472};
+  PreparedChange change = prepare({.impairment = *parse_impairment("delay 7ms")});
+  // Nobody came since the plan's change was due.
+  channel.apply(change, TimePoint{milliseconds{20}});
+  const std::array<std::byte, 10> datagram{};
+  EXPECT_EQ(channel.push(datagram, TimePoint{milliseconds{30}})[0].intended, milliseconds{7});
 }
 
 }  // namespace

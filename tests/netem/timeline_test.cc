@@ -131,6 +131,57 @@ TEST(TimelineTest, ALoopBeginsAgain) {
   }
 }
 
+TEST(TimelineTest, ARampGoesBetweenTheMeansOfHistograms) {
+  // Even between 10 and 20 ms, then 20 and 30: means of 15 and 25 ms.
+  const auto file = [](const std::string& name) -> Result<std::string> {
+    return std::string{name == "low" ? "10 1\n20 0\n" : "20 1\n30 0\n"};
+  };
+  const auto mean = [&](const char* from, const char* to) {
+    PathPlan plan{.impairment = *parse_impairment(from, Mode::Exact, file)};
+    plan.changes.push_back({.at = {},
+                            .kind = Change::Kind::Ramp,
+                            .impairment = *parse_impairment(to, Mode::Exact, file),
+                            .span = seconds{2'000'000}});
+    // In the middle of the ramp, where 200 s change little.
+    Passage passage{plan, 3, Direction::Up, 10'000, 10'000, TimePoint{}};
+    double sum = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const TimePoint at = TimePoint{seconds{999'900}} + milliseconds{50 * i};
+      sum += palp::seconds(passage.push({.at = at, .length = 100, .room = 99})[0].intended);
+      while (passage.pop(at)) {
+      }
+    }
+    return sum / 4000;
+  };
+  // Standard deviations of at most 2.9 ms: four standard errors are 0.19 ms.
+  EXPECT_NEAR(mean("histogram low", "histogram high"), 0.020, 0.0002);
+  EXPECT_NEAR(mean("histogram low", "delay 45ms"), 0.030, 0.0002);
+  EXPECT_NEAR(mean("delay 5ms", "histogram high"), 0.015, 0.0002);
+}
+
+TEST(TimelineTest, RoundsThatNobodySawAreNotWalkedThrough) {
+  const auto timeline = parsed(
+      "loop: true length_s: 0.001 event { set: \"delay 10ms\" }"
+      "event { at_s: 0.0004 set: \"delay 20ms\" } event { at_s: 0.0008 rebind {} }");
+  ASSERT_TRUE(timeline);
+  Passage passage{timeline->up, 1, Direction::Up, 99, 99, TimePoint{}};
+  const auto delay = [&](Duration at) {
+    const Decision decision = passage.push({.at = TimePoint{at}, .length = 9, .room = 99})[0];
+    while (passage.pop(decision.released_at)) {
+    }
+    return decision.intended;
+  };
+  using std::chrono::microseconds;
+  EXPECT_EQ(delay(microseconds{100}), milliseconds{10});
+  EXPECT_EQ(passage.changes_applied(), 1U);
+  // A year of milliseconds: walked through, this test would not end.
+  const Duration year = seconds{31'536'000};
+  EXPECT_EQ(delay(year + microseconds{500}), milliseconds{20});
+  EXPECT_EQ(passage.changes_applied(), 3 * 31'536'000'000U + 2) << "as if each had been seen";
+  EXPECT_EQ(passage.rebinds(), 1U);
+  EXPECT_EQ(delay(year + microseconds{1000}), milliseconds{10});
+}
+
 TEST(TimelineTest, AChangeDoesNotReshuffleTheFuture) {
   const auto before = parsed("event { set: \"delay 50ms 5ms loss 10% order netem\" }");
   const auto changed = parsed(
