@@ -104,6 +104,10 @@ Result<void> one_way_only(const Flags& flags) {
     first = &one;
   }
   if (flags.rtt_ms && flags.delay_ms) return clash("--rtt-ms", "--delay-ms");
+  // Words have the mode of the flag; the others say theirs, or are laws of mode exact.
+  if (flags.mode != "exact" && first != nullptr && first->way > 1) {
+    return clash("--mode " + flags.mode, first->flag);
+  }
   return {};
 }
 

@@ -52,6 +52,11 @@ struct FieldError {
 
 bool is_time_s(double value) { return value >= 0 && value <= kTimeMaxS; }
 
+/// Its delays are data, each at its place.
+bool is_followed(const Impairment& law) {
+  return !law.trace.points.empty() || !law.replay.rows.empty();
+}
+
 /// As the words of a refusal spell it.
 const char* name_of(Mode mode) { return mode == Mode::Exact ? "exact" : "netem-6.1"; }
 
@@ -72,6 +77,7 @@ tl::expected<Change, FieldError> make_change(const TimelineEvent& event,
     }
     return impairment;
   };
+  const bool kernel = current.mode == Mode::Netem61;
   Change change;
   if (!is_time_s(event.at_s())) return wrong("at_s", "at_s must be from 0 to 1000000 s");
   change.at = from_seconds(event.at_s());
@@ -90,10 +96,14 @@ tl::expected<Change, FieldError> make_change(const TimelineEvent& event,
       break;
     }
     case TimelineEvent::kRamp: {
+      if (kernel) return wrong("ramp", "mode netem-6.1 knows no ramp");
       auto impairment = words(event.ramp().set());
       if (!impairment) return wrong("ramp", impairment.error().text);
       if (!(event.ramp().over_s() > 0 && is_time_s(event.ramp().over_s()))) {
         return wrong("ramp", "over_s must be above 0, to 1000000 s");
+      }
+      if (is_followed(current) || is_followed(*impairment)) {
+        return wrong("ramp", "a trace or a replay has no mean delay for a ramp to begin or end at");
       }
       change.kind = Kind::Ramp;
       change.span = from_seconds(event.ramp().over_s());
@@ -115,6 +125,7 @@ tl::expected<Change, FieldError> make_change(const TimelineEvent& event,
     case TimelineEvent::kBlackout:
       return span(event.blackout().ms(), "blackout", Kind::Blackout);
     case TimelineEvent::kFlood:
+      if (kernel) return wrong("flood", "mode netem-6.1 knows no flood");
       if (event.flood().copies() < 1 || event.flood().copies() > kCopiesInFloodMax) {
         return wrong("flood", "copies must be from 1 to 15");
       }
@@ -193,6 +204,17 @@ void settle_start(PathPlan& plan) {
   if (plan.loop == Duration{}) plan.changes.erase(plan.changes.begin());
 }
 
+/// Whether the first law of a round is a ramp's and the last one of the round before is data.
+bool ramps_from_the_end(const PathPlan& plan) {
+  const auto is_law = [](const Change& change) {
+    return change.kind == Change::Kind::Set || change.kind == Change::Kind::Ramp;
+  };
+  const auto first = std::find_if(plan.changes.begin(), plan.changes.end(), is_law);
+  const auto last = std::find_if(plan.changes.rbegin(), plan.changes.rend(), is_law);
+  return first != plan.changes.end() && first->kind == Change::Kind::Ramp &&
+         is_followed(last->impairment);
+}
+
 }  // namespace
 
 Result<Timeline> parse_timeline(std::string_view name,
@@ -256,6 +278,11 @@ Result<Timeline> parse_timeline(std::string_view name,
           name, place("loop"), "a loop lasts at least as long as its last event, and 1 ms");
     }
     timeline.up.loop = timeline.down.loop = length;
+    if (ramps_from_the_end(timeline.up) || ramps_from_the_end(timeline.down)) {
+      return refuse(name,
+                    place("loop"),
+                    "the first ramp would begin at the trace that ends the round before");
+    }
   }
   if (events) {
     settle_start(timeline.up);
@@ -277,9 +304,11 @@ Result<ControlRequest> parse_control_line(std::string_view line,
   request.now = !event.has_at_s();
   switch (event.what_case()) {
     case TimelineEvent::kStats:
+      if (!event.stats()) return fail("stats must be true");
       request.kind = ControlRequest::Kind::Stats;
       return request;
     case TimelineEvent::kQuit:
+      if (!event.quit()) return fail("quit must be true");
       request.kind = ControlRequest::Kind::Quit;
       return request;
     case TimelineEvent::kRecord:

@@ -202,6 +202,9 @@ TEST_F(RelayProgramTest, BadInputIsExitCode2AndASentence) {
                                              {"--loss", "5%", "--up", "none"},
                                              {"--seed", "x"},
                                              {"--duration-s", "-1"},
+                                             {"--mode", "netem-6.1", "--preset", "leo"},
+                                             {"--mode", "netem-6.1", "--rtt-ms", "50"},
+                                             {"--mode", "netem-6.1", "--timeline", "day"},
                                              {"--nonsense"}}) {
     Process program = start_relay(wrong);
     EXPECT_EQ(program.wait(kLimit), 2) << wrong.front() << ' ' << wrong.back();

@@ -207,6 +207,30 @@ TEST(TimelineTest, AChangeKeepsTheModeOfItsDirection) {
   EXPECT_FALSE(parsed("event { stall { ms: 1 } } event { set: \"mode netem-6.1\" }"));
 }
 
+TEST(TimelineTest, TheKernelKnowsNeitherRampsNorFloods) {
+  const auto ramp = parsed("mode: NETEM_6_1 event { ramp { over_s: 5 set: \"delay 5ms\" } }");
+  ASSERT_FALSE(ramp);
+  EXPECT_EQ(ramp.error().text, "day:1:25: mode netem-6.1 knows no ramp");
+  const auto flood = parsed("mode: NETEM_6_1 event { flood { copies: 1 ms: 5 } }");
+  ASSERT_FALSE(flood);
+  EXPECT_EQ(flood.error().text, "day:1:25: mode netem-6.1 knows no flood");
+}
+
+TEST(TimelineTest, ARampNeedsAMeanAtBothEnds) {
+  constexpr const char* kRamp = "event { at_s: 2 ramp { over_s: 1 set: \"delay 5ms\" } }";
+  for (const std::string begins : {"trace { file: \"walk.csv\" }", "set: \"trace walk.csv\""}) {
+    const auto from = parsed("event { at_s: 1 " + begins + " }" + kRamp);
+    ASSERT_FALSE(from);
+    EXPECT_NE(from.error().text.find("has no mean delay"), std::string::npos);
+  }
+  EXPECT_FALSE(parsed("event { at_s: 1 ramp { over_s: 1 set: \"trace walk.csv\" } }"));
+  EXPECT_TRUE(parsed(std::string{kRamp} + "event { at_s: 4 trace { file: \"walk.csv\" } }"));
+  const auto round =
+      parsed("loop: true " + std::string{kRamp} + "event { at_s: 4 trace { file: \"walk.csv\" } }");
+  ASSERT_FALSE(round) << "the second round would begin at the trace";
+  EXPECT_EQ(round.error().text.rfind("day:1:1: the first ramp", 0), 0U);
+}
+
 TEST(TimelineTest, WhatIsSetAtTheStartChoosesTheModeOfItsDirection) {
   const auto timeline = parsed(
       "event { dir: UP set: \"mode netem-6.1 delay 5ms\" }"
@@ -252,6 +276,8 @@ TEST(ControlLineTest, ReadsAnEventAsJsonAndItsOwnQuestions) {
                             R"({"sett":"none"})",
                             R"({"set":"delay 5minutes"})",
                             R"({"at_s":-1,"rebind":{}})",
+                            R"({"quit":false})",
+                            R"({"stats":false})",
                             "{}"}) {
     EXPECT_FALSE(parse_control_line(wrong, context, files)) << wrong;
   }
