@@ -98,6 +98,7 @@ std::span<const Decision> Passage::push(const Arrival& arrival) noexcept {
                 .copy = static_cast<std::uint32_t>(copy),
                 .verdict = at < dark_until_ ? Verdict::Blackout : fate.verdict,
                 .floored = fate.floored,
+                .open = kernel_slots_.has_value(),
                 .tos = fate.tos,
                 .flipped_bit = fate.flipped_bit,
                 .length = fate.length,
@@ -106,6 +107,7 @@ std::span<const Decision> Passage::push(const Arrival& arrival) noexcept {
                 .arrived_at = at,
                 .released_at = fate.release};
     if (decision.verdict == Verdict::Delivered) enter(decision, fate.immediate);
+    decision.open = decision.open && decision.verdict == Verdict::Delivered;
   }
   ++index_;
   if (kernel_slots_) let_out(at);

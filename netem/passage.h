@@ -38,6 +38,7 @@ struct Decision {
   std::uint32_t copy{};   ///< 0: the original
   Verdict verdict{};
   bool floored{};
+  bool open{};  ///< slots decide when it leaves: its release holds once it is popped
   std::uint8_t tos{};
   std::int32_t flipped_bit{-1};
   std::uint32_t length{};  ///< [bytes] of payload, as it leaves

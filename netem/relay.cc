@@ -48,6 +48,7 @@ Relay::Relay(const RelayConfig& config)
     : client_side_{DatagramSocket::bound(config.listen, config.datagram_max)},
       server_side_{DatagramSocket::connected(config.forward, config.datagram_max)},
       forward_{config.forward},
+      own_ends_{CapturedEnd{client_side_.local()}, CapturedEnd{server_side_.local()}},
       start_{monotonic_now()},
       up_{config.up, config.seed, Direction::Up, config.in_flight_max, start_, config.datagram_max},
       down_{config.down,
@@ -109,13 +110,18 @@ void Relay::drain(Readable readable) noexcept {
 
 void Relay::push(Direction direction, std::span<const ReceivedDatagram> datagrams) noexcept {
   Channel& channel = way(direction);
-  const std::uint8_t side = direction == Direction::Up ? 0 : 1;
+  const Crossing from = recording_on_ ? crossing(direction == Direction::Up ? 0 : 1) : Crossing{};
   for (const ReceivedDatagram& datagram : datagrams) {
     const auto decisions = channel.push(datagram.bytes, datagram.arrived_at, datagram.tos);
     if (!recording_on_) continue;
-    recording.decided(decisions, direction, channel.passage().decides_at_once());
-    recording.crossed(datagram.bytes, datagram.arrived_at, side, false, datagram.tos);
+    recording.decided(decisions, direction);
+    recording.crossed(from, datagram.bytes, datagram.arrived_at, false, datagram.tos);
   }
+}
+
+Crossing Relay::crossing(std::uint8_t side) const noexcept {
+  const CapturedEnd peer{side == 1 ? forward_ : client_.value_or(io::Endpoint{})};
+  return {.own = own_ends_[side], .peer = peer, .side = side};
 }
 
 /// Changes whose time has come act on what arrives from now on.
@@ -153,7 +159,7 @@ void Relay::release(Direction direction, TimePoint now) noexcept {
   DatagramSocket& socket = direction == Direction::Up ? server_side_ : client_side_;
   const bool known = direction == Direction::Up || client_.has_value();
   const io::Endpoint* to = direction == Direction::Down && client_ ? &*client_ : nullptr;
-  const std::uint8_t side = direction == Direction::Up ? 1 : 0;
+  const Crossing onto = recording_on_ ? crossing(direction == Direction::Up ? 1 : 0) : Crossing{};
   TimePoint before = now;
   for (auto next = channel.next_release(); next; next = channel.next_release()) {
     const TimePoint due = before + lead(direction, *next);
@@ -171,9 +177,9 @@ void Relay::release(Direction direction, TimePoint now) noexcept {
     account(direction, sent, before);
     if (recording_on_) {
       for (std::size_t i = 0; i < count; ++i) {
-        if (!channel.passage().decides_at_once()) recording.left(leaving_[i], direction);
+        if (leaving_[i].open) recording.left(leaving_[i], direction);
         if (i < sent) {
-          recording.crossed(outgoing_[i].bytes, monotonic_now(), side, true, outgoing_[i].tos);
+          recording.crossed(onto, outgoing_[i].bytes, monotonic_now(), true, outgoing_[i].tos);
         }
       }
     }
@@ -207,6 +213,7 @@ void Relay::rebind_if_asked() {
   if (asked == rebinds_) return;
   rebinds_ = asked;
   server_side_.reconnect(forward_);
+  own_ends_[1] = CapturedEnd{server_side_.local()};
 }
 
 /// Waits in the kernel until something arrives or shortly before the next release; then it looks

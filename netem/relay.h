@@ -111,6 +111,7 @@ class Relay {
   void release(Direction direction, TimePoint now) noexcept;
   void account(Direction direction, std::size_t sent, TimePoint before) noexcept;
   void rebind_if_asked();
+  [[nodiscard]] Crossing crossing(std::uint8_t side) const noexcept;
   [[nodiscard]] Duration lead(Direction direction, TimePoint next) const noexcept;
   [[nodiscard]] Readable rest(TimePoint now, TimePoint until) noexcept;
   void warm() noexcept;
@@ -123,6 +124,7 @@ class Relay {
   DatagramSocket client_side_;
   DatagramSocket server_side_;
   io::Endpoint forward_;
+  std::array<CapturedEnd, 2> own_ends_;  ///< of the sockets: 0 the client's, 1 the server's
   TimePoint start_;
   Channel up_;
   Channel down_;

@@ -24,9 +24,6 @@ class Attendant {
         config_{config},
         context_{.up = config.up.impairment, .down = config.down.impairment},
         writer_{relay.recording, relay.start(), wall_now() - (monotonic_now() - relay.start())},
-        sides_{.client_side = relay.listening_on(),
-               .server_side = relay.forwarding_from(),
-               .server = config.forward},
         status_at_{relay.start() + config.status_every} {}
 
   Result<void> open() {
@@ -36,13 +33,13 @@ class Attendant {
       control_.emplace(*std::move(control));
       std::printf("control on %s\n", control_->address().c_str());
     }
-    return config_.record.empty() ? Result<void>{} : record(config_.record);
+    return config_.record.empty() ? Result<void>{} : writer_.open(config_.record);
   }
 
   void work(TimePoint now) {
     if (control_) control_->serve([this](std::string_view line) { return answer(line); });
     log_applied();
-    writer_.drain(relay_.status.get().client);
+    writer_.drain();
     if (config_.status_every > Duration{} && now >= status_at_) {
       status_at_ += config_.status_every;
       std::printf("%s\n", status_line(relay_.status.get(), relay_.start()).c_str());
@@ -50,15 +47,10 @@ class Attendant {
     }
   }
 
-  Result<void> finish() {
-    writer_.drain(relay_.client().value_or(io::Endpoint{}));
-    return writer_.close();
-  }
+  Result<RecordingGaps> finish() { return writer_.close(); }
   [[nodiscard]] bool told_to_quit() const noexcept { return quit_; }
 
  private:
-  Result<void> record(const std::string& prefix) { return writer_.open(prefix, sides_); }
-
   std::string answer(std::string_view line) {
     const auto request = parse_control_line(line, context_);
     if (!request) return error_line(request.error().text);
@@ -71,9 +63,9 @@ class Attendant {
       case ControlRequest::Kind::Record:
         if (request->prefix.empty()) {
           const auto closed = writer_.close();
-          return closed ? "{\"recording\":false}" : error_line(closed.error().text);
+          return closed ? recording_end_line(*closed) : error_line(closed.error().text);
         }
-        if (const auto opened = record(request->prefix); !opened) {
+        if (const auto opened = writer_.open(request->prefix); !opened) {
           return error_line(opened.error().text);
         }
         return "{\"recording\":true}";
@@ -120,8 +112,6 @@ class Attendant {
   const RelayProgramConfig& config_;
   ControlContext context_;
   RecordingWriter writer_;
-  /// As they are at the start: the relay's own sockets are its thread's.
-  RecordingWriter::Sides sides_;
   std::optional<RelayControl> control_;
   TimePoint status_at_;
   std::atomic<bool> quit_{false};
@@ -180,7 +170,7 @@ Result<void> run_relay(const RelayProgramConfig& config) {
   const auto finished = attendant.finish();
   std::fputs(relay_summary(relay).c_str(), stdout);
   if (auto written = write_report(); !written) return written;
-  return finished;
+  return finished ? Result<void>{} : tl::unexpected<Error>(finished.error());
 }
 
 }  // namespace palp::netem

@@ -14,23 +14,46 @@
 
 namespace palp::netem {
 
+/// An address and a port as they stand in headers.
+struct CapturedEnd {
+  std::array<std::byte, 16> address{};
+  std::uint8_t size{};  ///< [bytes] of the address: 4 or 16; 0: nobody
+  std::uint16_t port{};
+
+  CapturedEnd() noexcept = default;
+  explicit CapturedEnd(const io::Endpoint& endpoint) noexcept;
+};
+
+/// Where a datagram crosses: one of the relay's sockets and who is on the other side of it.
+struct Crossing {
+  CapturedEnd own;
+  CapturedEnd peer;
+  std::uint8_t side{};  ///< 0: the client's, 1: the server's
+};
+
 /// A datagram as it crossed one of the relay's sockets.
 struct CapturedDatagram {
   static constexpr std::size_t kBytesMax = 1472;
   TimePoint at{};
-  std::uint8_t side{};  ///< 0: the client's, 1: the server's
-  bool outbound{};      ///< the relay sent it
+  Crossing crossing;  ///< as it was then
+  bool outbound{};    ///< the relay sent it
   std::uint8_t tos{};
   std::uint32_t length{};                  ///< [bytes] of payload, also when not all of it was kept
   std::array<std::byte, kBytesMax> bytes;  ///< left as it is beyond `length`
 };
 
-/// What the relay's thread tells the recording. `final`: nothing more comes of this datagram.
+/// What the relay's thread tells the recording: of a datagram as decided each copy, and, where that
+/// left its release open, the release.
 struct RecordedDecision {
   Decision decision;
   Direction direction{};
-  std::uint8_t copies{};  ///< of a whole datagram as decided, told before its copies; 0: a release
-  bool final{};
+  std::uint8_t copies{};  ///< of the whole datagram, original included; 0: a release
+};
+
+/// What a recording lacks.
+struct RecordingGaps {
+  std::uint64_t missed{};  ///< told while a queue was full
+  std::uint64_t open{};    ///< on their way at its end: the release is the one first thought of
 };
 
 /// Two queues from the relay's thread to whoever writes. Thread: written by the relay, read by the
@@ -38,11 +61,11 @@ struct RecordedDecision {
 class RecordingQueue {
  public:
   RecordingQueue();
-  void decided(std::span<const Decision> decisions, Direction direction, bool final) noexcept;
+  void decided(std::span<const Decision> decisions, Direction direction) noexcept;
   void left(const Decision& decision, Direction direction) noexcept;
-  void crossed(std::span<const std::byte> bytes,
+  void crossed(const Crossing& crossing,
+               std::span<const std::byte> bytes,
                TimePoint at,
-               std::uint8_t side,
                bool outbound,
                std::uint8_t tos) noexcept;
 
@@ -54,30 +77,28 @@ class RecordingQueue {
 };
 
 /// The files PREFIX-up.csv, PREFIX-down.csv (columns of `palp-netem simulate`, and the length) and
-/// PREFIX.pcapng (both sides as two interfaces). The CSV is complete and can be replayed; it tells
-/// the decisions, not the machine's lateness. Thread: the writer's.
+/// PREFIX.pcapng (both sides as two interfaces). The CSV is complete and can be replayed: it counts
+/// from its first datagram, and tells the decisions, not the machine's lateness.
+/// Thread: the writer's.
 class RecordingWriter {
  public:
-  struct Sides {
-    io::Endpoint client_side;  ///< the relay's own address towards the client
-    io::Endpoint server_side;  ///< ... and towards the server
-    io::Endpoint server;
-  };
   /// `start`: 0 of the CSVs' times; `wall_start` its time since 1970.
   RecordingWriter(RecordingQueue& queue, TimePoint start, Duration wall_start);
   ~RecordingWriter();
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
-  [[nodiscard]] Result<void> open(const std::string& prefix, const Sides& sides);
+  [[nodiscard]] Result<void> open(const std::string& prefix);
   [[nodiscard]] bool is_open() const noexcept { return files_ != nullptr; }
-  /// Writes what waits. `client`: who the relay's client is now.
-  void drain(const io::Endpoint& client);
-  [[nodiscard]] Result<void> close();
+  /// Writes what waits.
+  void drain();
+  /// Writes the rest.
+  [[nodiscard]] Result<RecordingGaps> close();
 
  private:
   struct Files;
-  void write(const CapturedDatagram& datagram, const io::Endpoint& client);
+  void write(const RecordedDecision& told);
+  void write(const CapturedDatagram& captured);
 
   RecordingQueue& queue_;
   TimePoint start_;

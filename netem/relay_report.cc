@@ -156,6 +156,10 @@ std::string status_json(const RelayStatus& status, TimePoint start) {
   return report.dump();
 }
 
+std::string recording_end_line(const RecordingGaps& gaps) {
+  return ordered_json{{"recording", false}, {"missed", gaps.missed}, {"open", gaps.open}}.dump();
+}
+
 std::string error_line(const std::string& sentence) {
   return ordered_json{{"error", sentence}}.dump(
       -1, ' ', false, ordered_json::error_handler_t::replace);

@@ -27,6 +27,9 @@ struct RelayRun {
 [[nodiscard]] std::string status_line(const RelayStatus& status, TimePoint start);
 [[nodiscard]] std::string status_json(const RelayStatus& status, TimePoint start);
 
+/// {"recording": false, ...} with what it lacks.
+[[nodiscard]] std::string recording_end_line(const RecordingGaps& gaps);
+
 /// {"error": "..."}
 [[nodiscard]] std::string error_line(const std::string& sentence);
 

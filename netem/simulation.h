@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -37,6 +38,19 @@ class DecisionOrder {
   void decided(std::span<const Decision> decisions, bool final);
   /// One of them left, with the release that holds.
   void left(const Decision& decision);
+  /// Tells the first `count` of those that wait with the releases they have, come what may.
+  /// @returns how many copies are still to leave.
+  std::uint64_t give_up(std::size_t count = std::numeric_limits<std::size_t>::max()) {
+    std::uint64_t open = 0;
+    for (; count > 0 && !waiting_.empty(); --count) {
+      open += waiting_.begin()->second.open;
+      waiting_.begin()->second.open = 0;
+      flush();
+    }
+    return open;
+  }
+  /// Datagrams that are not told yet.
+  [[nodiscard]] std::size_t waiting() const noexcept { return waiting_.size(); }
 
  private:
   struct Datagram {
