@@ -198,7 +198,9 @@ Ending serve(const Flags& flags) {
   config.status_every =
       from_seconds(flags.status_s.value_or(::isatty(STDOUT_FILENO) != 0 ? 1.0 : 0.0));
   config.stop_descriptor = stop_signals();
-  if (const auto served = run_relay(config); !served) return cannot_open(served.error().text);
+  if (const auto served = run_relay(config); !served) {
+    return config::refusal("palp-netem", served.error());
+  }
   return {ExitCode::Done, ""};
 }
 

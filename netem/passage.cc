@@ -30,7 +30,8 @@ PreparedChange prepare(const Change& change) {
                           .kind = change.kind,
                           .span = change.span,
                           .copies = change.copies,
-                          .law = {}};
+                          .law = {},
+                          .law_number = {}};
   if (change.kind == Change::Kind::Set || change.kind == Change::Kind::Ramp) {
     prepared.law = std::make_unique<PreparedLaw>(change.impairment);
   }
@@ -57,7 +58,10 @@ Passage::Passage(const PathPlan& plan,
       slot_stream_{Streams{seed, direction}.of(Stage::Slot)},
       places_{in_flight_max + waiting_max} {
   PALP_CHECK(in_flight_max > 0, "a passage has room for one datagram");
-  for (const Change& change : plan.changes) plan_.push_back(prepare(change));
+  for (const Change& change : plan.changes) {
+    plan_.push_back(prepare(change));
+    plan_.back().law_number = plan_.size();
+  }
   heap_.reserve(places_);
   collected_.reserve(places_);
   held_.reserve(places_);
@@ -187,7 +191,23 @@ void Passage::act(const PreparedChange& change, TimePoint now) noexcept {
       ++rebinds_;
       break;
   }
+  if (change.law) law_number_ = change.law_number;
   ++changes_applied_;
+}
+
+std::uint64_t Passage::law_number(TimePoint at) const noexcept {
+  const Duration since = at - start_ - plan_shift_;
+  if (plan_at_ == plan_.size() || plan_[plan_at_].at > since) return law_number_;
+  std::uint64_t number = law_number_;
+  const auto pass = [&](std::size_t from, Duration until) {
+    for (std::size_t i = from; i < plan_.size() && plan_[i].at <= until; ++i) {
+      if (plan_[i].law) number = plan_[i].law_number;
+    }
+  };
+  pass(plan_at_, since);
+  if (plan_loop_ > Duration{} && since >= 2 * plan_loop_) pass(0, plan_loop_);
+  if (plan_loop_ > Duration{} && since >= plan_loop_) pass(0, since % plan_loop_);
+  return number;
 }
 
 /// The plan's changes up to `at`, and what changes with time itself.

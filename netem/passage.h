@@ -23,6 +23,7 @@ struct PreparedChange {
   Duration span{};
   std::size_t copies{};
   std::unique_ptr<PreparedLaw> law;  ///< Set and Ramp
+  std::uint64_t law_number{};        ///< its name, see Passage::law_number()
 };
 [[nodiscard]] PreparedChange prepare(const Change& change);
 
@@ -90,6 +91,10 @@ class Passage {
   /// From the start, those of the plan's rounds that nobody saw included.
   [[nodiscard]] std::uint64_t changes_applied() const noexcept { return changes_applied_; }
   [[nodiscard]] std::uint64_t rebinds() const noexcept { return rebinds_; }
+  /// Which law holds for who comes at `at`, on a ramp the one where it leads: 0: the plan's first;
+  /// 1, 2 ..: that of the plan's change of this place, from 1; else what the change from outside
+  /// said.
+  [[nodiscard]] std::uint64_t law_number(TimePoint at) const noexcept;
 
  private:
   struct Entry {
@@ -129,7 +134,8 @@ class Passage {
   Duration plan_loop_{};
   std::uint64_t changes_applied_{};
   std::uint64_t rebinds_{};
-  const PreparedLaw* ramp_{};  ///< where it leads; null: none is on
+  std::uint64_t law_number_{};  ///< as applied
+  const PreparedLaw* ramp_{};   ///< where it leads; null: none is on
   /// Of changes from outside, which are their hosts' until then: what holds, and where a ramp
   /// leads. Each stays here until the next one of its kind takes its place.
   std::unique_ptr<PreparedLaw> own_law_;

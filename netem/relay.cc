@@ -76,6 +76,7 @@ bool Relay::serve(Duration span) {
     take_commands(monotonic_now());
     drain(readable);
     const TimePoint now = monotonic_now();
+    tell_laws(now);
     release(Direction::Up, now);
     release(Direction::Down, now);
     rebind_if_asked();
@@ -137,10 +138,16 @@ void Relay::take_commands(TimePoint now) {
     }
     way(waiting_[i].direction).apply(waiting_[i].change, now);
     waiting_[i].at = now;
+    tell_laws(now);
     // What the change replaced is freed by the other thread, or here if it does not keep up.
     (void)spent.try_enqueue(std::move(waiting_[i]));
     waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
   }
+}
+
+void Relay::tell_laws(TimePoint now) noexcept {
+  law_numbers[0].store(up_.passage().law_number(now), std::memory_order_relaxed);
+  law_numbers[1].store(down_.passage().law_number(now), std::memory_order_relaxed);
 }
 
 /// How long before `next` to begin, so that what leaves at `next` is on time. Of several that are

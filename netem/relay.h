@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -45,8 +46,9 @@ struct RelayTraffic {
 struct RelayCommand {
   PreparedChange change;
   Direction direction{};
-  TimePoint at{};     ///< not before; on the way back: when it was applied
-  std::string words;  ///< for the log
+  TimePoint at{};          ///< not before; on the way back: when it was applied
+  std::string words;       ///< for the log
+  std::uint64_t number{};  ///< the sender's own
 };
 
 /// What the relay shows while it runs. Of each direction, by Direction.
@@ -92,12 +94,16 @@ class Relay {
   }
   [[nodiscard]] RelayTraffic traffic(Direction direction) const;
 
-  /// Writer: the other thread. What comes back in `spent` is to be freed there.
+  /// Writer: the other thread. What comes back in `spent` is to be freed there. Few may wait here
+  /// for their time: who has many sends each shortly before.
   SpscQueue<RelayCommand> commands{64};
   SpscQueue<RelayCommand> spent{64};
   /// Reader: the other thread. Renewed four times a second.
   Mailbox<RelayStatus> status;
   RecordingQueue recording;
+  /// The laws that hold now, by Direction: Passage::law_number(). Writer: the relay's thread;
+  /// renewed before a change comes back in `spent`.
+  std::array<std::atomic<std::uint64_t>, 2> law_numbers{};
 
  private:
   struct Readable {
@@ -108,6 +114,7 @@ class Relay {
   void drain(Readable readable) noexcept;
   void push(Direction direction, std::span<const ReceivedDatagram> datagrams) noexcept;
   void take_commands(TimePoint now);
+  void tell_laws(TimePoint now) noexcept;
   void release(Direction direction, TimePoint now) noexcept;
   void account(Direction direction, std::size_t sent, TimePoint before) noexcept;
   void rebind_if_asked();

@@ -1,15 +1,28 @@
 #include "netem/relay_program.h"
 
-#include <cstdio>
+#include <algorithm>
+#include <climits>
 #include <vector>
+
+#include <poll.h>
+#include <unistd.h>
 
 #include "common/config/report.h"
 #include "common/io/background_loop.h"
 #include "netem/relay.h"
+#include "netem/relay_changes.h"
 #include "netem/relay_report.h"
 
 namespace palp::netem {
 namespace {
+
+/// Says it if there is room: who does not read the relay's output must not hold it up.
+void say(int descriptor, const std::string& text) {
+  pollfd ready{descriptor, POLLOUT, 0};
+  if (::poll(&ready, 1, 0) <= 0 || (ready.revents & POLLOUT) == 0) return;
+  // A pipe that is ready takes so much at once.
+  (void)!::write(descriptor, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
+}
 
 /// Below the 80 of a site's control loop: the path must not delay the sites themselves.
 constexpr int kPriority = 60;
@@ -22,28 +35,35 @@ class Attendant {
   Attendant(Relay& relay, const RelayProgramConfig& config)
       : relay_{relay},
         config_{config},
-        context_{.up = config.up.impairment, .down = config.down.impairment},
+        changes_{relay, config.up, config.down},
         writer_{relay.recording, relay.start(), wall_now() - (monotonic_now() - relay.start())},
         status_at_{relay.start() + config.status_every} {}
 
   Result<void> open() {
     if (!config_.control.empty()) {
       auto control = RelayControl::listen(config_.control);
-      if (!control) return fail("--control: " + control.error().text);
+      if (!control) return fail("--control", control.error());
       control_.emplace(*std::move(control));
-      std::printf("control on %s\n", control_->address().c_str());
+      say(STDOUT_FILENO, "control on " + control_->address() + '\n');
     }
-    return config_.record.empty() ? Result<void>{} : writer_.open(config_.record);
+    if (config_.record.empty()) return {};
+    const auto opened = writer_.open(config_.record);
+    return opened ? Result<void>{} : fail_to_reach(opened.error().text);
   }
 
   void work(TimePoint now) {
-    if (control_) control_->serve([this](std::string_view line) { return answer(line); });
-    log_applied();
+    if (control_) {
+      control_->serve(
+          [this](std::string_view line, std::uint64_t number) { return answer(line, number); });
+      changes_.work(now, [this](std::uint64_t number, const std::string& text) {
+        control_->reply(number, text);
+      });
+      for (const std::string& line : changes_.take_log()) say(STDOUT_FILENO, line);
+    }
     writer_.drain();
     if (config_.status_every > Duration{} && now >= status_at_) {
       status_at_ += config_.status_every;
-      std::printf("%s\n", status_line(relay_.status.get(), relay_.start()).c_str());
-      std::fflush(stdout);
+      say(STDOUT_FILENO, status_line(relay_.status.get(), relay_.start()) + '\n');
     }
   }
 
@@ -51,66 +71,39 @@ class Attendant {
   [[nodiscard]] bool told_to_quit() const noexcept { return quit_; }
 
  private:
-  std::string answer(std::string_view line) {
-    const auto request = parse_control_line(line, context_);
+  std::optional<std::string> answer(std::string_view line, std::uint64_t number) {
+    const auto request = parse_control_line(line, changes_.laws());
     if (!request) return error_line(request.error().text);
     switch (request->kind) {
-      case ControlRequest::Kind::Stats:
-        return status_json(relay_.status.get(), relay_.start());
+      case ControlRequest::Kind::Stats: {
+        const ControlContext laws = changes_.laws();
+        return status_json(
+            relay_.status.get(), relay_.start(), {to_string(laws.up), to_string(laws.down)});
+      }
       case ControlRequest::Kind::Quit:
         quit_ = true;
         return "{\"quit\":true}";
       case ControlRequest::Kind::Record:
-        if (request->prefix.empty()) {
-          const auto closed = writer_.close();
-          return closed ? recording_end_line(*closed) : error_line(closed.error().text);
-        }
-        if (const auto opened = writer_.open(request->prefix); !opened) {
-          return error_line(opened.error().text);
-        }
-        return "{\"recording\":true}";
+        return record(request->prefix);
       case ControlRequest::Kind::Change:
         break;
     }
-    return send(*request, line);
+    if (changes_.hold(*request, line, number)) return std::nullopt;
+    return error_line("too many changes wait for their time");
   }
 
-  std::string send(const ControlRequest& request, std::string_view line) {
-    const TimePoint now = monotonic_now();
-    const Change& asked = request.up ? request.change_up : request.change_down;
-    const TimePoint at = request.now ? now : std::max(now, relay_.start() + asked.at);
-    const auto hand_over = [&](Direction direction, const Change& change, Impairment& current) {
-      if (!relay_.commands.try_enqueue({prepare(change), direction, at, std::string{line}})) {
-        return false;
-      }
-      const bool law = change.kind == Change::Kind::Set || change.kind == Change::Kind::Ramp;
-      if (law) current = change.impairment;
-      return true;
-    };
-    const bool rebind = asked.kind == Change::Kind::Rebind;
-    bool taken = true;
-    if (request.up) taken = hand_over(Direction::Up, request.change_up, context_.up);
-    if (request.down && !(rebind && request.up)) {
-      taken = hand_over(Direction::Down, request.change_down, context_.down) && taken;
+  std::string record(const std::string& prefix) {
+    if (prefix.empty()) {
+      const auto closed = writer_.close();
+      return closed ? recording_end_line(*closed) : error_line(closed.error().text);
     }
-    if (!taken) return error_line("too many changes wait for their time");
-    return "{\"applied_at_s\":" + config::json_number(seconds(at - relay_.start())) + "}";
-  }
-
-  void log_applied() {
-    RelayCommand spent;
-    while (relay_.spent.try_dequeue(spent)) {
-      std::printf("%.3f s, %s: %s\n",
-                  seconds(spent.at - relay_.start()),
-                  spent.direction == Direction::Up ? "up" : "down",
-                  spent.words.c_str());
-      std::fflush(stdout);
-    }
+    const auto opened = writer_.open(prefix);
+    return opened ? "{\"recording\":true}" : error_line(opened.error().text);
   }
 
   Relay& relay_;
   const RelayProgramConfig& config_;
-  ControlContext context_;
+  RelayChanges changes_;
   RecordingWriter writer_;
   std::optional<RelayControl> control_;
   TimePoint status_at_;
@@ -140,17 +133,15 @@ Result<void> run_relay(const RelayProgramConfig& config) {
   const auto write_report = [&]() -> Result<void> {
     if (config.report.empty()) return {};
     run.duration = monotonic_now() - relay.start();
-    return config::write_whole_file(config.report, relay_report(relay, run));
+    const auto written = config::write_whole_file(config.report, relay_report(relay, run));
+    return written ? Result<void>{} : fail_to_reach(written.error().text);
   };
   if (auto written = write_report(); !written) return written;
   Attendant attendant{relay, config};
   if (auto opened = attendant.open(); !opened) return opened;
-  std::printf("listening on %s\n", relay.listening_on().to_string().c_str());
-  std::printf("forwarding to %s\nup   %s\ndown %s\n",
-              run.forward.to_string().c_str(),
-              run.up.c_str(),
-              run.down.c_str());
-  std::fflush(stdout);
+  say(STDOUT_FILENO,
+      "listening on " + relay.listening_on().to_string() + "\nforwarding to " +
+          run.forward.to_string() + "\nup   " + run.up + "\ndown " + run.down + '\n');
   {
     io::BackgroundLoop loop{"netem attendant", kPause, [&](TimePoint now) { attendant.work(now); }};
     const TimePoint until = monotonic_now() + config.duration;
@@ -160,17 +151,19 @@ Result<void> run_relay(const RelayProgramConfig& config) {
       if (left <= Duration{} || !relay.serve(std::min(left, kSlice))) break;
       if (!relay.real_time() && !warned) {
         warned = true;
-        std::fputs(
-            "palp-netem: no right to SCHED_FIFO: releases may be late when the machine is busy\n",
-            stderr);
+        say(STDERR_FILENO,
+            "palp-netem: no right to SCHED_FIFO: releases may be late when the machine is busy\n");
       }
     }
     loop.stop();
   }
   const auto finished = attendant.finish();
-  std::fputs(relay_summary(relay).c_str(), stdout);
+  say(STDOUT_FILENO, relay_summary(relay));
+  if (finished && finished->missed + finished->open > 0) {
+    say(STDOUT_FILENO, "the recording lacks something: " + recording_end_line(*finished) + '\n');
+  }
   if (auto written = write_report(); !written) return written;
-  return finished ? Result<void>{} : tl::unexpected<Error>(finished.error());
+  return finished ? Result<void>{} : fail_to_reach(finished.error().text);
 }
 
 }  // namespace palp::netem

@@ -130,7 +130,9 @@ std::string status_line(const RelayStatus& status, TimePoint start) {
   return text;
 }
 
-std::string status_json(const RelayStatus& status, TimePoint start) {
+std::string status_json(const RelayStatus& status,
+                        TimePoint start,
+                        const std::array<std::string, 2>& laws) {
   ordered_json report;
   report["at_s"] = seconds(status.at - start);
   report["client"] =
@@ -152,6 +154,7 @@ std::string status_json(const RelayStatus& status, TimePoint start) {
     part["late_releases"] = way.late_releases;
     part["socket_errors"] = way.socket_errors;
     part["changes_applied"] = way.changes;
+    part["law"] = laws[i];
   }
   return report.dump();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -25,7 +26,10 @@ struct RelayRun {
 
 /// One line for people while it runs, and the same as one line of JSON.
 [[nodiscard]] std::string status_line(const RelayStatus& status, TimePoint start);
-[[nodiscard]] std::string status_json(const RelayStatus& status, TimePoint start);
+/// `laws`: the words that hold now, by Direction.
+[[nodiscard]] std::string status_json(const RelayStatus& status,
+                                      TimePoint start,
+                                      const std::array<std::string, 2>& laws);
 
 /// {"recording": false, ...} with what it lacks.
 [[nodiscard]] std::string recording_end_line(const RecordingGaps& gaps);

@@ -302,6 +302,7 @@ Result<ControlRequest> parse_control_line(std::string_view line,
   request.up = event.dir() != TimelineEvent::DOWN;
   request.down = event.dir() != TimelineEvent::UP;
   request.now = !event.has_at_s();
+  request.stands_on_law = event.has_trace();
   switch (event.what_case()) {
     case TimelineEvent::kStats:
       if (!event.stats()) return fail("stats must be true");

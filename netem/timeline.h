@@ -38,7 +38,8 @@ struct ControlRequest {
   Kind kind{Kind::Change};
   bool up{true};
   bool down{true};
-  bool now{true};  ///< the change has no time of its own
+  bool now{true};        ///< the change has no time of its own
+  bool stands_on_law{};  ///< the change keeps part of the law: it is to be read when it is due
   Change change_up{};
   Change change_down{};
   std::string prefix;  ///< of a recording

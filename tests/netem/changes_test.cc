@@ -176,6 +176,33 @@ TEST(ChangesTest, ALoopingPlanAllocatesNothingOnceItRuns) {
   EXPECT_EQ(channel.passage().changes_applied(), 9U * (10'000 + 6 * 10'000) / 500 + 2);
 }
 
+TEST(ChangesTest, TellsTheLawThatWhoComesWillFind) {
+  const auto set = [](Duration at, const char* words) {
+    return Change{.at = at, .impairment = *parse_impairment(words)};
+  };
+  for (const Duration loop :
+       {Duration{}, Duration{milliseconds{100}}, Duration{milliseconds{80}}}) {
+    const PathPlan plan{.changes = {set(milliseconds{10}, "delay 1ms"),
+                                    set(milliseconds{30}, "delay 2ms"),
+                                    {.at = milliseconds{50}, .kind = Change::Kind::Rebind},
+                                    set(milliseconds{80}, "delay 3ms")},
+                        .loop = loop};
+    for (int first = 0; first < 150; first += 13) {
+      for (int then = first; then < 500; then += 17) {
+        Passage passage{plan, 1, Direction::Up, 9, 9, TimePoint{}};
+        (void)passage.push({.at = TimePoint{milliseconds{first}}, .length = 9, .room = 9});
+        const TimePoint at{milliseconds{then}};
+        const std::uint64_t number = passage.law_number(at);
+        (void)passage.push({.at = at, .length = 9, .room = 9});
+        ASSERT_EQ(number, passage.law_number(at)) << first << ' ' << then;
+        ASSERT_EQ(passage.impairment(),
+                  number == 0 ? plan.impairment : plan.changes.at(number - 1).impairment)
+            << first << ' ' << then;
+      }
+    }
+  }
+}
+
 TEST(ChangesTest, WhatIsSaidComesBehindWhatThePlanHadBefore) {
   PathPlan plan;
   plan.changes.push_back({.at = milliseconds{10}, .impairment = *parse_impairment("delay 5ms")});

@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "netem/relay_report.h"
 #include "tests/netem/control_line.h"
@@ -37,6 +39,13 @@ class RelayProgramTest : public ::testing::Test {
         "relay", "--listen", "localhost:0", "--forward", "localhost:9"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return start(arguments);
+  }
+  /// Where a relay listens for live control, once it serves.
+  static std::string control_of(Process& program) {
+    EXPECT_TRUE(program.wait_for("\ndown ", kLimit)) << program.output();
+    const std::string output = program.output();
+    const std::size_t at = output.find("control on ") + 11;
+    return output.substr(at, output.find('\n', at) - at);
   }
   [[nodiscard]] std::string report_path() const { return folder_ + "/report.json"; }
   const std::string folder_ = system_test::make_folder("palp-netem");
@@ -159,19 +168,76 @@ TEST_F(RelayProgramTest, FollowsATimelineAndItsControl) {
   std::ofstream{timeline} << "event { set: \"delay 1ms\" }\n";
   Process program =
       start_relay({"--timeline", timeline, "--control", "127.0.0.1:0", "--report", report_path()});
-  const TimePoint until = monotonic_now() + kDeadline;
-  std::string address;
-  while (monotonic_now() < until && program.output().find("\ndown ") == std::string::npos) {
-  }
-  const std::string output = program.output();
-  const std::size_t at = output.find("control on ") + 11;
-  address = output.substr(at, output.find('\n', at) - at);
+  const std::string address = control_of(program);
   EXPECT_THAT(ask(address, "{\"set\":\"delay 5ms\"}"), HasSubstr("applied_at_s"));
   EXPECT_THAT(ask(address, "{\"set\":\"delay 5minutes\"}"), HasSubstr("column 7"));
   EXPECT_THAT(ask(address, "{\"stats\":true}"), HasSubstr("\"up\":{\"sent\":0"));
   EXPECT_THAT(ask(address, "{\"quit\":true}"), HasSubstr("quit"));
   EXPECT_EQ(program.wait(kLimit), 0) << program.output();
   EXPECT_EQ(nlohmann::json::parse(std::ifstream{report_path()})["down"]["changes_applied"], 1);
+}
+
+TEST_F(RelayProgramTest, AChangeForNowIsAppliedHoweverManyWait) {
+  Process program = start_relay({"--control", "127.0.0.1:0"});
+  const Call call{control_of(program)};
+  for (int i = 0; i < 200; ++i) call.say("{\"at_s\":900,\"set\":\"delay 9ms\"}\n");
+  call.say("{\"dir\":\"UP\",\"set\":\"delay 7ms\"}\n");
+  EXPECT_THAT(call.hear(), StartsWith("{\"applied_at_s\":")) << "the first that was applied";
+  call.say("{\"stats\":true}\n");
+  const auto stats = nlohmann::json::parse(call.hear());
+  EXPECT_EQ(stats["up"]["law"], "delay 7ms");
+  EXPECT_EQ(stats["down"]["law"], "none");
+  call.say("{\"at_s\":0.001,\"dir\":\"DOWN\",\"rebind\":{}}\n");
+  const auto applied = nlohmann::json::parse(call.hear());
+  EXPECT_EQ(applied["at_s"], 0.001) << "what was asked ...";
+  EXPECT_GT(applied["applied_at_s"].get<double>(), 0.001) << "... and when it was";
+}
+
+TEST_F(RelayProgramTest, ATraceKeepsTheRestOfTheLawThatHolds) {
+  const std::string trace = folder_ + "/walk.csv";
+  std::ofstream{trace} << "t_ms,delay_ms\n0,5\n100,7\n";
+  const std::string timeline = folder_ + "/day.textproto";
+  std::ofstream{timeline} << "event { set: \"delay 1ms\" }\n"
+                             "event { at_s: 0.0001 dir: UP set: \"loss 100%\" }\n";
+  Process program = start_relay({"--timeline", timeline, "--control", "127.0.0.1:0"});
+  const Call call{control_of(program)};
+  // Nobody has come yet, so nothing made the relay look at its timeline.
+  call.say("{\"dir\":\"DOWN\",\"set\":\"loss 50%\"}\n{\"trace\":{\"file\":\"" + trace + "\"}}\n");
+  EXPECT_THAT(call.hear(), HasSubstr("applied"));
+  EXPECT_THAT(call.hear(), HasSubstr("applied"));
+  call.say("{\"stats\":true}\n");
+  const auto stats = nlohmann::json::parse(call.hear());
+  EXPECT_THAT(stats["up"]["law"], HasSubstr("loss 100%"));
+  EXPECT_THAT(stats["up"]["law"], HasSubstr("trace"));
+  EXPECT_THAT(stats["down"]["law"], HasSubstr("loss 50%"));
+}
+
+TEST_F(RelayProgramTest, EndsThoughNobodyReadsWhatItSays) {
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_NONBLOCK | O_CLOEXEC), 0);
+  const std::string filling(4096, 'x');
+  while (::write(ends[1], filling.data(), filling.size()) > 0) {
+  }
+  ::fcntl(ends[1], F_SETFL, 0);
+  const std::string path = "/proc/" + std::to_string(::getpid()) + "/fd/" + std::to_string(ends[1]);
+  Process program{"palp-netem",
+                  {"relay",
+                   "--listen",
+                   "localhost:0",
+                   "--forward",
+                   "localhost:9",
+                   "--status-s",
+                   "0.01",
+                   "--report",
+                   report_path()},
+                  path};
+  const TimePoint until = monotonic_now() + kDeadline;
+  while (!std::filesystem::exists(report_path()) && monotonic_now() < until) {
+  }
+  program.signal(SIGINT);
+  EXPECT_TRUE(program.wait(kLimit));
+  ::close(ends[0]);
+  ::close(ends[1]);
 }
 
 TEST_F(RelayProgramTest, HelpExplainsTheWordsOfAnImpairment) {
@@ -202,6 +268,9 @@ TEST_F(RelayProgramTest, BadInputIsExitCode2AndASentence) {
                                              {"--loss", "5%", "--up", "none"},
                                              {"--seed", "x"},
                                              {"--duration-s", "-1"},
+                                             {"--control", "foo"},
+                                             {"--control", "192.0.2.1:5"},
+                                             {"--control", "unix:"},
                                              {"--mode", "netem-6.1", "--preset", "leo"},
                                              {"--mode", "netem-6.1", "--rtt-ms", "50"},
                                              {"--mode", "netem-6.1", "--timeline", "day"},
@@ -235,6 +304,8 @@ TEST_F(RelayProgramTest, WhatCannotBeOpenedIsExitCode3) {
   EXPECT_EQ(busy.wait(kLimit), 3);
   EXPECT_THAT(busy.output(), HasSubstr(taken.local().to_string()));
   EXPECT_EQ(start_relay({"--report", folder_ + "/no/folder.json"}).wait(kLimit), 3);
+  EXPECT_EQ(start_relay({"--record", folder_ + "/no/folder"}).wait(kLimit), 3);
+  EXPECT_EQ(start_relay({"--control", "unix:" + folder_ + "/no/folder"}).wait(kLimit), 3);
 }
 
 }  // namespace
