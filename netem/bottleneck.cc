@@ -51,7 +51,7 @@ TimePoint Bottleneck::pass_queue(TimePoint at, std::uint64_t length) noexcept {
   const TimePoint head = std::max(at, free_at_);
   if (queue_.codel && codel_drops(at, head)) return kDropped;
   if (head > at) {
-    waiting_[(first_ + count_++) % kWaitingMax] = {head, length};
+    waiting_[(first_ + count_++) % kWaitingMax] = {head.time_since_epoch().count(), length};
     bytes_ += length;
   }
   return serve(head, length);
@@ -99,7 +99,7 @@ bool Bottleneck::codel_drops(TimePoint at, TimePoint head) noexcept {
 
 /// Who is being sent at `at` no longer waits.
 void Bottleneck::forget(TimePoint at) noexcept {
-  while (count_ > 0 && waiting_[first_].begins <= at) {
+  while (count_ > 0 && waiting_[first_].begins_ns <= at.time_since_epoch().count()) {
     bytes_ -= waiting_[first_].length;
     first_ = (first_ + 1) % kWaitingMax;
     --count_;

@@ -33,8 +33,8 @@ class Bottleneck {
 
  private:
   struct Waiting {
-    TimePoint begins;      ///< to be sent; from then on it no longer waits
-    std::uint64_t length;  ///< [bytes]
+    TimePoint::rep begins_ns;  ///< to be sent; from then on it no longer waits
+    std::uint64_t length;      ///< [bytes]
   };
   [[nodiscard]] TimePoint pass_queue(TimePoint at, std::uint64_t length) noexcept;
   TimePoint serve(TimePoint head, std::uint64_t length) noexcept {

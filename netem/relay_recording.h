@@ -32,6 +32,7 @@ struct Crossing {
 };
 
 /// A datagram as it crossed one of the relay's sockets.
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): bytes are not touched in vain
 struct CapturedDatagram {
   static constexpr std::size_t kBytesMax = 1472;
   TimePoint at{};
