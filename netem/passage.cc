@@ -85,6 +85,7 @@ void Passage::hold_law() noexcept {
   }
 }
 
+// NOLINTNEXTLINE(bugprone-exception-escape): as FateSequence::next()
 std::span<const Decision> Passage::push(const Arrival& arrival) noexcept {
   const TimePoint at = std::max(arrival.at, last_arrival_);
   apply_due(at);

@@ -67,6 +67,7 @@ class Passage {
   /// A datagram of `length` bytes of payload arrives; a time before the newest one counts as that.
   /// @returns what becomes of it and its copies; those that are delivered are on their way, each
   /// in its `place`. Valid until the next call.
+  // NOLINTNEXTLINE(bugprone-exception-escape): as FateSequence::next()
   [[nodiscard]] std::span<const Decision> push(const Arrival& arrival) noexcept;
 
   /// When the next one leaves. @returns nullopt: nobody is on the way.
