@@ -8,7 +8,7 @@ namespace palp::plot {
 enum class Mark { Line, Dashes, Points };
 
 struct Curve {
-  std::string name{};     ///< empty: not in the legend
+  std::string name{};       ///< empty: not in the legend
   std::vector<double> x{};  ///< [as the axis]
   std::vector<double> y{};  ///< [as the axis]; not finite: no point
   Mark mark{Mark::Line};
