@@ -8,6 +8,11 @@
 #include "common/config/program_run.h"
 
 namespace palp::site_program {
+namespace {
+
+constexpr int kHeapSpare = 4 << 20;  // [bytes], many times what a session's heap goes up and down
+
+}  // namespace
 
 void declare_session_flags(config::CommandLine& line) {
   line.knob("--session-file", "record.file");
@@ -25,6 +30,11 @@ int run(const SiteMain& program, int argc, const char* const* argv) {
   // One heap for all threads, since the one in a hurry needs none: what one thread frees another
   // takes again, so a site of many hours grows no more, and 200 MB less are locked.
   (void)::mallopt(M_ARENA_MAX, 1);
+  // And it keeps what it has, with room for its ups and downs: a page that is asked for in the
+  // session is locked there and then, and looks like a leak.
+  (void)::mallopt(M_TOP_PAD, kHeapSpare);
+  (void)::mallopt(M_TRIM_THRESHOLD, 16 * kHeapSpare);
+  (void)::mallopt(M_MMAP_THRESHOLD, 8 * kHeapSpare);
   SiteReport report;
   report.site = program.site;
   if (const auto ending = program.line.parse(argc, argv)) {
