@@ -12,6 +12,7 @@ namespace palp::lab {
 class LyingCodec final : public link::Codec {
  public:
   LyingCodec(std::unique_ptr<link::Codec> codec, std::uint64_t seed, Duration period);
+  // NOLINTNEXTLINE(bugprone-exception-escape): copying a payload does not throw
   [[nodiscard]] std::size_t encode(
       const link::WireTelegram& telegram,
       std::span<std::byte, link::kTelegramSizeMax> out) noexcept override;

@@ -146,7 +146,7 @@ Result<Scenario> scenario_of(const DepthStudy& study,
            {"surgeon.coupling.name", study.coupling},
            {"patient.coupling.name", study.coupling}}) {
     if (value.empty()) continue;
-    if (auto done = document->set(path + "=" + value); !done) return tl::unexpected(done.error());
+    if (auto done = document->set(path, value, path); !done) return tl::unexpected(done.error());
   }
   auto scenario = make_scenario("standard", *document);
   if (!scenario) return scenario;

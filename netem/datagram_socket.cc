@@ -52,6 +52,12 @@ void read_controls(msghdr& header, Duration monotonic, Duration wall, ReceivedDa
   }
 }
 
+/// The kernel only reads what is sent; its interface has no const.
+template <class Sent>
+Sent* unguarded(const Sent* sent) noexcept {
+  return const_cast<Sent*>(sent);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+}
+
 [[noreturn]] void cannot(const std::string& what) {
   throw std::system_error(errno, std::generic_category(), what);
 }
@@ -204,11 +210,9 @@ std::size_t DatagramSocket::send(std::span<const OutgoingDatagram> datagrams,
   const std::size_t count = std::min(datagrams.size(), kDatagramBatch);
   const bool ipv6 = to != nullptr ? speaks_ipv6(*to) : peer_ipv6_;
   for (std::size_t i = 0; i < count; ++i) {
-    // The kernel only reads what is sent; its interface has no const.
-    batch.out_parts[i] = {const_cast<std::byte*>(datagrams[i].bytes.data()),
-                          datagrams[i].bytes.size()};
+    batch.out_parts[i] = {unguarded(datagrams[i].bytes.data()), datagrams[i].bytes.size()};
     msghdr& header = batch.out_headers[i].msg_hdr;
-    header.msg_name = to != nullptr ? const_cast<sockaddr*>(to->address()) : nullptr;
+    header.msg_name = to != nullptr ? unguarded(to->address()) : nullptr;
     header.msg_namelen = to != nullptr ? to->size() : 0;
     header.msg_control = nullptr;
     header.msg_controllen = 0;
@@ -252,7 +256,7 @@ void DatagramSocket::warm(const io::Endpoint* to) noexcept {
   std::byte nothing{};
   iovec part{&nothing, sizeof nothing};
   msghdr header{};
-  header.msg_name = to != nullptr ? const_cast<sockaddr*>(to->address()) : nullptr;
+  header.msg_name = to != nullptr ? unguarded(to->address()) : nullptr;
   header.msg_namelen = to != nullptr ? to->size() : 0;
   header.msg_iov = &part;
   header.msg_iovlen = 1;

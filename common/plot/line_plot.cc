@@ -45,9 +45,9 @@ struct Range {
 /// 1, 2 and 5 times the powers of ten, between two logarithms to the base of ten.
 std::vector<double> decade_ticks(double from, double to) {
   std::vector<double> ticks;
-  for (double power = std::floor(from); power <= to; ++power) {
+  for (int power = static_cast<int>(std::floor(from)); power <= to; ++power) {
     for (const double factor : {1.0, 2.0, 5.0}) {
-      const double tick = factor * std::pow(10, power);
+      const double tick = factor * std::pow(10.0, power);
       if (std::log10(tick) >= from - 1e-9 && std::log10(tick) <= to + 1e-9) ticks.push_back(tick);
     }
   }
