@@ -86,8 +86,6 @@ class Passage {
     return line_.size() + heap_.size() + due_.size();
   }
   [[nodiscard]] std::size_t places() const noexcept { return places_; }
-  /// What push() said of releases is final; not so where slots decide when they come.
-  [[nodiscard]] bool decides_at_once() const noexcept { return !kernel_slots_; }
   [[nodiscard]] const Impairment& impairment() const noexcept { return fates_.law().impairment; }
   /// From the start, those of the plan's rounds that nobody saw included.
   [[nodiscard]] std::uint64_t changes_applied() const noexcept { return changes_applied_; }

@@ -85,9 +85,7 @@ struct RecordingWriter::Files {
     /// All that is known of a datagram as decided.
     void tell_gathered() {
       if (gathered.empty()) return;
-      const bool open = std::any_of(
-          gathered.begin(), gathered.end(), [](const Decision& one) { return one.open; });
-      order.decided(gathered, !open);
+      order.decided(gathered);
       gathered.clear();
       if (order.waiting() > kWaitingMax) given_up += order.give_up(1);
     }

@@ -150,20 +150,17 @@ void append(std::string& text, Number number) {
 
 }  // namespace
 
-void DecisionOrder::decided(std::span<const Decision> decisions, bool final) {
-  if (final && waiting_.empty()) {
+void DecisionOrder::decided(std::span<const Decision> decisions) {
+  const auto open = std::count_if(
+      decisions.begin(), decisions.end(), [](const Decision& decision) { return decision.open; });
+  if (open == 0 && waiting_.empty()) {
     for (const Decision& decision : decisions) sink_(decision);
     return;
   }
   Datagram datagram;
   datagram.count = decisions.size();
   std::copy(decisions.begin(), decisions.end(), datagram.copies.begin());
-  if (!final) {
-    datagram.open = static_cast<std::size_t>(
-        std::count_if(decisions.begin(), decisions.end(), [](const Decision& decision) {
-          return decision.verdict == Verdict::Delivered;
-        }));
-  }
+  datagram.open = static_cast<std::size_t>(open);
   waiting_.emplace(decisions.front().index, datagram);
   flush();
 }
@@ -174,6 +171,16 @@ void DecisionOrder::left(const Decision& decision) {
   found->second.copies[decision.copy] = decision;
   if (found->second.open > 0) --found->second.open;
   flush();
+}
+
+std::uint64_t DecisionOrder::give_up(std::size_t count) {
+  std::uint64_t open = 0;
+  for (; count > 0 && !waiting_.empty(); --count) {
+    open += waiting_.begin()->second.open;
+    waiting_.begin()->second.open = 0;
+    flush();
+  }
+  return open;
 }
 
 void DecisionOrder::flush() {
@@ -200,7 +207,7 @@ SimulationResult simulate(const SimulationConfig& config, const DecisionOrder::S
   const std::size_t payload = payload_of(config);
   const auto collect = [&](TimePoint now) {
     while (const auto left = passage.pop(now)) {
-      if (!passage.decides_at_once()) order.left(*left);
+      if (left->open) order.left(*left);
     }
   };
   send_all(
@@ -213,7 +220,7 @@ SimulationResult simulate(const SimulationConfig& config, const DecisionOrder::S
                     original.floored,
                     original.intended,
                     decisions.size() - 1);
-        order.decided(decisions, passage.decides_at_once());
+        order.decided(decisions);
       },
       collect);
   collect(TimePoint::max());

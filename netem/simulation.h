@@ -34,21 +34,13 @@ class DecisionOrder {
   using Sink = std::function<void(const Decision&)>;
   explicit DecisionOrder(Sink sink) : sink_{std::move(sink)} {}
 
-  /// What push() said of one datagram. `final`: nothing of it is still to come.
-  void decided(std::span<const Decision> decisions, bool final);
+  /// What push() said of one datagram.
+  void decided(std::span<const Decision> decisions);
   /// One of them left, with the release that holds.
   void left(const Decision& decision);
   /// Tells the first `count` of those that wait with the releases they have, come what may.
   /// @returns how many copies are still to leave.
-  std::uint64_t give_up(std::size_t count = std::numeric_limits<std::size_t>::max()) {
-    std::uint64_t open = 0;
-    for (; count > 0 && !waiting_.empty(); --count) {
-      open += waiting_.begin()->second.open;
-      waiting_.begin()->second.open = 0;
-      flush();
-    }
-    return open;
-  }
+  std::uint64_t give_up(std::size_t count = std::numeric_limits<std::size_t>::max());
   /// Datagrams that are not told yet.
   [[nodiscard]] std::size_t waiting() const noexcept { return waiting_.size(); }
 

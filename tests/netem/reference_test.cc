@@ -88,13 +88,13 @@ std::vector<Decision> decisions_of(const Case& one) {
   const auto period = std::chrono::microseconds{static_cast<int>(number(one.row, "period_us"))};
   const auto collect = [&](TimePoint now) {
     while (const auto left = passage.pop(now)) {
-      if (!passage.decides_at_once()) order.left(*left);
+      if (left->open) order.left(*left);
     }
   };
   for (std::uint64_t k = 0; k < sent; ++k) {
     const TimePoint at{period * static_cast<std::int64_t>(k / burst * burst)};
     const auto decided = passage.push({.at = at, .length = length, .room = 200'000});
-    order.decided(decided, passage.decides_at_once());
+    order.decided(decided);
     collect(at);
   }
   collect(TimePoint::max());

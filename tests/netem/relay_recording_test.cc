@@ -96,7 +96,7 @@ std::string decided_again(const std::string& csv, Push&& push) {
     const std::size_t comma = csv.find(',', begin);
     const TimePoint at{Duration{std::stoll(csv.substr(comma + 1))}};
     begin = csv.find('\n', begin) + 1;
-    if (row.copy == 0) order.decided(push(at), true);
+    if (row.copy == 0) order.decided(push(at));
   }
   return text;
 }
