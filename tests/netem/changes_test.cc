@@ -50,12 +50,14 @@ constexpr std::array kLines{
     R"({"flood":{"copies":15,"ms":10}})",
     R"({"rebind":{}})"};
 
-/// A recording of a thousand datagrams with one delay.
-std::string recorded(Duration delay) {
+/// A recording of a thousand datagrams with one delay, each so many times.
+std::string recorded(Duration delay, int copies) {
   std::string text = "index,sent_ns,arrived_ns,copy,verdict,flipped_bit\n";
   for (std::int64_t i = 0; i < 1000; ++i) {
-    text += std::to_string(i) + "," + std::to_string(i) + "," + std::to_string(i + delay.count()) +
-            ",0,delivered,\n";
+    for (int copy = 0; copy < copies; ++copy) {
+      text += std::to_string(i) + "," + std::to_string(i) + "," +
+              std::to_string(i + delay.count()) + "," + std::to_string(copy) + ",delivered,\n";
+    }
   }
   return text;
 }
@@ -63,8 +65,8 @@ std::string recorded(Duration delay) {
 Result<std::string> files(const std::string& name) {
   if (name == "walk.csv") return std::string{"t_ms,delay_ms\n0,5\n100,7\n"};
   if (name == "bins.txt") return std::string{"10 1\n20 1\n"};
-  if (name == "first.csv") return recorded(milliseconds{10});
-  if (name == "second.csv") return recorded(milliseconds{30});
+  if (name == "first.csv") return recorded(milliseconds{10}, 3);
+  if (name == "second.csv") return recorded(milliseconds{30}, 1);
   return fail("no file '" + name + "'");
 }
 
