@@ -93,7 +93,7 @@ class Path {
     now_ += pause;
     const std::array<std::byte, 100> datagram{};
     const auto decided = channel_.push(datagram, now_);
-    const std::vector<Decision> decisions{decided.begin(), decided.end()};
+    std::vector<Decision> decisions{decided.begin(), decided.end()};
     while (channel_.pop_in_place(now_)) {
     }
     return decisions;
