@@ -27,7 +27,8 @@ FateSequence::FateSequence(const Impairment& impairment,
 void FateSequence::change(const PreparedLaw& law) noexcept {
   PALP_CHECK(law.impairment.mode == law_->impairment.mode, "a change keeps the mode");
   law_ = &law;
-  std::visit([&](auto& fates) { fates.change(*law_); }, fates_);
+  if (auto* exact = std::get_if<ExactFates>(&fates_)) exact->change(law);
+  if (auto* kernel = std::get_if<KernelFates>(&fates_)) kernel->change(law);
 }
 
 void FateSequence::lean(const PreparedLaw& towards, double share) noexcept {

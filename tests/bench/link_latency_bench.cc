@@ -168,6 +168,7 @@ Round secure_round(const io::Credentials& surgeon_keys,
 
 double median_of(const std::vector<Round>& rounds, double Round::*what) {
   std::vector<double> values;
+  values.reserve(rounds.size());
   for (const Round& round : rounds) values.push_back(round.*what);
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];

@@ -26,6 +26,7 @@ void write(const fs::path& path, std::span<const std::byte> bytes) {
 
 void write(const fs::path& path, const std::vector<int>& bytes) {
   std::vector<std::byte> out;
+  out.reserve(bytes.size());
   for (const int byte : bytes) out.push_back(static_cast<std::byte>(byte));
   write(path, out);
 }

@@ -56,6 +56,7 @@ TEST(MetricPlotTest, RunsAlongTheFirstLabelThatIsANumber) {
 
 TEST(MetricPlotTest, ManyCurvesBecomePoints) {
   std::vector<CaseResult> results;
+  results.reserve(40);
   for (int i = 0; i < 40; ++i) {
     results.push_back(result({std::to_string(i + 1), std::to_string(i)}, 0.01 * i));
   }

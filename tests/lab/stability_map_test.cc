@@ -30,14 +30,15 @@ constexpr Grip kFirm{0.12, 10, 900};
 double loop_gain(const Grip& grip, double spring) {
   constexpr double kServo = 2 * std::numbers::pi * 20;
   double most = 0;
-  for (double hertz = 0.02; hertz < 110; hertz *= 1.01) {
-    const double omega = 2 * std::numbers::pi * hertz;
+  for (int step = 0; step < 870; ++step) {  // 0.02 to 114 Hz
+    const double omega = 2 * std::numbers::pi * 0.02 * std::pow(1.01, step);
     const std::complex<double> s{0, omega};
     const auto stage = kServo * kServo / (s * s + 1.8 * kServo * s + kServo * kServo);
     const auto sensor = 1.0 / (1.0 + s / kServo);
     const std::complex<double> hand{grip.stiffness + spring - (0.075 + grip.mass) * omega * omega,
                                     omega * (grip.damping + 0.05)};
-    for (double tissue = 0; tissue <= 500; tissue += 25) {
+    for (int level = 0; level <= 20; ++level) {
+      const double tissue = 25.0 * level;
       most = std::max(most, std::abs((tissue * sensor - spring) * stage / hand));
     }
   }

@@ -114,6 +114,7 @@ struct Refusal {
   int column;
   const char* found;
   const char* expected;
+  // NOLINTNEXTLINE(readability-identifier-naming): GoogleTest's name
   friend void PrintTo(const Refusal& refusal, std::ostream* out) {
     *out << std::quoted(refusal.words);
   }

@@ -91,7 +91,7 @@ TEST_F(HandoverDeskTest, RefusedOfferIsLeftAsItWas) {
     next = session(++id);
     ASSERT_LT(id, 1000U);
   }
-  EXPECT_NE(next.transport, nullptr);
+  EXPECT_NE(next.transport, nullptr);  // NOLINT(bugprone-use-after-move): what is tested
   EXPECT_NE(next.protection, nullptr);
 }
 
