@@ -64,7 +64,8 @@ ForceAnswer ForceGate::pass(const ForceRequest& asked, Duration dt) noexcept {
     const double step = config_.fade_slew * seconds(std::min(dt, kFadeTickMax));
     // Through an open gate only growing forces are faded in: holding one up that the law lets go of
     // would give the hand energy behind the law's back.
-    const double from = open ? nearer_to_zero(force_, target) : force_;
+    const double from =
+        open ? nearer_to_zero(force_, target) : std::min(force_, finite_or(asked.fade_max, force_));
     force_ = step_towards(from, target, step);
     fading_ = force_ != target;
   } else {

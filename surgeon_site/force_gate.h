@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "common/core/site_state.h"
 #include "common/core/time.h"
 #include "common/record/notes.h"
@@ -21,6 +23,8 @@ struct ForceRequest {
   SiteState state{};
   bool dead_man_held{};
   bool cut{};  ///< emergency stop or a faulted device: zero at once
+  /// [N] >= 0, most that may push the hand out while the gate closes.
+  double fade_max{std::numeric_limits<double>::infinity()};
 };
 
 struct ForceAnswer {
@@ -33,8 +37,8 @@ struct ForceAnswer {
 /// The last word before the hand. Limits the force to the device's peak and, by an i^2 t account
 /// of the motors' heat, to its continuous force; passes none in Parked, Clutched and Stopped or
 /// while the pedal is up; and turns every jump that a change of state or pedal would make into a
-/// fade, where the force grows or the gate closes. Between changes it leaves the law's force alone.
-/// Thread: rt. A value.
+/// fade, where the force grows or the gate closes: there no faster than the law can pay for.
+/// Between changes it leaves the law's force alone. Thread: rt. A value.
 class ForceGate {
  public:
   explicit ForceGate(const ForceGateConfig& config) noexcept;

@@ -137,7 +137,8 @@ void SurgeonNode::tick(TimePoint now) noexcept {
       coupling::step(parts_.law, in, std::min(dt, std::max(kLawTickMax, config_.period)));
 
   const bool cut = hand.faulted || hand.emergency_stop || commands_.get().emergency_stop;
-  const ForceAnswer answer = gate_.pass({out.force, decision.state, hand.dead_man_held, cut}, dt);
+  const ForceAnswer answer =
+      gate_.pass({out.force, decision.state, hand.dead_man_held, cut, out.fade_max}, dt);
   parts_.device.apply(answer.force);
   parts_.link.send({{decision.state, decision.epoch, hand.lateral, {}}, out.to_patient}, now);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <limits>
 #include <span>
 
 #include "common/core/port_sample.h"
@@ -24,6 +25,9 @@ struct SurgeonInput {
 struct SurgeonOutput {
   double force{};  ///< [N], + pushes the hand out; unlimited, the gate limits
   PortSample to_patient;
+  /// [N], most that may push the hand out while a gate that closes fades it: what the law's books
+  /// can still pay for.
+  double fade_max{std::numeric_limits<double>::infinity()};
 };
 
 struct PatientInput {

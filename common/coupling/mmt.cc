@@ -145,6 +145,18 @@ double MmtSurgeon::damp(double force, double depth, double speed) const noexcept
   return force;
 }
 
+/// Behind the closing gate a force still fades. Held up while a hand is snatched away it would give
+/// more than was ever pressed into the spring; so the spring stays, as it was left, until the force
+/// is gone: it limits the fade, and what it stored pays for it.
+SurgeonOutput MmtSurgeon::let_go(const SurgeonInput& in, double work) noexcept {
+  const double paid = std::clamp(-work, 0.0, stored_);
+  stored_ -= paid;
+  tank_ = std::min(config_.tank_max, tank_ + work + paid);
+  if (in.force_applied == 0) drop_model();
+  shown_force_ = shown_.force(depth_at(in.position) - offset_);
+  return {0, {in.position, in.velocity, 0, std::monostate{}}, shown_force_};
+}
+
 SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   const double span = seconds(dt);
   swing_age_ += span;
@@ -153,11 +165,7 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   const double work = in.force_applied * (in.position - position_before_);
   position_before_ = in.position;
 
-  if (!may_render(in.state)) {
-    tank_ = std::min(config_.tank_max, tank_ + work);
-    drop_model();
-    return {0, {in.position, in.velocity, 0, std::monostate{}}};
-  }
+  if (!may_render(in.state)) return let_go(in, work);
   if (in.state == SiteState::Retract) presence_.fall(span, config_.fade);
 
   const double depth_before = depth_at(in.position) - offset_;
@@ -177,7 +185,7 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
 
   shown_force_ = shown_.force(depth);
   const double force = damp(shown_force_, depth, speed);
-  return {force, {in.position, in.velocity, force, std::monostate{}}};
+  return {force, {in.position, in.velocity, force, std::monostate{}}, shown_force_};
 }
 
 MmtPatient::MmtPatient(const MmtConfig& config) noexcept

@@ -65,6 +65,7 @@ class MmtSurgeon {
  private:
   void hear(std::span<const Incoming> arrived, Duration round_trip) noexcept;
   void drop_model() noexcept;
+  [[nodiscard]] SurgeonOutput let_go(const SurgeonInput& in, double work) noexcept;
   void approach_candidate(double position, double depth, double dt) noexcept;
   [[nodiscard]] double depth_at(double position) const noexcept {
     return position - shown_.elastic().surface;

@@ -93,7 +93,7 @@ SurgeonOutput TdpaSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   // After a turn drag points the wrong way until the filter has followed: not at others' cost.
   if (reserve_ < 0 && drag_ * way < 0) drag_ = 0;
   const double force = pull_ + drag_;
-  return {force, {in.position, in.velocity, force, TdpaPayload{energy_in_}}};
+  return {force, {in.position, in.velocity, force, TdpaPayload{energy_in_}}, std::max(0.0, force)};
 }
 
 TdpaPatient::TdpaPatient(const TdpaConfig& config) noexcept

@@ -1,11 +1,14 @@
 #include "surgeon_site/force_gate.h"
 
+#include <array>
 #include <cmath>
 #include <deque>
 #include <limits>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+
+#include "common/coupling/mmt.h"
 
 namespace palp::surgeon {
 namespace {
@@ -126,6 +129,37 @@ TEST(ForceGateTest, LateTickBuysNoBiggerStepOfAFade) {
   ForceGate gate{ForceGateConfig{}};
   for (int i = 0; i < 2000; ++i) gate.pass(engaged(0), 1ms);
   EXPECT_NEAR(gate.pass(engaged(5), 100ms).force, 0.4, 1e-12);  // as after 10 ms
+}
+
+TEST(ForceGateTest, AForceThatFadesGivesASnatchedHandNoMoreThanTheLawCanPay) {
+  const coupling::MmtConfig config;
+  coupling::MmtSurgeon law{config};
+  ForceGate gate = settled();
+  Incoming tissue;
+  tissue.sample.payload = ModelPayload{.version = 1, .c = {0, 0.06, 0.08}, .depth_max = 5e-3};
+  tissue.fresh = true;
+  const std::array arrived{tissue};
+  double position = -5e-3;  // [m]
+  double work = 0;          // [J]
+  law.begin_epoch(position);
+  const auto move = [&](double speed, SiteState state) {
+    position += 1e-3 * speed;
+    work += gate.force() * 1e-3 * speed;
+    coupling::SurgeonInput in;
+    in.state = state;
+    in.position = position;
+    in.force_applied = gate.force();
+    in.round_trip = 50ms;
+    in.arrived = arrived;
+    const coupling::SurgeonOutput out = law.step(in, 1ms);
+    gate.pass({out.force, state, state == SiteState::Engaged, false, out.fade_max}, 1ms);
+  };
+  for (int i = 0; i < 10'000; ++i) move(1e-3, SiteState::Engaged);  // slowly 5 mm in
+  ASSERT_GT(gate.force(), 1.5);
+  for (int i = 0; i < 500; ++i) move(-0.5, SiteState::Clutched);  // out with the pedal up
+  EXPECT_EQ(gate.force(), 0);
+  EXPECT_EQ(law.stored(), 0);
+  EXPECT_GE(work, -config.tank_start);
 }
 
 RC_GTEST_PROP(ForceGateTest, NoChangeOfStateMovesTheForceByMoreThanHalfANewtonInTenTicks, ()) {
