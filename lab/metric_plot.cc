@@ -22,25 +22,38 @@ std::optional<double> number_in(const std::string& label) {
   return value;
 }
 
+/// The first label that is a number in every case, and not the same in all if there is such a one.
 std::optional<std::size_t> numeric_label(std::size_t labels,
                                          const std::vector<CaseResult>& results) {
+  std::optional<std::size_t> constant;
   for (std::size_t i = 0; i < labels; ++i) {
-    if (std::all_of(results.begin(), results.end(), [i](const CaseResult& result) {
+    if (!std::all_of(results.begin(), results.end(), [i](const CaseResult& result) {
           return number_in(result.labels[i]).has_value();
+        })) {
+      continue;
+    }
+    if (std::any_of(results.begin(), results.end(), [&](const CaseResult& result) {
+          return result.labels[i] != results.front().labels[i];
         })) {
       return i;
     }
+    if (!constant) constant = i;
   }
-  return std::nullopt;
+  return constant;
+}
+
+/// Where words alone tell cases apart, each has its number.
+double place_of(const CaseResult& result, std::optional<std::size_t> along) {
+  return along ? *number_in(result.labels[*along]) : static_cast<double>(result.index);
 }
 
 /// What tells a case from others at the same place: its labels that are not equal in all of them.
 std::string curve_of(const CaseResult& one,
-                     std::size_t along,
+                     std::optional<std::size_t> along,
                      const std::vector<CaseResult>& results) {
   std::string name;
   for (std::size_t i = 0; i < one.labels.size(); ++i) {
-    if (i == along) continue;
+    if (along == i) continue;
     if (std::all_of(results.begin(), results.end(), [&](const CaseResult& other) {
           return other.labels[i] == one.labels[i];
         })) {
@@ -64,7 +77,7 @@ void add_curve(const std::string& name, const Values& values, std::vector<plot::
   const int colour = static_cast<int>(curves.empty() ? 0 : curves.back().colour + 1);
   plot::Curve line{.name = name, .colour = colour};
   plot::Curve points{.mark = plot::Mark::Points, .colour = colour};
-  bool several = false;
+  bool several = values.size() == 1;  // one place makes no line
   for (const auto& [x, all] : values) {
     line.x.push_back(x);
     line.y.push_back(median(all));
@@ -84,14 +97,14 @@ std::string metric_plot(const std::vector<std::string>& label_names,
                         const std::string& title) {
   const auto at = metric_index(metric);
   const auto along = numeric_label(label_names.size(), results);
-  if (!at || !along || results.empty()) return {};
+  if (!at) return {};
   std::map<std::string, Values> groups;
   plot::Curve all{.mark = plot::Mark::Points};
   for (const CaseResult& result : results) {
     const double value = result.values[*at];
     if (!std::isfinite(value)) continue;
-    const double place = *number_in(result.labels[*along]);
-    groups[curve_of(result, *along, results)][place].push_back(value);
+    const double place = place_of(result, along);
+    groups[curve_of(result, along, results)][place].push_back(value);
     all.x.push_back(place);
     all.y.push_back(value);
   }
@@ -103,7 +116,7 @@ std::string metric_plot(const std::vector<std::string>& label_names,
   }
   plot::Axes axes;
   axes.title = title;
-  axes.x_name = label_names[*along];
+  axes.x_name = along ? label_names[*along] : "case";
   axes.y_name = metric;
   axes.x_logarithmic = axes.x_name == "rtt_ms";
   return plot::curves_svg(axes, curves);

@@ -51,7 +51,29 @@ TEST(MetricPlotTest, RunsAlongTheFirstLabelThatIsANumber) {
   EXPECT_EQ(count(svg, "<polyline"), 2U);
   EXPECT_NE(svg.find(">servo_hz<"), std::string::npos);
   EXPECT_NE(svg.find(">firm<"), std::string::npos);
-  EXPECT_EQ(metric_plot({"grip"}, {result({"light"}, 0.1)}, "tap_a_error", "title"), "");
+}
+
+TEST(MetricPlotTest, WordsAloneStandByTheirCaseEachAsAPoint) {
+  std::vector<CaseResult> results{result({"light"}, 0.1), result({"firm"}, 0.2)};
+  results[1].index = 1;
+  const std::string svg = metric_plot({"grip"}, results, "tap_a_error", "title");
+  EXPECT_EQ(count(svg, "<circle"), 2U);
+  EXPECT_NE(svg.find(">case<"), std::string::npos);
+  EXPECT_NE(svg.find(">firm<"), std::string::npos);
+}
+
+TEST(MetricPlotTest, ALabelThatIsTheSameInAllCasesIsNoAxisIfAnotherIs) {
+  const std::vector<CaseResult> results{result({"20", "1"}, 0.1), result({"20", "2"}, 0.2)};
+  const std::string svg = metric_plot({"rtt_ms", "memory_s"}, results, "tap_a_error", "title");
+  EXPECT_NE(svg.find(">memory_s<"), std::string::npos);
+}
+
+TEST(MetricPlotTest, NothingToShowIsStillAPicture) {
+  for (const auto& none : {std::vector<CaseResult>{}, {result({"20"}, kUndefined)}}) {
+    const std::string svg = metric_plot({"rtt_ms"}, none, "tap_a_error", "nothing");
+    EXPECT_NE(svg.find("<svg"), std::string::npos);
+    EXPECT_NE(svg.find(">nothing<"), std::string::npos);
+  }
 }
 
 TEST(MetricPlotTest, ManyCurvesBecomePoints) {
