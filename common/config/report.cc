@@ -60,32 +60,67 @@ void sync_folder(const std::filesystem::path& file) {
 
 }  // namespace
 
-Result<void> write_whole_file(const std::string& path, std::string_view text) {
+namespace {
+
+/// Where the bytes of a file go.
+struct Destination {
+  bool renamed{};         ///< through `temporary`, else straight to the path
+  std::string target;     ///< the file behind a link
+  std::string temporary;  ///< beside it
+};
+
+Result<Destination> destination_of(const std::string& path) {
   struct stat there {};
   const bool exists = ::stat(path.c_str(), &there) == 0;
   if (exists && S_ISDIR(there.st_mode)) {
     return cannot_write(path, EISDIR);
   }
-  if (exists && !S_ISREG(there.st_mode)) {  // renaming would put a file in the place of the device
-    const int error = fill_file(path, text, false);
-    return error == 0 ? Result<void>{} : cannot_write(path, error);
-  }
-  std::string target = path;
+  Destination to;
+  // Renaming would put a file in the place of a device.
+  to.renamed = !exists || S_ISREG(there.st_mode);
+  to.target = path;
   if (exists) {  // a link stays a link: the file behind it is replaced
     std::error_code unresolved;
     const auto resolved = std::filesystem::canonical(path, unresolved);
-    target = unresolved ? path : resolved.string();
+    to.target = unresolved ? path : resolved.string();
   }
-  const std::string temporary = target + ".partial." + std::to_string(::getpid());
-  int error = fill_file(temporary, text, true);
-  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) {
+  to.temporary = to.target + ".partial." + std::to_string(::getpid());
+  return to;
+}
+
+}  // namespace
+
+Result<void> can_write_file(const std::string& path) {
+  const auto to = destination_of(path);
+  if (!to) {
+    return tl::unexpected(to.error());
+  }
+  if (!to->renamed) {  // opening a pipe might wait for its reader
+    return ::access(path.c_str(), W_OK) == 0 ? Result<void>{} : cannot_write(path, errno);
+  }
+  const int error = fill_file(to->temporary, {}, false);
+  (void)::unlink(to->temporary.c_str());
+  return error == 0 ? Result<void>{} : cannot_write(path, error);
+}
+
+Result<void> write_whole_file(const std::string& path, std::string_view text) {
+  const auto to = destination_of(path);
+  if (!to) {
+    return tl::unexpected(to.error());
+  }
+  if (!to->renamed) {
+    const int error = fill_file(path, text, false);
+    return error == 0 ? Result<void>{} : cannot_write(path, error);
+  }
+  int error = fill_file(to->temporary, text, true);
+  if (error == 0 && ::rename(to->temporary.c_str(), to->target.c_str()) != 0) {
     error = errno;
   }
   if (error != 0) {
-    (void)::unlink(temporary.c_str());
+    (void)::unlink(to->temporary.c_str());
     return cannot_write(path, error);
   }
-  sync_folder(target);
+  sync_folder(to->target);
   return {};
 }
 

@@ -14,6 +14,10 @@ namespace palp::config {
 /// thread. The error is a CannotOpen.
 [[nodiscard]] Result<void> write_whole_file(const std::string& path, std::string_view text);
 
+/// Whether write_whole_file() could write there now: tries, and leaves nothing behind. For runs
+/// that take long. The error is a CannotOpen.
+[[nodiscard]] Result<void> can_write_file(const std::string& path);
+
 /// Of a run that came to nothing, as JSON: schema, outcome ("bad input" or "cannot start"), reason.
 [[nodiscard]] std::string failure_report(const std::string& schema, const Ending& ending);
 

@@ -44,6 +44,18 @@ TEST_F(ReportTest, WritesWholeFilesAndLeavesNothingElse) {
   EXPECT_EQ(file_count(), 1U);
 }
 
+TEST_F(ReportTest, SaysBeforehandWhetherAFileCanBeWrittenAndLeavesNothing) {
+  EXPECT_TRUE(can_write_file(path("new")));
+  EXPECT_EQ(file_count(), 0U);
+  ASSERT_TRUE(write_whole_file(path("old"), "old"));
+  EXPECT_TRUE(can_write_file(path("old")));
+  EXPECT_EQ(read_whole_file(path("old")), "old");
+  EXPECT_EQ(file_count(), 1U);
+  EXPECT_TRUE(can_write_file("/dev/null"));
+  EXPECT_FALSE(can_write_file(path("no/such/folder")));
+  EXPECT_FALSE(can_write_file(path("")));
+}
+
 TEST_F(ReportTest, AReaderOfTheOldFileKeepsIt) {
   ASSERT_TRUE(write_whole_file(path("a.json"), "old"));
   std::filesystem::create_hard_link(path("a.json"), path("held"));
