@@ -197,7 +197,9 @@ std::string row_text(const Row& row) {
 
 }  // namespace
 
-std::string depth_report(const DepthStudy& study, const std::vector<DepthCase>& cases) {
+std::string depth_report(const DepthStudy& study,
+                         const std::vector<DepthCase>& cases,
+                         const std::string& cases_csv) {
   Json json;
   json["schema"] = "palp.depth/1";
   json["estimator"] = std::string{to_string(study.estimator)};
@@ -224,7 +226,9 @@ std::string depth_report(const DepthStudy& study, const std::vector<DepthCase>& 
   json["wide_count"] = all.wide_count;
   json["wide_coverage95"] = number(share(all.wide.inside, all.wide.found));
   json["wide_coverage95_open"] = number(share(all.wide.inside_open, all.wide.found));
-  return json.dump(2) + "\n";
+  json["cases_csv"] = cases_csv.empty() ? Json(nullptr) : Json(cases_csv);
+  // A file's name need not be UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string depth_table(const DepthStudy& study, const std::vector<DepthCase>& cases) {

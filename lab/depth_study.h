@@ -65,9 +65,10 @@ struct DepthCase {
 [[nodiscard]] std::uint32_t case_count(const DepthStudy& study);
 [[nodiscard]] Result<DepthCase> run_case(const DepthStudy& study, std::uint32_t index);
 
-/// Reports of the cases, sorted by index.
+/// Reports of the cases, sorted by index. `cases_csv`: where their rows are; empty: nowhere.
 [[nodiscard]] std::string depth_report(const DepthStudy& study,
-                                       const std::vector<DepthCase>& cases);
+                                       const std::vector<DepthCase>& cases,
+                                       const std::string& cases_csv);
 [[nodiscard]] std::string depth_table(const DepthStudy& study, const std::vector<DepthCase>& cases);
 [[nodiscard]] std::string depth_csv(const std::vector<DepthCase>& cases);
 /// Estimate over truth with intervals.

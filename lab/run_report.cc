@@ -143,7 +143,8 @@ std::string run_report(const Scenario& scenario,
   json["taps"] = taps_json(result, scenario.estimator.kind);
   json["depth"] = depth_json(estimator::summarise_depths(estimates_at(Site::B, result.depths)),
                              scenario.estimator.kind);
-  return json.dump(2) + "\n";
+  // A file's name need not be UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string run_summary(const Scenario& scenario,

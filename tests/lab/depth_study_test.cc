@@ -59,9 +59,10 @@ TEST(DepthStudyTest, ReportsNameTheirSchemaAndCountCases) {
   ASSERT_TRUE(with && without);
   EXPECT_TRUE(with->inclusion);
   EXPECT_FALSE(without->inclusion);
-  const std::string report = depth_report(study, {*with, *without});
+  const std::string report = depth_report(study, {*with, *without}, "rows.csv");
   EXPECT_NE(report.find("palp.depth/1"), std::string::npos);
   EXPECT_NE(report.find("\"plain_count\": 1"), std::string::npos);
+  EXPECT_NE(report.find("\"cases_csv\": \"rows.csv\""), std::string::npos);
   EXPECT_NE(depth_svg(study, {*with}).find("</svg>"), std::string::npos);
 }
 
