@@ -1,7 +1,11 @@
 #include "lab/batch.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <mutex>
 #include <optional>
 
@@ -11,6 +15,17 @@
 
 namespace palp::lab {
 namespace {
+
+/// As the rows of a cases file have it, so that merged shards come to the same numbers as the
+/// whole.
+double nine_digits(double value) {
+  if (!std::isfinite(value)) return value;
+  std::array<char, 32> text{};
+  const int size = std::snprintf(text.data(), text.size(), "%.9g", value);
+  double rounded = value;
+  (void)std::from_chars(text.data(), text.data() + size, rounded);
+  return rounded;
+}
 
 CaseResult result_of(const Case& one, const TrialResult& trial) {
   CaseResult result;
@@ -22,7 +37,9 @@ CaseResult result_of(const Case& one, const TrialResult& trial) {
   result.outcome = surgeon::to_string(trial.outcome);
   result.unstable = trial.metrics.unstable;
   result.unstable_reason = trial.metrics.unstable_reason;
-  for (const Metric& metric : metric_table()) result.values.push_back(metric.value(trial.metrics));
+  for (const Metric& metric : metric_table()) {
+    result.values.push_back(nine_digits(metric.value(trial.metrics)));
+  }
   return result;
 }
 
@@ -35,11 +52,14 @@ Result<std::vector<CaseResult>> run_plan(const Plan& plan,
   std::mutex mutex;  // of the next two and of progress
   std::size_t done = 0;
   std::optional<Error> first_error;
+  std::atomic<bool> failed{false};
   for_each(plan.cases.size(), [&](std::size_t i) {
+    if (failed) return;
     const auto scenario = make_case(plan, plan.cases[i]);
     if (scenario) results[i] = result_of(plan.cases[i], run_trial(*scenario));
     const std::lock_guard lock{mutex};
     if (!scenario && !first_error) first_error = scenario.error();
+    if (!scenario) failed = true;
     if (progress) progress(++done, plan.cases.size());
   });
   if (first_error) return tl::unexpected(*first_error);

@@ -76,9 +76,22 @@ Result<SessionFiles> open_files(const std::string& prefix) {
   return files;
 }
 
+/// A run that its duration ends is done; one that the operator gave up is not.
+ExitCode exit_code_of(surgeon::ScriptOutcome outcome) {
+  using surgeon::ScriptOutcome;
+  const bool whole = outcome == ScriptOutcome::Completed || outcome == ScriptOutcome::None;
+  return whole ? ExitCode::Done : ExitCode::CutShort;
+}
+
 Ending run(const Arguments& arguments) {
   const auto scenario = scenario_of(arguments);
   if (!scenario) return refusal(scenario.error());
+  for (const std::string& path : {arguments.report, arguments.trace}) {
+    if (path.empty()) continue;
+    if (const auto can = config::can_write_file(path); !can) {
+      return {ExitCode::CannotOpen, "palp-lab: " + can.error().text};
+    }
+  }
   auto files = open_files(arguments.session_files);
   if (!files) return {ExitCode::CannotOpen, "palp-lab: " + files.error().text};
 
@@ -99,7 +112,7 @@ Ending run(const Arguments& arguments) {
     const auto written = config::write_whole_file(arguments.trace, trace_csv(result));
     if (!written) return {ExitCode::CannotOpen, "palp-lab: " + written.error().text};
   }
-  return {ExitCode::Done, run_summary(*scenario, result, account)};
+  return {exit_code_of(result.outcome), run_summary(*scenario, result, account)};
 }
 
 Machine machine() {

@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <charconv>
 #include <functional>
+#include <optional>
 
-#include "common/config/report.h"
+#include "common/config/number.h"
+#include "common/core/printable.h"
 #include "lab/scenario_file.h"
 #include "surgeon_site/script_builder.h"
 
 namespace palp::lab {
 namespace {
+
+constexpr double kRoundTripMaxMs = 10e3;  ///< [ms], twice what a path may delay
 
 /// The middle of the hold of A's deep press in script time, and the operator's way there: the
 /// blackout is placed in the channel's time, which starts with the run.
@@ -42,12 +46,12 @@ Duration fault_time(const surgeon::GestureScript& script, std::string_view place
 
 Result<void> apply(config::Document& document, const Setting& setting) {
   if (setting.path == "rtt_ms") {
-    double trip = 0;
-    const char* end = setting.value.data() + setting.value.size();
-    if (std::from_chars(setting.value.data(), end, trip).ptr != end) {
-      return fail("rtt_ms is '" + setting.value + "', expected a number");
+    const auto trip = config::parse_number(setting.value);
+    if (!trip || !(*trip >= 0 && *trip <= kRoundTripMaxMs)) {
+      return fail("rtt_ms = " + printable(setting.value) + " is not a number: round trip [ms], " +
+                  config::range_text(0, kRoundTripMaxMs, "ms"));
     }
-    const std::string half = config::json_number(trip / 2);
+    const std::string half = config::number_text(*trip / 2);
     auto up = document.set("up.delay_ms", half, setting.path);
     return up ? document.set("down.delay_ms", half, setting.path) : up;
   }
@@ -81,6 +85,36 @@ void combine(const std::vector<std::vector<Setting>>& axes,
 }
 
 constexpr std::string_view kPhantomPath = "patient.simulated_phantom.phantom";
+constexpr std::string_view kCouplingPath = "coupling.name";
+constexpr std::string_view kSeedPath = "seed";
+
+/// PATH=VALUE,VALUE,...
+Result<std::vector<Setting>> parse_axis(const std::string& axis) {
+  const std::size_t equals = axis.find('=');
+  if (equals == 0 || equals == std::string::npos || equals + 1 == axis.size()) {
+    return fail("sweep axis '" + axis + "' must read PATH=VALUE,VALUE,...");
+  }
+  std::vector<Setting> values;
+  std::size_t from = equals + 1;
+  while (from <= axis.size()) {
+    const std::size_t comma = std::min(axis.find(',', from), axis.size());
+    if (comma == from) return fail("sweep axis '" + axis + "' has an empty value");
+    values.push_back({axis.substr(0, equals), axis.substr(from, comma - from)});
+    from = comma + 1;
+  }
+  return values;
+}
+
+/// Of the first repeat: the sweep's, or what an axis says.
+Result<std::uint64_t> first_seed(const std::vector<Setting>& settings, std::uint64_t seed) {
+  for (const Setting& setting : settings) {
+    if (setting.path != kSeedPath) continue;
+    const auto value = config::parse_whole(setting.value);
+    if (!value) return fail("seed = " + printable(setting.value) + " is not a whole number");
+    seed = *value;
+  }
+  return seed;
+}
 
 }  // namespace
 
@@ -96,39 +130,45 @@ Result<Plan> make_sweep(const std::string& scenario,
   if (!document) return tl::unexpected(document.error());
   const auto base = make_scenario(scenario, *document);
   if (!base) return tl::unexpected(base.error());
+  plan.coupling = ask.coupling.empty() ? base->coupling.name : ask.coupling;
   plan.tissue = ask.tissue.empty() ? base->phantom.name : ask.tissue;
   std::vector<std::vector<Setting>> values;
   for (const std::string& axis : axes) {
-    const std::size_t equals = axis.find('=');
-    if (equals == 0 || equals == std::string::npos || equals + 1 == axis.size()) {
-      return fail("sweep axis '" + axis + "' must read PATH=VALUE,VALUE,...");
+    auto list = parse_axis(axis);
+    if (!list) return tl::unexpected(list.error());
+    const std::string& path = list->front().path;
+    const auto& names = plan.label_names;
+    if (std::find(names.begin(), names.end(), path) != names.end()) {
+      return fail("sweep axis '" + axis + "': " + path + " has an axis already");
     }
-    const std::string path = axis.substr(0, equals);
+    if (path == kCouplingPath) plan.coupling.clear();
+    if (path == kPhantomPath) plan.tissue.clear();
     plan.label_names.push_back(path);
-    auto& list = values.emplace_back();
-    std::size_t from = equals + 1;
-    while (from <= axis.size()) {
-      const std::size_t comma = std::min(axis.find(',', from), axis.size());
-      if (comma == from) return fail("sweep axis '" + axis + "' has an empty value");
-      list.push_back({path, axis.substr(from, comma - from)});
-      from = comma + 1;
-    }
+    values.push_back(std::move(*list));
   }
+  std::optional<Error> fault;
   std::vector<Setting> chosen;
   combine(values, 0, chosen, [&](const std::vector<Setting>& settings) {
+    const auto seed = first_seed(settings, ask.seed);
+    if (!seed) {
+      fault = seed.error();
+      return;
+    }
     for (std::uint64_t repeat = 0; repeat < repeats; ++repeat) {
       Case one;
       one.index = plan.cases.size();
-      one.seed = ask.seed + repeat;
+      one.seed = *seed + repeat;
       one.settings = settings;
       if (!ask.coupling.empty())
-        one.settings.insert(one.settings.begin(), {"coupling.name", ask.coupling});
+        one.settings.insert(one.settings.begin(), {std::string{kCouplingPath}, ask.coupling});
       if (!ask.tissue.empty())
         one.settings.insert(one.settings.begin(), {std::string{kPhantomPath}, ask.tissue});
       for (const Setting& setting : settings) one.labels.push_back(setting.value);
       plan.cases.push_back(std::move(one));
     }
   });
+  if (fault) return tl::unexpected(*fault);
+  plan.count = plan.cases.size();
   return plan;
 }
 

@@ -37,11 +37,13 @@ struct Plan {
   std::string name;
   std::string scenario{"standard"};  ///< what the settings change
   std::uint64_t seed{};
-  std::string tissue;
+  std::string coupling;  ///< empty: not the same in all cases
+  std::string tissue;    ///< empty: not the same in all cases
   std::vector<std::string> label_names;
   std::vector<Case> cases;
-  bool lying{};     ///< the patient's site sends random models
-  bool blackout{};  ///< a blackout of 2 s lies in the middle of A's deep press
+  std::uint64_t count{};  ///< of cases, before a shard was taken out
+  bool lying{};           ///< the patient's site sends random models
+  bool blackout{};        ///< a blackout of 2 s lies in the middle of A's deep press
 };
 
 /// What a set is made for.
@@ -62,7 +64,8 @@ struct PlanAsk {
 [[nodiscard]] Plan make_map(const PlanAsk& ask);
 
 /// All combinations of "path=value,value,..." over a scenario, with `repeats` seeds each. Coupling
-/// and tissue (a phantom) are the scenario's where `ask` leaves them empty.
+/// and tissue (a phantom) are the scenario's where `ask` leaves them empty. Of an axis "seed" each
+/// value is the first of its repeats' seeds. A path occurs once.
 [[nodiscard]] Result<Plan> make_sweep(const std::string& scenario,
                                       const std::vector<std::string>& axes,
                                       std::uint64_t repeats,

@@ -270,9 +270,11 @@ Result<Plan> make_set(const std::string& name, const PlanAsk& ask) {
     Plan plan;
     plan.name = name;
     plan.seed = ask.seed;
+    plan.coupling = ask.coupling;
     plan.tissue = ask.tissue;
     plan.label_names = kLabels;
     set.fill(plan, ask);
+    plan.count = plan.cases.size();
     return plan;
   }
   std::string sentence = "unknown set '" + name + "'; there are:";
@@ -294,6 +296,7 @@ Plan make_map(const PlanAsk& ask) {
   Plan plan;
   plan.name = "map";
   plan.seed = ask.seed;
+  plan.coupling = "direct";
   plan.tissue = ask.tissue;
   plan.label_names = kLabels;
   plan.label_names.insert(plan.label_names.begin(), "k_p_n_per_m");
@@ -309,6 +312,7 @@ Plan make_map(const PlanAsk& ask) {
       }
     }
   }
+  plan.count = plan.cases.size();
   return plan;
 }
 

@@ -144,6 +144,8 @@ class Witness {
   }
   [[nodiscard]] const std::vector<TrialTick>& ticks() const { return ticks_; }
   [[nodiscard]] std::vector<TrialTick> take_ticks() { return std::move(ticks_); }
+  [[nodiscard]] double work_min() const { return work_min_; }  ///< [J], of the whole run
+  [[nodiscard]] double net_min() const { return net_min_; }    ///< [J], of the whole run
   /// [N], in 10 ms, whatever the operator was doing.
   [[nodiscard]] double force_step_max() const { return step_max_; }
 
@@ -290,6 +292,9 @@ TrialResult run_trial(const Scenario& scenario, const TrialFiles& files) {
   }
   result.metrics = judge(witness.ticks(), judging);
   result.metrics.force_step_guarded = witness.force_step_max();
+  // Energy has no script: what the hand gets while it waits or lets go counts too.
+  result.metrics.energy_operator = std::max(0.0, -witness.work_min());
+  result.metrics.energy_net = std::max(0.0, -witness.net_min());
   result.ticks = witness.take_ticks();
   result.depths = patient_file.estimates();
   result.surgeon_link = surgeon.health(world.now());

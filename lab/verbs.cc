@@ -1,7 +1,7 @@
 #include "lab/verbs.h"
 
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
@@ -21,6 +21,8 @@ constexpr const char* kMontecarlo = "palp.montecarlo/1";
 constexpr const char* kAdversary = "palp.adversary/1";
 constexpr const char* kCompare = "palp.compare/1";
 constexpr const char* kMap = "palp.map/1";
+constexpr std::string_view kMapName = "map";
+constexpr std::string_view kSweepName = "sweep";
 constexpr const char* kSweep = "palp.sweep/1";
 
 using config::Ending;
@@ -45,6 +47,21 @@ std::optional<Ending> write_files(const std::vector<std::pair<std::string, std::
     }
   }
   return std::nullopt;
+}
+
+/// Before hours are spent on what nobody could write down.
+std::optional<Ending> check_files(const BatchArguments& arguments) {
+  for (const std::string& path : {arguments.cases, arguments.report, arguments.svg}) {
+    if (path.empty()) continue;
+    if (const auto can = config::can_write_file(path); !can) {
+      return Ending{ExitCode::CannotOpen, "palp-lab: " + can.error().text};
+    }
+  }
+  return std::nullopt;
+}
+
+std::string set_of(const BatchArguments& arguments) {
+  return arguments.set.empty() ? "mc" : arguments.set;
 }
 
 PlanAsk ask_of(const BatchArguments& arguments) {
@@ -87,7 +104,6 @@ Result<Run> run(Plan plan, const BatchArguments& arguments, const Machine& machi
   if (!results) return tl::unexpected(results.error());
   const auto end = machine.used();
   BatchAccount account;
-  account.coupling = ask_of(arguments).coupling;
   account.shard = arguments.shard;
   account.cores = cores;
   account.cpu = end.first - begin.first;
@@ -111,7 +127,7 @@ Ending finish(const Run& done, const BatchArguments& arguments, const std::strin
 }
 
 Ending montecarlo(const BatchArguments& arguments, const Machine& machine, bool lying) {
-  auto plan = make_set(lying ? "mc-adv" : arguments.set, ask_of(arguments));
+  auto plan = make_set(lying ? "mc-adv" : set_of(arguments), ask_of(arguments));
   if (!plan) return refusal(plan.error());
   auto done = run(std::move(*plan), arguments, machine);
   if (!done) return refusal(done.error());
@@ -126,50 +142,26 @@ Ending sweep(const BatchArguments& arguments, const Machine& machine) {
   ask.tissue = arguments.tissue;
   auto plan = make_sweep(arguments.scenario, arguments.list, arguments.repeats, ask);
   if (!plan) return refusal(plan.error());
+  // A value that cannot be is refused before the first case is run.
+  for (std::size_t i = 0; i < plan->cases.size(); i += arguments.repeats) {
+    if (const auto one = make_case(*plan, plan->cases[i]); !one) return refusal(one.error());
+  }
   auto done = run(std::move(*plan), arguments, machine);
   if (!done) return refusal(done.error());
   done->account.schema = kSweep;
   return finish(*done, arguments, plot(*done, arguments.metric, "sweep of " + arguments.scenario));
 }
 
-std::string map_report(const Run& done) {
-  using Json = nlohmann::ordered_json;
-  Json json;
-  json["schema"] = kMap;
-  json["seed"] = done.plan.seed;
-  json["tissue"] = done.plan.tissue;
-  json["shard"] = done.account.shard.empty() ? Json(nullptr) : Json(done.account.shard);
-  Json grips = Json::array();
-  Json springs = Json::array();
-  Json trips = Json::array();
-  Json stable = Json::array();
-  const auto index_in = [](Json& list, const Json& value) {
-    auto found = std::find(list.begin(), list.end(), value);
-    if (found == list.end()) {
-      list.push_back(value);
-      found = list.end() - 1;
-    }
-    return static_cast<std::size_t>(found - list.begin());
-  };
-  const auto number = [](const std::string& text) {
-    double value = 0;
-    std::from_chars(text.data(), text.data() + text.size(), value);
-    return value;
-  };
-  for (const CaseResult& result : done.results) {
-    const std::size_t grip = index_in(grips, result.labels[6]);
-    const std::size_t spring = index_in(springs, number(result.labels[0]));
-    const std::size_t trip = index_in(trips, number(result.labels[1]));
-    stable[grip][spring][trip] = !result.unstable;
+/// What a map has to say, run here or merged.
+Ending finish_map(const Run& done, const BatchArguments& arguments) {
+  const MapAccount account{
+      done.account.shard, done.account.cores, done.account.cpu, done.account.wall};
+  if (auto failed = write_files({{arguments.cases, cases_csv(done.plan, done.results)},
+                                 {arguments.report, map_report(done.plan, done.results, account)},
+                                 {arguments.svg, map_svg(done.results)}})) {
+    return *failed;
   }
-  json["grips"] = grips;
-  json["k_p_n_per_m"] = springs;
-  json["rtt_ms"] = trips;
-  json["stable"] = stable;
-  json["cores"] = done.account.cores;
-  json["cpu_s"] = done.account.cpu;
-  json["wall_s"] = done.account.wall;
-  return json.dump(2) + "\n";
+  return {ExitCode::Done, map_text(done.results)};
 }
 
 Ending map(const BatchArguments& arguments, const Machine& machine) {
@@ -178,20 +170,7 @@ Ending map(const BatchArguments& arguments, const Machine& machine) {
   }
   auto done = run(make_map(ask_of(arguments)), arguments, machine);
   if (!done) return refusal(done.error());
-  if (auto failed = write_files({{arguments.cases, cases_csv(done->plan, done->results)},
-                                 {arguments.report, map_report(*done)},
-                                 {arguments.svg, map_svg(done->plan, done->results)}})) {
-    return *failed;
-  }
-  std::string text;
-  std::string row;
-  for (const CaseResult& result : done->results) {
-    const std::string name = result.labels[6] + " k_p " + result.labels[0];
-    if (name != row) text += (row.empty() ? "" : "\n") + name + std::string(20 - name.size(), ' ');
-    row = name;
-    text += result.unstable ? " ." : " S";
-  }
-  return {ExitCode::Done, text + "\n"};
+  return finish_map(*done, arguments);
 }
 
 Ending compare(const BatchArguments& arguments, const Machine& machine) {
@@ -202,28 +181,48 @@ Ending compare(const BatchArguments& arguments, const Machine& machine) {
   for (const std::string_view name : coupling::kCouplingNames) {
     BatchArguments one = arguments;
     one.coupling = name;
-    auto plan = make_set(one.set, ask_of(one));
+    auto plan = make_set(set_of(one), ask_of(one));
     if (!plan) return refusal(plan.error());
     auto done = run(std::move(*plan), one, machine);
     if (!done) return refusal(done.error());
     text += batch_summary(done->plan, done->results, done->account) + "\n";
     json["couplings"][one.coupling] =
         nlohmann::ordered_json::parse(batch_report(done->plan, done->results, done->account));
-    all.plan.label_names = done->plan.label_names;
-    all.plan.label_names.emplace_back("coupling");
+    const std::uint64_t before = all.plan.count;
+    all.plan = done->plan;
+    all.plan.count += before;
     for (CaseResult& result : done->results) {
       result.labels.push_back(one.coupling);
-      result.index += all.results.size() - result.index;
+      result.index += before;
       all.results.push_back(std::move(result));
     }
   }
+  all.plan.coupling.clear();
+  all.plan.label_names.emplace_back("coupling");
   if (auto failed =
           write_files({{arguments.report, json.dump(2) + "\n"},
                        {arguments.cases, cases_csv(all.plan, all.results)},
-                       {arguments.svg, plot(all, arguments.metric, "set " + arguments.set)}})) {
+                       {arguments.svg, plot(all, arguments.metric, "set " + all.plan.name)}})) {
     return *failed;
   }
   return {ExitCode::Done, text};
+}
+
+/// What the flags say of merged cases must be what their rows say.
+Result<void> check_meant(const Plan& plan, const BatchArguments& arguments) {
+  const auto same = [](const char* flag, const std::string& said, const std::string& is) {
+    return said.empty() || said == is
+               ? Result<void>{}
+               : fail(std::string{flag} + " = " + said + ", but the cases are of " + is);
+  };
+  const std::string seed = arguments.seed ? std::to_string(*arguments.seed) : "";
+  for (const auto& agreed : {same("--set", arguments.set, plan.name),
+                             same("--coupling", arguments.coupling, plan.coupling),
+                             same("--tissue", arguments.tissue, plan.tissue),
+                             same("--seed", seed, std::to_string(plan.seed))}) {
+    if (!agreed) return agreed;
+  }
+  return {};
 }
 
 Ending merge(const BatchArguments& arguments) {
@@ -236,18 +235,13 @@ Ending merge(const BatchArguments& arguments) {
     if (!rows) return refusal(rows.error());
     all.results.insert(all.results.end(), rows->begin(), rows->end());
   }
-  std::sort(all.results.begin(), all.results.end(), [](const auto& a, const auto& b) {
+  std::stable_sort(all.results.begin(), all.results.end(), [](const auto& a, const auto& b) {
     return a.index < b.index;
   });
-  for (std::size_t i = 0; i < all.results.size(); ++i) {
-    if (all.results[i].index == i) continue;
-    return refusal({"case " + std::to_string(i) + " is missing or given twice: merge the cases " +
-                    "of all shards of one plan"});
-  }
-  all.plan.name = arguments.set;
-  all.plan.seed = arguments.seed.value_or(1);
-  all.plan.tissue = ask_of(arguments).tissue;
-  all.account.coupling = ask_of(arguments).coupling;
+  if (auto whole = check_complete(all.plan, all.results); !whole) return refusal(whole.error());
+  if (auto meant = check_meant(all.plan, arguments); !meant) return refusal(meant.error());
+  if (all.plan.name == kMapName) return finish_map(all, arguments);
+  if (all.plan.name == kSweepName) all.account.schema = kSweep;
   return finish(all, arguments, plot(all, arguments.metric, "set " + all.plan.name));
 }
 
@@ -273,7 +267,7 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   const auto set_flags = [&](config::CommandLine& verb, bool with_set) {
     tissue_flag(verb);
     if (with_set) {
-      verb.text("--set", arguments.set, "NAME", "which (palp-lab scenarios lists them)");
+      verb.text("--set", arguments.set, "NAME", "which (palp-lab scenarios lists them); mc");
     }
     verb.whole("--count", arguments.count, {.min = 1, .max = 1000000}, "cases of a random set");
     verb.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
@@ -303,8 +297,8 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   axes.required();
   declare_running(axes, arguments, kSweep);
   auto& joined = line.verb("merge", "cases files of all shards become one report");
-  joined.text("--set", arguments.set, "NAME", "how to call it");
-  joined.text("--coupling", arguments.coupling, "NAME", "the law they were run with");
+  joined.text("--set", arguments.set, "NAME", "refuse cases of another");
+  joined.text("--coupling", arguments.coupling, "NAME", "refuse cases of another");
   tissue_flag(joined);
   joined.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
   joined.arguments("FILE", arguments.list, "as --cases wrote them");
@@ -312,16 +306,27 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   declare_common(joined, arguments, kMontecarlo);
 }
 
+namespace {
+
+bool is_batch_verb(std::string_view verb) {
+  constexpr std::array<std::string_view, 6> kVerbs{
+      "montecarlo", "adversary", "compare", "map", "sweep", "merge"};
+  return std::find(kVerbs.begin(), kVerbs.end(), verb) != kVerbs.end();
+}
+
+}  // namespace
+
 std::optional<Ending> run_batch_verb(const std::string& verb,
                                      const BatchArguments& arguments,
                                      const Machine& machine) {
+  if (!is_batch_verb(verb)) return std::nullopt;
+  if (auto closed = check_files(arguments)) return closed;
   if (verb == "montecarlo") return montecarlo(arguments, machine, false);
   if (verb == "adversary") return montecarlo(arguments, machine, true);
   if (verb == "compare") return compare(arguments, machine);
   if (verb == "map") return map(arguments, machine);
   if (verb == "sweep") return sweep(arguments, machine);
-  if (verb == "merge") return merge(arguments);
-  return std::nullopt;
+  return merge(arguments);
 }
 
 }  // namespace palp::lab

@@ -23,7 +23,7 @@ struct Machine {
 };
 
 struct BatchArguments {
-  std::string set{"mc"};
+  std::string set;  ///< empty: mc; of a merge: whatever its cases are
   std::string scenario{"standard"};
   std::string coupling;
   std::string tissue;

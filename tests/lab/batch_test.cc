@@ -49,13 +49,101 @@ TEST(BatchTest, MergedShardsAreTheWholeSet) {
   }
   std::sort(
       merged.begin(), merged.end(), [](const auto& a, const auto& b) { return a.index < b.index; });
-  EXPECT_EQ(digest_of(merged), digest_of(whole));
-  for (std::size_t metric = 0; metric < metric_table().size(); ++metric) {
-    const double kept = spread_of(merged, metric).p95;
-    const double made = spread_of(whole, metric).p95;
-    if (!std::isfinite(made)) continue;
-    EXPECT_NEAR(kept, made, 1e-8 * std::abs(made));
+  EXPECT_TRUE(check_complete(read, merged));
+  // Set, seed, coupling and tissue included, and every number of every metric.
+  EXPECT_EQ(batch_report(read, merged, {}), batch_report(small_plan(3), whole, {}));
+}
+
+/// As many cases as the plan has, and nothing in them.
+std::vector<CaseResult> empty_cases(const Plan& plan) {
+  std::vector<CaseResult> results;
+  for (const Case& one : plan.cases) {
+    CaseResult result;
+    result.index = one.index;
+    result.seed = one.seed;
+    result.labels = one.labels;
+    result.values.assign(metric_table().size(), kUndefined);
+    results.push_back(std::move(result));
   }
+  return results;
+}
+
+TEST(MergeTest, AShardThatIsMissingOrGivenTwiceIsNoticedAlsoTheLast) {
+  const Plan plan = small_plan(5);
+  const std::vector<CaseResult> whole = empty_cases(plan);
+  EXPECT_TRUE(check_complete(plan, whole));
+  for (std::size_t gone = 0; gone < whole.size(); ++gone) {
+    std::vector<CaseResult> some = whole;
+    some.erase(some.begin() + static_cast<std::ptrdiff_t>(gone));
+    const auto refused = check_complete(plan, some);
+    ASSERT_FALSE(refused) << gone;
+    EXPECT_NE(refused.error().text.find("case " + std::to_string(gone) + " of 5 is missing"),
+              std::string::npos)
+        << refused.error().text;
+    some = whole;
+    some.insert(some.begin() + static_cast<std::ptrdiff_t>(gone), whole[gone]);
+    const auto twice = check_complete(plan, some);
+    ASSERT_FALSE(twice) << gone;
+    EXPECT_NE(twice.error().text.find("given twice"), std::string::npos) << twice.error().text;
+  }
+  EXPECT_FALSE(check_complete(plan, {}));
+}
+
+TEST(MergeTest, CasesOfAnotherPlanAreRefused) {
+  const PlanAsk ask{.count = 4, .seed = 5};
+  std::vector<PlanAsk> others(4, ask);
+  others[0].count = 5;
+  others[1].seed = 6;
+  others[2].coupling = "wave";
+  others[3].tissue = "fe";
+  const Plan plan = *make_set("mc", ask);
+  const std::string rows = cases_csv(plan, empty_cases(plan));
+  const auto refuses = [&](const Plan& another) {
+    Plan read;
+    EXPECT_TRUE(read_cases_csv(rows, "one", read));
+    return !read_cases_csv(cases_csv(another, empty_cases(another)), "two", read);
+  };
+  EXPECT_FALSE(refuses(plan));
+  for (const PlanAsk& other : others) EXPECT_TRUE(refuses(*make_set("mc", other)));
+  EXPECT_TRUE(refuses(*make_set("mc-hard", ask)));
+  EXPECT_TRUE(refuses(*make_set("faults", ask))) << "other columns";
+}
+
+TEST(MergeTest, CommasAndQuotesInNamesSurvive) {
+  Plan plan = small_plan(2);
+  plan.tissue = "file:a,\"b\".csv";
+  std::vector<CaseResult> results = empty_cases(plan);
+  results[1].labels[0] = "\"x\",,";
+  Plan read;
+  const auto again = read_cases_csv(cases_csv(plan, results), "cases", read);
+  ASSERT_TRUE(again) << again.error().text;
+  EXPECT_EQ(read.tissue, plan.tissue);
+  EXPECT_EQ(again->at(1).labels, results[1].labels);
+}
+
+TEST(VerbsTest, WhatCannotBeWrittenIsRefusedBeforeTheFirstCaseIsRun) {
+  std::size_t ran = 0;
+  const Machine machine{.processors = 1,
+                        .for_each_index = [&](std::size_t, std::size_t, const auto&) { ++ran; },
+                        .used =
+                            [] {
+                              return std::pair{0.0, 0.0};
+                            },
+                        .watched = false};
+  for (auto path : {&BatchArguments::report, &BatchArguments::cases, &BatchArguments::svg}) {
+    BatchArguments arguments;
+    arguments.*path = "/no/such/folder/file";
+    const auto ending = run_batch_verb("montecarlo", arguments, machine);
+    ASSERT_TRUE(ending);
+    EXPECT_EQ(ending->code, config::ExitCode::CannotOpen);
+    EXPECT_NE(ending->text.find("/no/such/folder/file"), std::string::npos);
+  }
+  BatchArguments sweep;
+  sweep.list = {"rtt_ms=20", "surgeon.hand.grip=mid,hairy"};
+  const auto ending = run_batch_verb("sweep", sweep, machine);
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, config::ExitCode::BadInput);
+  EXPECT_EQ(ran, 0U);
 }
 
 TEST(BatchReportTest, MergedRowsHaveNoMachine) {
@@ -135,9 +223,41 @@ TEST(PlanTest, ASweepIsAllCombinations) {
   std::set<std::vector<std::string>> combinations;
   for (const Case& one : plan->cases) combinations.insert(one.labels);
   EXPECT_EQ(combinations.size(), 4U);
-  for (const char* bad : {"rtt_ms", "=1", "rtt_ms=", "rtt_ms=1,,2"}) {
+  for (const char* bad : {"rtt_ms", "=1", "rtt_ms=", "rtt_ms=1,,2", "seed=-1", "seed=x"}) {
     EXPECT_FALSE(make_sweep("standard", {bad}, 1, {})) << bad;
   }
+  EXPECT_FALSE(make_sweep("standard", {"rtt_ms=1", "rtt_ms=2"}, 1, {})) << "which of them?";
+}
+
+TEST(PlanTest, SeedsCanBeAnAxis) {
+  const auto plan = make_sweep("standard", {"seed=7,20"}, 2, {.tissue = ""});
+  ASSERT_TRUE(plan);
+  std::vector<std::uint64_t> seeds;
+  for (const Case& one : plan->cases) seeds.push_back(make_case(*plan, one)->seed);
+  EXPECT_EQ(seeds, (std::vector<std::uint64_t>{7, 8, 20, 21}));
+}
+
+TEST(PlanTest, ARoundTripIsANumberOfMillisecondsThatAPathCanHave) {
+  for (const char* good : {"0", "2.5", "10000"}) {
+    const auto plan = make_sweep("standard", {std::string{"rtt_ms="} + good}, 1, {.tissue = ""});
+    EXPECT_TRUE(make_case(*plan, plan->cases[0])) << good;
+  }
+  for (const char* bad : {"nan", "inf", "-4", "1e400", "10001", "20ms", "0x10", " 5"}) {
+    const auto plan = make_sweep("standard", {std::string{"rtt_ms="} + bad}, 1, {.tissue = ""});
+    const auto refused = make_case(*plan, plan->cases[0]);
+    ASSERT_FALSE(refused) << bad;
+    EXPECT_NE(refused.error().text.find(bad), std::string::npos) << refused.error().text;
+  }
+}
+
+TEST(PlanTest, ASweepSaysWhichCouplingItsCasesHave) {
+  const auto coupling = [](const char* scenario, const char* axis, const char* asked) {
+    const PlanAsk ask{.coupling = asked, .tissue = ""};
+    return make_sweep(scenario, {axis}, 1, ask)->coupling;
+  };
+  EXPECT_EQ(coupling("far", "seed=1", ""), "direct");
+  EXPECT_EQ(coupling("standard", "seed=1", "tdpa"), "tdpa");
+  EXPECT_EQ(coupling("standard", "coupling.name=wave,mmt", ""), "") << "not one";
 }
 
 TEST(PlanTest, ASweepTakesTissueFromItsScenarioOrFromWhoAsks) {

@@ -1,6 +1,8 @@
 // Goal: the map of eq. (1) says what its loop's gain says. Method: with delay alone in the loop the
 // closed form (small gain) decides for every delay at once; some cells of the map are run.
 
+#include "lab/stability_map.h"
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -9,6 +11,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "lab/plan.h"
 #include "lab/trial.h"
@@ -69,6 +72,39 @@ TEST(StabilityMapTest, SomeDelayLosesItWhereTheGainIsAboveOne) {
   EXPECT_TRUE(is_unstable("light", "25", "20"));
   ASSERT_GT(loop_gain(kMid, 1600), 1);
   EXPECT_TRUE(is_unstable("mid", "1600", "100"));
+}
+
+TEST(StabilityMapTest, AShardLeavesOpenWhatItDidNotRunAndMovesNothing) {
+  const Plan plan = make_map({});
+  std::vector<CaseResult> results;
+  for (const Case& one : plan.cases) {
+    if (one.index % 3 != 2) continue;
+    CaseResult result;
+    result.index = one.index;
+    result.labels = one.labels;
+    result.unstable = one.labels[0] == "400";
+    results.push_back(std::move(result));
+  }
+  const auto json = nlohmann::json::parse(map_report(plan, results, {}));
+  ASSERT_EQ(json["grips"].size(), 4U);
+  ASSERT_EQ(json["k_p_n_per_m"].size(), 8U);
+  ASSERT_EQ(json["rtt_ms"].size(), 14U);
+  EXPECT_TRUE(std::is_sorted(json["rtt_ms"].begin(), json["rtt_ms"].end()));
+  std::size_t index = 0;
+  for (const auto& grip : json["stable"]) {
+    for (std::size_t s = 0; s < 8; ++s) {
+      for (const auto& cell : grip.at(s)) {
+        if (index++ % 3 == 2) {
+          EXPECT_EQ(cell, json["k_p_n_per_m"][s] != 400);
+        } else {
+          EXPECT_TRUE(cell.is_null());
+        }
+      }
+    }
+  }
+  EXPECT_EQ(index, plan.cases.size());
+  EXPECT_NE(map_text(results).find("light k_p 0          ? ? S"), std::string::npos)
+      << map_text(results);
 }
 
 }  // namespace
