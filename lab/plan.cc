@@ -1,6 +1,7 @@
 #include "lab/plan.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <functional>
 #include <optional>
@@ -63,8 +64,7 @@ Result<void> apply(config::Document& document, const Setting& setting) {
       if (!done) return done;
     }
   }
-  constexpr std::string_view kBoth = "coupling.";
-  if (setting.path.rfind(kBoth, 0) == 0) {
+  if (setting.path.rfind("coupling.", 0) == 0 || setting.path.rfind("loop.", 0) == 0) {
     auto surgeon = document.set("surgeon." + setting.path, setting.value, setting.path);
     if (!surgeon) return surgeon;
     return document.set("patient." + setting.path, setting.value, setting.path);
@@ -105,6 +105,39 @@ Result<std::vector<Setting>> parse_axis(const std::string& axis) {
   return values;
 }
 
+/// What a program does in real time only, or what a sweep does not look at: an axis of it would be
+/// the same case again and again.
+Result<void> check_effect(const std::string& path) {
+  struct Idle {
+    std::string_view field;  ///< of a site, or of both
+    std::string_view why;
+  };
+  constexpr std::array kIdle{
+      Idle{"seed", "the run's own seed counts: seed or --seed"},
+      Idle{"impairment.", "the path between the sites counts: up, down or rtt_ms"},
+      Idle{"duration_s", "the run's own duration_s counts"},
+      Idle{"give_up_after_s", "no program waits"},
+      Idle{"peer", "there are no addresses"},
+      Idle{"listen", "there are no addresses"},
+      Idle{"record.", "no session file is kept"},
+      Idle{"link.insecure", "there are no keys"},
+      Idle{"link.identity", "there are no keys"},
+      Idle{"link.rekey_after_s", "there are no keys"},
+      Idle{"loop.spin_us", "nothing waits"},
+      Idle{"loop.priority", "nothing waits"},
+      Idle{"loop.lock_memory", "nothing waits"},
+      Idle{"estimator.", "palp-lab depth judges the estimator"}};
+  if (path == "patient.estimator.sensor_pole_hz") return {};  // the laws' co-filter, too
+  const std::size_t site = path.rfind("surgeon.", 0) == 0 || path.rfind("patient.", 0) == 0 ? 8 : 0;
+  for (const Idle& idle : kIdle) {
+    // The run has a seed and a duration of its own.
+    const bool at_site = site > 0 || idle.field.rfind("loop.", 0) == 0;
+    if (!at_site || path.compare(site, idle.field.size(), idle.field) != 0) continue;
+    return fail(path + " changes nothing in a sweep: " + std::string{idle.why});
+  }
+  return {};
+}
+
 /// Of the first repeat: the sweep's, or what an axis says.
 Result<std::uint64_t> first_seed(const std::vector<Setting>& settings, std::uint64_t seed) {
   for (const Setting& setting : settings) {
@@ -137,6 +170,7 @@ Result<Plan> make_sweep(const std::string& scenario,
     auto list = parse_axis(axis);
     if (!list) return tl::unexpected(list.error());
     const std::string& path = list->front().path;
+    if (auto effect = check_effect(path); !effect) return tl::unexpected(effect.error());
     const auto& names = plan.label_names;
     if (std::find(names.begin(), names.end(), path) != names.end()) {
       return fail("sweep axis '" + axis + "': " + path + " has an axis already");

@@ -13,8 +13,8 @@
 /// becomes a Scenario when it is its turn, so that a thousand of them cost nothing until then.
 namespace palp::lab {
 
-/// A field of LabScenario and its value. "coupling.*" is set at both sites; "rtt_ms" is half of it
-/// as delay each way; a path's "spec" replaces the numbers it had.
+/// A field of LabScenario and its value. "coupling.*" and "loop.*" are set at both sites; "rtt_ms"
+/// is half of it as delay each way; a path's "spec" replaces the numbers it had.
 struct Setting {
   std::string path;
   std::string value;

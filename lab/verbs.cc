@@ -293,7 +293,8 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   axes.whole("--repeats", arguments.repeats, {.min = 1, .max = 100000}, "seeds of each; 1");
   axes.text("--tissue", arguments.tissue, "PHANTOM", "instead of the scenario's");
   axes.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
-  axes.arguments("AXIS", arguments.list, "PATH=VALUE,VALUE,...; coupling.* at both sites; rtt_ms");
+  axes.arguments(
+      "AXIS", arguments.list, "PATH=VALUE,VALUE,...; coupling.*, loop.* at both sites; rtt_ms");
   axes.required();
   declare_running(axes, arguments, kSweep);
   auto& joined = line.verb("merge", "cases files of all shards become one report");

@@ -229,6 +229,31 @@ TEST(PlanTest, ASweepIsAllCombinations) {
   EXPECT_FALSE(make_sweep("standard", {"rtt_ms=1", "rtt_ms=2"}, 1, {})) << "which of them?";
 }
 
+TEST(PlanTest, WhatHasNoEffectInVirtualTimeIsNoAxis) {
+  for (const char* idle : {"patient.seed=1,2",
+                           "surgeon.impairment.delay_ms=0,50",
+                           "surgeon.duration_s=3,5",
+                           "loop.priority=1,2",
+                           "surgeon.link.rekey_after_s=1,2",
+                           "patient.record.queue_records=256,512",
+                           "patient.estimator.radius_min_mm=3,5"}) {
+    const auto refused = make_sweep("standard", {idle}, 1, {.tissue = ""});
+    ASSERT_FALSE(refused) << idle;
+    EXPECT_NE(refused.error().text.find("changes nothing"), std::string::npos);
+  }
+  for (const char* good : {"seed=1,2", "duration_s=3,5", "patient.estimator.sensor_pole_hz=20"}) {
+    EXPECT_TRUE(make_sweep("standard", {good}, 1, {.tissue = ""})) << good;
+  }
+}
+
+TEST(PlanTest, TheLoopsPeriodIsThatOfBothSites) {
+  const auto plan = make_sweep("standard", {"loop.period_us=500,2000"}, 1, {.tissue = ""});
+  ASSERT_TRUE(plan);
+  const Scenario scenario = *make_case(*plan, plan->cases[1]);
+  EXPECT_EQ(scenario.surgeon.period, std::chrono::milliseconds{2});
+  EXPECT_EQ(scenario.patient.period, std::chrono::milliseconds{2});
+}
+
 TEST(PlanTest, SeedsCanBeAnAxis) {
   const auto plan = make_sweep("standard", {"seed=7,20"}, 2, {.tissue = ""});
   ASSERT_TRUE(plan);
