@@ -15,6 +15,7 @@ constexpr double kFeltShare = 0.4;          // of contact_force, smoothed: noise
 constexpr double kNoiseShare = 1.4;         // six standard deviations of a mean over 10 ms
 constexpr double kNoiseSmoothing = 1e-3;    // per tick: 1 s
 constexpr double kOutside = 0.5e-3;         // [m], of the learned surface: more than its error
+constexpr double kInside = 1e-3;            // [m], the same to the other side, and some force
 constexpr double kRetractedWithin = 50e-6;  // [m]
 /// A late tick must not buy a bigger step: what the process slept through, the stage has stood.
 constexpr Duration kTickMax = std::chrono::milliseconds{10};
@@ -51,6 +52,10 @@ bool MotionGate::outside(double tip) const noexcept {
 
 bool MotionGate::free_to_follow(double tip) const noexcept {
   return felt_ < config_.contact_force || (surface_ && tip < *surface_ - kOutside);
+}
+
+bool MotionGate::inside(double tip) const noexcept {
+  return surface_of_this_place_ && surface_ && tip > *surface_ + kInside;
 }
 
 double MotionGate::clear_position() const noexcept { return *surface_ - config_.clearance; }

@@ -69,6 +69,8 @@ class MotionGate {
 
   /// No contact felt, or the tip well outside: the stage may begin to follow, or change its place.
   [[nodiscard]] bool free_to_follow(double tip) const noexcept;
+  /// Clearly deeper than the surface that was felt at this place.
+  [[nodiscard]] bool inside(double tip) const noexcept;
   /// The retraction is over.
   [[nodiscard]] bool retracted(double tip) const noexcept;
   [[nodiscard]] std::optional<double> surface() const noexcept { return surface_; }  ///< [m]

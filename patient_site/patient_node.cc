@@ -13,6 +13,7 @@ PatientNode::PatientNode(const PatientConfig& config, Parts parts)
     : config_{config},
       parts_{parts},
       gate_{config.gate},
+      watch_{config.watch},
       co_filter_{config.sensor_cut_off, seconds(config.period)} {
   PALP_CHECK(config.period > Duration{0}, "a period takes time");
 }
@@ -65,6 +66,20 @@ void PatientNode::read_force() noexcept {
     }
   }
   if (now_.at - force_sampled_at_ > config_.sensor_stale) device_faulted_ = true;
+}
+
+/// Only while the tip has somewhere to go: the state is that of the tick before, and so the target.
+void PatientNode::watch_devices(Duration dt) noexcept {
+  if (now_.state != SiteState::Engaged) {
+    watch_.reset();
+    return;
+  }
+  const bool stuck = watch_.stuck({.tip = now_.position,
+                                   .target = now_.command,
+                                   .force = now_.contact_force,
+                                   .in_tissue = gate_.inside(now_.position)},
+                                  dt);
+  device_faulted_ = device_faulted_ || stuck;
 }
 
 SupervisorOutput PatientNode::supervise(const link::Arrivals& arrived) noexcept {
@@ -142,6 +157,7 @@ void PatientNode::tick(TimePoint now) noexcept {
   read_force();
   co_filter_.step(now_.position);
   gate_.feel(co_filter_.value(), now_.contact_force);
+  watch_devices(dt);
   begun_ = true;
 
   const link::Arrivals arrived = parts_.link.receive(now);

@@ -11,6 +11,7 @@
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
 #include "common/record/recorder.h"
+#include "patient_site/device_watch.h"
 #include "patient_site/force_sensor.h"
 #include "patient_site/motion_gate.h"
 #include "patient_site/patient_status.h"
@@ -22,6 +23,7 @@ namespace palp::patient {
 struct PatientConfig {
   Duration period{std::chrono::milliseconds{1}};
   MotionGateConfig gate;
+  DeviceWatchConfig watch;
   double sensor_cut_off{20};  ///< [Hz], the transducer's pole: the position is given the same
   Duration sensor_stale{std::chrono::milliseconds{50}};  ///< older force is a device fault
   Duration link_status_every{std::chrono::milliseconds{100}};
@@ -64,6 +66,7 @@ class PatientNode {
   [[nodiscard]] Duration time_passed(TimePoint now) noexcept;
   void read_stage() noexcept;
   void read_force() noexcept;
+  void watch_devices(Duration dt) noexcept;
   void note_not_finite(bool finite, bool& was_finite) noexcept;
   [[nodiscard]] SupervisorOutput supervise(const link::Arrivals& arrived) noexcept;
   void record_decision(const SupervisorOutput& decision, SiteState before) noexcept;
@@ -79,6 +82,7 @@ class PatientNode {
   Parts parts_;
   PatientSupervisor supervisor_;
   MotionGate gate_;
+  DeviceWatch watch_;
   Mailbox<UserCommand> commands_;
   Mailbox<PatientStatus> status_;
   PatientStatus now_;  ///< of this tick: what is shown, and what one tick leaves to the next

@@ -39,6 +39,16 @@ MotionGateConfig make_gate(const proto::config::MotionGate& message) {
   return gate;
 }
 
+/// A reading that rests on one of the transducer's steps is not stuck: soft tissue takes some way
+/// to the next.
+DeviceWatchConfig make_watch(const MotionGateConfig& gate, double force_quantum) {
+  constexpr double kSoftTissue = 40;  // [N/m], less than the paper's where it is barely touched
+  DeviceWatchConfig watch;
+  watch.force_limit = gate.force_limit;
+  watch.sensor_travel = std::max(watch.sensor_travel, force_quantum / kSoftTissue);
+  return watch;
+}
+
 SimulatedPhantomConfig make_simulation(const proto::config::SimulatedPhantom& message,
                                        std::uint64_t seed) {
   SimulatedPhantomConfig simulation;
@@ -121,6 +131,7 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
   made.force = message.force();
   made.phantom = message.simulated_phantom().phantom();
   made.simulation = make_simulation(message.simulated_phantom(), message.seed());
+  made.node.watch = make_watch(made.node.gate, made.simulation.force_quantum);
   made.estimator_kind = message.estimator().kind();
   made.estimator = *estimator;
   made.impairment = settings::make_impairment(message.impairment());

@@ -29,6 +29,7 @@ class FaultySite final : public Stage, public ForceSensor {
   void move_to(const StageTarget& target) noexcept override {
     target_ = target;
     halted = false;
+    if (stage_stuck) return site_.halt();
     site_.move_to(target);
   }
   void halt() noexcept override {
@@ -46,6 +47,7 @@ class FaultySite final : public Stage, public ForceSensor {
 
   bool stage_gives_nan{};
   bool stage_faulted{};
+  bool stage_stuck{};
   bool silent{};
   bool saturated{};
   bool halted{};
@@ -249,6 +251,44 @@ TEST(PatientNodeTest, EveryFaultOfADeviceStopsTheSite) {
   EXPECT_EQ(stopped_by([](FaultySite& site) { site.force = std::nan(""); }), SiteState::Stopped);
   EXPECT_EQ(stopped_by([](FaultySite& site) { site.saturated = true; }), SiteState::Stopped);
   EXPECT_EQ(stopped_by([](FaultySite& site) { site.silent = true; }), SiteState::Stopped);
+}
+
+TEST(PatientNodeTest, ASensorWhoseReadingStaysWhileTheTipMovesInContactStopsTheSite) {
+  for (const double reading : {0.0, 0.25}) {
+    World world;
+    world.engage();
+    world.move(2e-3, milliseconds{800});
+    world.site.force = reading;
+    world.run(std::chrono::seconds{2});
+    EXPECT_EQ(world.status().state, SiteState::Engaged) << "a tip at rest feels the same";
+    world.move(4.9e-3, milliseconds{500});
+    EXPECT_EQ(world.status().state, SiteState::Engaged);
+    world.move(6e-3, milliseconds{200});
+    EXPECT_EQ(world.status().state, SiteState::Stopped) << reading;
+  }
+}
+
+TEST(PatientNodeTest, AQuietSensorInTheAirIsNoFault) {
+  World world;
+  world.engage();
+  world.site.force = 0.0;
+  world.move(-1e-3, milliseconds{500});
+  world.move(-20e-3, milliseconds{500});
+  EXPECT_EQ(world.status().state, SiteState::Engaged);
+}
+
+TEST(PatientNodeTest, AStageThatDoesNotFollowStopsTheSite) {
+  World world;
+  world.engage();
+  world.site.stage_stuck = true;
+  world.run(std::chrono::seconds{1});
+  EXPECT_EQ(world.status().state, SiteState::Engaged) << "where it is to stand";
+  world.move(-8.5e-3, milliseconds{20});
+  EXPECT_EQ(world.status().state, SiteState::Engaged);
+  world.run(milliseconds{150});
+  EXPECT_EQ(world.status().state, SiteState::Stopped);
+  const auto transitions = world.recorder.all<record::Transition>();
+  EXPECT_EQ(transitions.back().reason, static_cast<std::uint16_t>(NoteCode::DeviceFault));
 }
 
 TEST(PatientNodeTest, AShortSilenceOfTheSensorIsNoFault) {

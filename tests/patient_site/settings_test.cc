@@ -128,6 +128,13 @@ TEST(PatientSettingsTest, TheEstimatorSharesTheSensorsPole) {
   EXPECT_EQ(made.estimator.bayes.strokes.period, 0.5e-3);
 }
 
+TEST(PatientSettingsTest, ASensorOfLargeStepsMayRestOnOneForLonger) {
+  config::Document document = config::patient_document();
+  EXPECT_EQ(make_settings(document)->node.watch.sensor_travel, DeviceWatchConfig{}.sensor_travel);
+  ASSERT_TRUE(document.set("simulated_phantom.sensor_quantum_mn=400"));
+  EXPECT_GE(make_settings(document)->node.watch.sensor_travel, 10e-3);
+}
+
 TEST(PatientSettingsTest, BothSitesAgreeByDefault) {
   EXPECT_EQ(settings_with({}).agreement,
             surgeon::make_settings(config::surgeon_document()).value().agreement);

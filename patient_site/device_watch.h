@@ -1,0 +1,79 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/time.h"
+
+namespace palp::patient {
+
+struct DeviceWatchConfig {
+  double sensor_travel{3e-3};  ///< [m], of the tip: in contact every reading changes by then
+  double contact_force{0.1};   ///< [N], two steps of the transducer: no reading of the air
+  double force_limit{3};       ///< [N], above it the gate retreats, whatever is stuck
+  double stage_error{1e-3};    ///< [m], from the tip to its target: a servo is on its way
+  double stage_still{0.1e-3};  ///< [m]: that is no way
+  Duration stage_time{std::chrono::milliseconds{300}};  ///< so long: it does not follow
+};
+
+/// Notices devices that answer without fault and do not do their work any more: a transducer whose
+/// reading stays the same, to the last count, while the tip moves in contact; a stage that stays
+/// where it is while its target is elsewhere. Such a transducer blinds every limit of force, and
+/// such a stage jumps to its target when it comes free. A reading of zero that never changes is
+/// told from quiet air only where the tissue is known. Thread: rt. A value.
+class DeviceWatch {
+ public:
+  struct Look {
+    double tip{};      ///< [m]
+    double target{};   ///< [m], of the tick before
+    double force{};    ///< [N]
+    bool in_tissue{};  ///< clearly deeper than the surface of this place
+  };
+
+  explicit DeviceWatch(const DeviceWatchConfig& config) noexcept : config_{config} {}
+
+  void reset() noexcept { begun_ = false; }
+  /// Once a tick while the site follows its law. @returns true: one of them is stuck.
+  [[nodiscard]] bool stuck(const Look& look, Duration dt) noexcept {
+    if (!begun_) begin(look);
+    begun_ = true;
+    return sensor_stuck(look) || stage_stuck(look, dt);
+  }
+
+ private:
+  void begin(const Look& look) noexcept {
+    force_ = look.force;
+    lowest_ = highest_ = still_at_ = look.tip;
+    still_for_ = Duration{0};
+  }
+  [[nodiscard]] bool sensor_stuck(const Look& look) noexcept {
+    const bool contact = look.in_tissue || std::abs(look.force) >= config_.contact_force;
+    if (look.force != force_ || !contact || look.force > config_.force_limit) {
+      force_ = look.force;
+      lowest_ = highest_ = look.tip;
+    }
+    lowest_ = std::min(lowest_, look.tip);
+    highest_ = std::max(highest_, look.tip);
+    return highest_ - lowest_ > config_.sensor_travel;
+  }
+  [[nodiscard]] bool stage_stuck(const Look& look, Duration dt) noexcept {
+    const bool on_its_way = std::abs(look.tip - still_at_) > config_.stage_still;
+    if (on_its_way || std::abs(look.target - look.tip) <= config_.stage_error) {
+      still_at_ = look.tip;
+      still_for_ = Duration{0};
+    }
+    // A late tick proves no more than a short one: nothing was looked at in between.
+    still_for_ += std::min<Duration>(dt, std::chrono::milliseconds{10});
+    return still_for_ > config_.stage_time;
+  }
+
+  DeviceWatchConfig config_;
+  bool begun_{};
+  double force_{};     ///< [N], reading that stays
+  double lowest_{};    ///< [m], tip, meanwhile
+  double highest_{};   ///< [m]
+  double still_at_{};  ///< [m], tip
+  Duration still_for_{};
+};
+
+}  // namespace palp::patient
