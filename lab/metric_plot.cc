@@ -23,21 +23,15 @@ std::optional<double> number_in(const std::string& label) {
 }
 
 /// The first label that is a number in every case, and not the same in all if there is such a one.
-std::optional<std::size_t> numeric_label(std::size_t labels,
+std::optional<std::size_t> numeric_label(const std::vector<bool>& varying,
                                          const std::vector<CaseResult>& results) {
   std::optional<std::size_t> constant;
-  for (std::size_t i = 0; i < labels; ++i) {
-    if (!std::all_of(results.begin(), results.end(), [i](const CaseResult& result) {
-          return number_in(result.labels[i]).has_value();
-        })) {
-      continue;
-    }
-    if (std::any_of(results.begin(), results.end(), [&](const CaseResult& result) {
-          return result.labels[i] != results.front().labels[i];
-        })) {
-      return i;
-    }
-    if (!constant) constant = i;
+  for (std::size_t i = 0; i < varying.size(); ++i) {
+    const bool numeric = std::all_of(results.begin(), results.end(), [i](const CaseResult& result) {
+      return number_in(result.labels[i]).has_value();
+    });
+    if (numeric && varying[i]) return i;
+    if (numeric && !constant) constant = i;
   }
   return constant;
 }
@@ -47,18 +41,24 @@ double place_of(const CaseResult& result, std::optional<std::size_t> along) {
   return along ? *number_in(result.labels[*along]) : static_cast<double>(result.index);
 }
 
+/// By label: not equal in all cases.
+std::vector<bool> varying_labels(std::size_t labels, const std::vector<CaseResult>& results) {
+  std::vector<bool> varying(labels);
+  for (const CaseResult& result : results) {
+    for (std::size_t i = 0; i < labels; ++i) {
+      varying[i] = varying[i] || result.labels[i] != results.front().labels[i];
+    }
+  }
+  return varying;
+}
+
 /// What tells a case from others at the same place: its labels that are not equal in all of them.
 std::string curve_of(const CaseResult& one,
                      std::optional<std::size_t> along,
-                     const std::vector<CaseResult>& results) {
+                     const std::vector<bool>& varying) {
   std::string name;
-  for (std::size_t i = 0; i < one.labels.size(); ++i) {
-    if (along == i) continue;
-    if (std::all_of(results.begin(), results.end(), [&](const CaseResult& other) {
-          return other.labels[i] == one.labels[i];
-        })) {
-      continue;
-    }
+  for (std::size_t i = 0; i < varying.size(); ++i) {
+    if (along == i || !varying[i]) continue;
     name += (name.empty() ? "" : " ") + one.labels[i];
   }
   return name;
@@ -96,7 +96,8 @@ std::string metric_plot(const std::vector<std::string>& label_names,
                         const std::string& metric,
                         const std::string& title) {
   const auto at = metric_index(metric);
-  const auto along = numeric_label(label_names.size(), results);
+  const auto varying = varying_labels(label_names.size(), results);
+  const auto along = numeric_label(varying, results);
   if (!at) return {};
   std::map<std::string, Values> groups;
   plot::Curve all{.mark = plot::Mark::Points};
@@ -104,7 +105,7 @@ std::string metric_plot(const std::vector<std::string>& label_names,
     const double value = result.values[*at];
     if (!std::isfinite(value)) continue;
     const double place = place_of(result, along);
-    groups[curve_of(result, along, results)][place].push_back(value);
+    groups[curve_of(result, along, varying)][place].push_back(value);
     all.x.push_back(place);
     all.y.push_back(value);
   }

@@ -19,6 +19,7 @@ constexpr double kTop = 40;
 constexpr double kBottom = 50;
 constexpr int kTicks = 5;
 constexpr std::size_t kTicksMax = 14;
+constexpr double kTickGap = 34;  // [px], "444.6" fits
 // Okabe and Ito's colours: told apart by nearly everybody.
 constexpr std::array kColours{
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
@@ -73,7 +74,10 @@ class PanelWriter {
     up_ = {y_ticks_.front(), y_ticks_.back()};
     if (axes_.x_logarithmic) {
       x_ticks_ = curves_.empty() ? std::vector<double>{} : curves_.front().x;
-      if (x_ticks_.size() > kTicksMax) x_ticks_ = decade_ticks(across_.from, across_.to);
+      if (x_ticks_.size() > kTicksMax || crowded()) {
+        x_ticks_ = decade_ticks(across_.from, across_.to);
+      }
+      if (x_ticks_.empty()) x_ticks_ = {std::pow(10, across_.from), std::pow(10, across_.to)};
       return;
     }
     x_ticks_ = round_ticks(across_.from, across_.to, kTicks);
@@ -91,6 +95,17 @@ class PanelWriter {
   }
 
  private:
+  /// Whether numbers below the axis would run into each other.
+  [[nodiscard]] bool crowded() const {
+    std::vector<double> places;
+    for (const double x : x_ticks_) places.push_back(x_of(x));
+    std::sort(places.begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    for (std::size_t i = 1; i < places.size(); ++i) {
+      if (places[i] - places[i - 1] < kTickGap) return true;
+    }
+    return false;
+  }
   // A round trip of 0 has no logarithm; below 1 nothing differs.
   [[nodiscard]] double place(double x) const {
     return axes_.x_logarithmic ? std::log10(std::max(x, 1.0)) : x;

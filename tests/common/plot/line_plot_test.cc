@@ -45,5 +45,19 @@ TEST(LinePlotTest, TicksAreRoundAndCoverTheRange) {
   EXPECT_EQ(round_ticks(0, 4, 5).back(), 4);
 }
 
+TEST(LinePlotTest, NumbersBelowALogarithmicAxisDoNotRunIntoEachOther) {
+  const auto drawn = [](std::vector<double> x) {
+    std::vector<double> y(x.size(), 1);
+    return curves_svg({.x_logarithmic = true}, {{.x = std::move(x), .y = std::move(y)}});
+  };
+  const std::string apart = drawn({12, 30, 100});
+  EXPECT_NE(apart.find(">12<"), std::string::npos);
+  EXPECT_NE(apart.find(">30<"), std::string::npos);
+  const std::string close = drawn({12, 12.5, 30, 100});
+  EXPECT_EQ(close.find(">12.5<"), std::string::npos);
+  EXPECT_NE(close.find(">20<"), std::string::npos);
+  EXPECT_NE(drawn({12, 12.5}).find(">12<"), std::string::npos) << "no round number between";
+}
+
 }  // namespace
 }  // namespace palp::plot
