@@ -28,6 +28,8 @@ constexpr const char* kSweep = "palp.sweep/1";
 using config::Ending;
 using config::ExitCode;
 
+constexpr std::size_t kCasesSizeMax = std::size_t{1} << 30;  // [bytes], two million rows
+
 constexpr std::uint64_t kSeedMax = 9007199254740991;  // what a JSON number holds exactly
 
 Ending refusal(const Error& fault) { return config::refusal("palp-lab", fault); }
@@ -229,7 +231,7 @@ Ending merge(const BatchArguments& arguments) {
   if (auto known = check_metric(arguments); !known) return refusal(known.error());
   Run all;
   for (const std::string& path : arguments.list) {
-    const auto text = config::read_whole_file(path);
+    const auto text = config::read_whole_file(path, kCasesSizeMax);
     if (!text) return {ExitCode::CannotOpen, "palp-lab: " + text.error().text};
     auto rows = read_cases_csv(*text, path, all.plan);
     if (!rows) return refusal(rows.error());

@@ -27,8 +27,6 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using google::protobuf::TextFormat;
 
-constexpr std::size_t kFileMax = std::size_t{1} << 20;  ///< [bytes]; people write a few thousand
-
 /// Counted from 0; -1: not known.
 struct Place {
   int line{-1};
@@ -170,7 +168,7 @@ class Fnv1a {
 
 }  // namespace
 
-Result<std::string> read_whole_file(const std::string& path) {
+Result<std::string> read_whole_file(const std::string& path, std::size_t size_max) {
   const auto cannot_read = [&path](const std::string& why) {
     return fail("cannot read " + printable(path) + ": " + why);
   };
@@ -181,7 +179,7 @@ Result<std::string> read_whole_file(const std::string& path) {
   std::string text;
   std::array<char, 4096> buffer{};
   ssize_t count = 0;
-  while (text.size() <= kFileMax && ((count = ::read(file, buffer.data(), buffer.size())) > 0 ||
+  while (text.size() <= size_max && ((count = ::read(file, buffer.data(), buffer.size())) > 0 ||
                                      (count < 0 && errno == EINTR))) {
     text.append(buffer.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
   }
@@ -190,8 +188,8 @@ Result<std::string> read_whole_file(const std::string& path) {
   if (count < 0) {
     return cannot_read(std::generic_category().message(error));
   }
-  if (text.size() > kFileMax) {
-    return cannot_read("it is longer than " + std::to_string(kFileMax) + " bytes");
+  if (text.size() > size_max) {
+    return cannot_read("it is longer than " + std::to_string(size_max) + " bytes");
   }
   return text;
 }

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <set>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include "common/config/report.h"
 #include "lab/adversary.h"
 #include "lab/batch_report.h"
 #include "lab/metric_table.h"
@@ -119,6 +122,20 @@ TEST(MergeTest, CommasAndQuotesInNamesSurvive) {
   ASSERT_TRUE(again) << again.error().text;
   EXPECT_EQ(read.tissue, plan.tissue);
   EXPECT_EQ(again->at(1).labels, results[1].labels);
+}
+
+TEST(MergeTest, FilesMayBeAsLongAsTheLargestSet) {
+  const Plan plan = small_plan(20'000);
+  const std::string path = testing::TempDir() + "palp_cases_" + std::to_string(::getpid()) + ".csv";
+  const std::string rows = cases_csv(plan, empty_cases(plan));
+  ASSERT_GT(rows.size(), 2U << 20U) << "longer than settings may be";
+  ASSERT_TRUE(config::write_whole_file(path, rows));
+  BatchArguments arguments;
+  arguments.list = {path};
+  const auto ending = run_batch_verb("merge", arguments, {});
+  (void)std::remove(path.c_str());
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->code, config::ExitCode::Done) << ending->text;
 }
 
 TEST(VerbsTest, WhatCannotBeWrittenIsRefusedBeforeTheFirstCaseIsRun) {

@@ -279,6 +279,8 @@ TEST(ReadWholeFileTest, SaysWhyItCannotRead) {
   EXPECT_EQ(read_whole_file("/").error().text, "cannot read /: Is a directory");
   EXPECT_EQ(read_whole_file("/dev/zero").error().text,
             "cannot read /dev/zero: it is longer than 1048576 bytes");
+  EXPECT_EQ(read_whole_file("/dev/zero", 5'000'000).error().text,
+            "cannot read /dev/zero: it is longer than 5000000 bytes");
   EXPECT_EQ(read_whole_file("/dev/null"), "");
 }
 
