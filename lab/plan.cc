@@ -49,7 +49,8 @@ Result<void> apply(config::Document& document, const Setting& setting) {
   if (setting.path == "rtt_ms") {
     const auto trip = config::parse_number(setting.value);
     if (!trip || !(*trip >= 0 && *trip <= kRoundTripMaxMs)) {
-      return fail("rtt_ms = " + printable(setting.value) + " is not a number: round trip [ms], " +
+      return fail("rtt_ms = " + printable(setting.value) +
+                  (trip ? " is out of range: " : " is not a number: ") +
                   config::range_text(0, kRoundTripMaxMs, "ms"));
     }
     const std::string half = config::number_text(*trip / 2);
@@ -173,7 +174,7 @@ Result<Plan> make_sweep(const std::string& scenario,
     if (auto effect = check_effect(path); !effect) return tl::unexpected(effect.error());
     const auto& names = plan.label_names;
     if (std::find(names.begin(), names.end(), path) != names.end()) {
-      return fail("sweep axis '" + axis + "': " + path + " has an axis already");
+      return fail(path + " has two axes: which of them?");
     }
     if (path == kCouplingPath) plan.coupling.clear();
     if (path == kPhantomPath) plan.tissue.clear();

@@ -190,11 +190,12 @@ std::string run_summary(const Scenario& scenario,
 
 std::string trace_csv(const TrialResult& result) {
   std::string text =
-      "t_s,site,phase,index,hand_mm,tip_mm,force_felt_n,force_true_n,contact_force_n,energy_mj\n";
+      "t_s,site,phase,index,hand_mm,tip_mm,force_felt_n,force_true_n,contact_force_n,energy_mj,"
+      "counted,hand_speed_m_per_s,surface_mm\n";
   constexpr std::array kKinds{"other", "air", "tap", "press", "lift"};
   for (const TrialTick& tick : result.ticks) {
     append(text,
-           "%.4f,%s,%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n",
+           "%.4f,%s,%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%.9g,%.9g\n",
            tick.at,
            name_of(tick.phase.site),
            kKinds[static_cast<std::size_t>(tick.phase.kind)],
@@ -204,7 +205,10 @@ std::string trace_csv(const TrialResult& result) {
            tick.hand_force,
            tick.force_true,
            tick.contact_force,
-           tick.energy_operator * 1e3);
+           tick.energy_operator * 1e3,
+           tick.counted ? 1 : 0,
+           tick.hand_velocity,
+           tick.surface * 1e3);
   }
   return text;
 }
