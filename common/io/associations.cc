@@ -25,9 +25,18 @@ Associations::Associations(const Credentials& credentials) : credentials_{creden
 }
 
 void Associations::begin(Attempt attempt, TimePoint now) {
-  if (attempts_.size() >= kAttemptsMax) attempts_.pop_front();
+  if (attempts_.size() >= kAttemptsMax) make_room();
   attempts_.push_back(std::move(attempt));
   collect(attempts_.back(), now);
+}
+
+/// The oldest of the host that has most: whoever begins many loses its own.
+void Associations::make_room() {
+  const auto of_its_host = [this](const Attempt& one) {
+    return std::ranges::count_if(
+        attempts_, [&](const Attempt& other) { return other.peer.same_host(one.peer); });
+  };
+  attempts_.erase(std::ranges::max_element(attempts_, {}, of_its_host));  // the first of equals
 }
 
 void Associations::call(const Endpoint& peer, TimePoint now) {
@@ -51,9 +60,12 @@ void Associations::hear(std::span<const std::byte> datagram, const Endpoint& fro
     return;
   }
   if (!listener_ || !random) return;
+  // Its caller repeats it, by then perhaps there is room.
+  if (shows_cookie(datagram) && !admission_.open_to(from, now)) return;
   DtlsListener::Answer answer = listener_->hear(datagram, from, now);
   for (DtlsDatagram& one : answer.datagrams) letters_.push_back({from, std::move(one)});
   if (!answer.handshake) return;
+  admission_.note(from, now);
   begin(
       {.peer = from, .random = random, .handshake = std::move(*answer.handshake), .began_at = now},
       now);

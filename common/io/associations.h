@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/core/time.h"
+#include "common/io/admission.h"
 #include "common/io/credentials.h"
 #include "common/io/dtls_handshake.h"
 #include "common/io/endpoint.h"
@@ -38,8 +39,9 @@ struct Association {
 };
 
 /// The handshakes under way and what came of them; the control plane is sealed and opened here.
-/// A surgeon calls, a patient answers. Whoever shows no valid cookie leaves nothing behind; of
-/// those who do, only the newest few are kept. Thread: io.
+/// A surgeon calls, a patient answers. Whoever shows no valid cookie leaves nothing behind; those
+/// who do may begin a few in a second, and only few are kept, those of the busiest host the
+/// shortest. Thread: io.
 class Associations {
  public:
   static constexpr std::size_t kAttemptsMax = 16;
@@ -86,9 +88,11 @@ class Associations {
   };
   void collect(Attempt& attempt, TimePoint now);
   void begin(Attempt attempt, TimePoint now);
+  void make_room();
 
   const Credentials& credentials_;
   std::optional<DtlsListener> listener_;  ///< patient
+  Admission admission_;                   ///< patient
   std::deque<Attempt> attempts_;          ///< oldest first
   std::deque<Association> kept_;          ///< oldest first
   std::uint64_t made_{};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include <openssl/hmac.h>
@@ -25,6 +26,7 @@ constexpr Duration kCookieLife = std::chrono::minutes{1};
 constexpr std::size_t kCookieSize = 16;  // [bytes]; short, so that no answer outgrows its question
 constexpr std::size_t kRecordHeader = 13;
 constexpr std::size_t kMessageHeader = 12;
+constexpr std::size_t kRandomAt = kRecordHeader + kMessageHeader + 2;
 constexpr long kUdpOverIpv6 = 48;  // [bytes]
 
 DatagramBox& box_of(BIO* bio) { return *static_cast<DatagramBox*>(BIO_get_data(bio)); }
@@ -110,7 +112,6 @@ bool looks_like_dtls(std::span<const std::byte> datagram) noexcept {
 std::optional<ClientRandom> client_random(std::span<const std::byte> datagram) noexcept {
   constexpr std::byte kHandshake{22};
   constexpr std::byte kClientHello{1};
-  constexpr std::size_t kRandomAt = kRecordHeader + kMessageHeader + 2;
   ClientRandom random{};
   if (datagram.size() < kRandomAt + random.size() || datagram[0] != kHandshake ||
       datagram[3] != std::byte{0} || datagram[4] != std::byte{0} ||  // epoch
@@ -119,6 +120,13 @@ std::optional<ClientRandom> client_random(std::span<const std::byte> datagram) n
   }
   std::ranges::copy(datagram.subspan(kRandomAt, random.size()), random.begin());
   return random;
+}
+
+bool shows_cookie(std::span<const std::byte> datagram) noexcept {
+  constexpr std::size_t kSessionAt = kRandomAt + std::tuple_size_v<ClientRandom>;
+  if (!client_random(datagram) || datagram.size() <= kSessionAt) return false;
+  const std::size_t cookie_at = kSessionAt + 1 + std::to_integer<std::size_t>(datagram[kSessionAt]);
+  return datagram.size() > cookie_at && datagram[cookie_at] != std::byte{0};
 }
 
 /// Secrets of this process that mark an address; the second is the former one.

@@ -34,6 +34,9 @@ using ClientRandom = std::array<std::byte, 32>;
 [[nodiscard]] std::optional<ClientRandom> client_random(
     std::span<const std::byte> datagram) noexcept;
 
+/// Whether the ClientHello in this datagram shows a cookie, whatever that is worth.
+[[nodiscard]] bool shows_cookie(std::span<const std::byte> datagram) noexcept;
+
 /// One DTLS 1.2 handshake; nothing but keys is taken from it, no record ever carries our data.
 /// Repeats what got lost 200 ms after, x 1.5 each time, up to 0.4 s. Datagrams in and out; knows no
 /// socket. Uses OpenSSL's own clock for its timer. Thread: io.

@@ -86,6 +86,22 @@ bool Endpoint::operator==(const Endpoint& other) const noexcept {
          std::memcmp(&a.sin6_addr, &b.sin6_addr, sizeof a.sin6_addr) == 0;
 }
 
+bool Endpoint::same_host(const Endpoint& other) const noexcept {
+  if (!valid() || !other.valid() || family() != other.family()) {
+    return false;
+  }
+  if (family() == AF_INET) {
+    const auto& a = reinterpret_cast<const sockaddr_in&>(storage_);
+    const auto& b = reinterpret_cast<const sockaddr_in&>(other.storage_);
+    return a.sin_addr.s_addr == b.sin_addr.s_addr;
+  }
+  const auto& a = reinterpret_cast<const sockaddr_in6&>(storage_);
+  const auto& b = reinterpret_cast<const sockaddr_in6&>(other.storage_);
+  constexpr std::size_t kPrefix = 8;                     // [bytes]
+  const bool ipv4 = IN6_IS_ADDR_V4MAPPED(&a.sin6_addr);  // all of them share a prefix
+  return std::memcmp(&a.sin6_addr, &b.sin6_addr, ipv4 ? sizeof a.sin6_addr : kPrefix) == 0;
+}
+
 Endpoint Endpoint::caller() const noexcept {
   if (family() == AF_INET6) {
     sockaddr_in6 from{};

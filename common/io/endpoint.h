@@ -31,6 +31,9 @@ class Endpoint {
   [[nodiscard]] std::string to_string() const;
   /// The same address and port; flow labels do not count.
   [[nodiscard]] bool operator==(const Endpoint& other) const noexcept;
+  /// Whether both are of one subscriber: the same IPv4 address, or the same /64 of IPv6, which is
+  /// what one customer is given.
+  [[nodiscard]] bool same_host(const Endpoint& other) const noexcept;
   /// Where to call from: the address of the same family that means "any", with port 0; towards a
   /// loopback address a loopback one, which nobody outside this machine can reach.
   [[nodiscard]] Endpoint caller() const noexcept;

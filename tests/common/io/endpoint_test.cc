@@ -29,6 +29,20 @@ TEST(EndpointTest, EqualMeansSameAddressAndPort) {
   EXPECT_FALSE(Endpoint{} == Endpoint{});
 }
 
+TEST(EndpointTest, AHostIsAnAddressOrAPrefixOfSixtyFourBits) {
+  const auto same = [](const char* one, const char* other) {
+    return resolve_endpoint(one)->same_host(*resolve_endpoint(other));
+  };
+  EXPECT_TRUE(same("192.0.2.1:1", "192.0.2.1:2"));
+  EXPECT_FALSE(same("192.0.2.1:1", "192.0.2.2:1"));
+  EXPECT_TRUE(same("[2001:db8:0:1::1]:1", "[2001:db8:0:1:ffff::2]:1"));
+  EXPECT_FALSE(same("[2001:db8:0:1::1]:1", "[2001:db8:0:2::1]:1"));
+  EXPECT_FALSE(same("[::1]:1", "127.0.0.1:1"));
+  EXPECT_TRUE(same("[::ffff:192.0.2.1]:1", "[::ffff:192.0.2.1]:2"));
+  EXPECT_FALSE(same("[::ffff:192.0.2.1]:1", "[::ffff:192.0.2.2]:1"));
+  EXPECT_FALSE(Endpoint{}.same_host(Endpoint{}));
+}
+
 TEST(EndpointTest, LoopbackIsWhatNeverLeavesTheMachine) {
   for (const char* text : {"127.0.0.1:1", "127.255.255.254:1", "[::1]:1"}) {
     EXPECT_TRUE(resolve_endpoint(text)->loopback()) << text;
