@@ -138,6 +138,14 @@ Holder read_holder(const path& folder) {
   return read;
 }
 
+/// A site that got new keys still refuses what was revoked before, also from a new folder.
+void copy_revocations(const path& authority, const path& site) {
+  if (!std::filesystem::exists(authority / "revoked.pem")) return;
+  std::filesystem::copy_file(authority / "revoked.pem",
+                             site / "revoked.pem",
+                             std::filesystem::copy_options::overwrite_existing);
+}
+
 void make_site(const CertificatesConfig& config, const Holder& authority, link::Role role) {
   const bool surgeon = role == link::Role::Surgeon;
   const std::string site = surgeon ? "surgeon" : "patient";
@@ -155,6 +163,15 @@ void make_site(const CertificatesConfig& config, const Holder& authority, link::
   write_key(folder / "key.pem", made.key.get());
   write_certificate(folder / "certificate.pem", certificate);
   write_certificate(folder / "authority.pem", authority.certificate.get());
+  copy_revocations(path{config.folder} / "authority", folder);
+}
+
+/// A site proves itself in one way: with both in its folder nobody could tell which holds.
+void demand_none(const path& file, const char* what) {
+  if (std::filesystem::exists(file)) {
+    throw std::runtime_error{file.string() + " is there already: " + what +
+                             " need a folder of their own"};
+  }
 }
 
 /// What is thrown here, as a sentence.
@@ -169,13 +186,20 @@ Result<std::string> told(Work work) {
   }
 }
 
-/// The authority's list so far, or an empty one.
+/// The authority's list so far, or an empty one. A list that cannot be read is not begun anew: all
+/// that was revoked would be good again.
 Openssl<X509_CRL> revocation_list(const path& file, const Holder& authority) {
-  const Openssl<BIO> in{BIO_new_file(file.c_str(), "r")};
+  const bool there = std::filesystem::exists(file);
+  const Openssl<BIO> in{there ? BIO_new_file(file.c_str(), "r") : nullptr};
   Openssl<X509_CRL> list{
       in == nullptr ? nullptr : PEM_read_bio_X509_CRL(in.get(), nullptr, nullptr, nullptr)};
   ERR_clear_error();
-  if (list != nullptr) return list;
+  if (list != nullptr && X509_CRL_verify(list.get(), authority.key.get()) == 1) return list;
+  ERR_clear_error();
+  if (there) {
+    throw std::runtime_error{file.string() +
+                             " is no list of this authority's; put back a copy of it"};
+  }
   list.reset(X509_CRL_new());
   demand(list != nullptr && X509_CRL_set_version(list.get(), X509_CRL_VERSION_2) == 1 &&
          X509_CRL_set_issuer_name(list.get(), X509_get_subject_name(authority.certificate.get())) ==
@@ -191,6 +215,12 @@ std::string revoke(const CertificatesConfig& config, const std::string& certific
       in == nullptr ? nullptr : PEM_read_bio_X509(in.get(), nullptr, nullptr, nullptr)};
   ERR_clear_error();
   if (revoked == nullptr) throw std::runtime_error{certificate + " holds no certificate"};
+  const bool ours = X509_verify(revoked.get(), authority.key.get()) == 1;
+  ERR_clear_error();
+  if (!ours) {
+    throw std::runtime_error{certificate + " was not made by the authority in " +
+                             (folder / "authority").string()};
+  }
   const path file = folder / "authority" / "revoked.pem";
   const Openssl<X509_CRL> list = revocation_list(file, authority);
   const Openssl<ASN1_TIME> now{X509_gmtime_adj(nullptr, 0)};
@@ -217,6 +247,9 @@ std::string revoke(const CertificatesConfig& config, const std::string& certific
 
 Result<std::string> make_certificates(const CertificatesConfig& config) {
   return told([&] {
+    for (const char* site : {"surgeon", "patient"}) {
+      demand_none(path{config.folder} / site / "pre_shared_key.txt", "certificates");
+    }
     const path folder = path{config.folder} / "authority";
     const bool there = std::filesystem::exists(folder / "key.pem");
     const Holder authority = there ? read_holder(folder) : new_authority(config, folder);
@@ -236,6 +269,9 @@ Result<std::string> revoke_certificate(const CertificatesConfig& config,
 
 Result<std::string> make_pre_shared_key(const std::string& folder) {
   return told([&] {
+    for (const char* site : {"surgeon", "patient"}) {
+      demand_none(path{folder} / site / "certificate.pem", "pre-shared keys");
+    }
     std::array<unsigned char, 32> key{};
     demand(RAND_bytes(key.data(), key.size()) == 1);
     constexpr char kDigits[] = "0123456789abcdef";

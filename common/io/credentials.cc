@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include <openssl/pem.h>
+#include <openssl/x509err.h>
 
 #include "common/io/openssl_context.h"
 #include "common/io/openssl_handles.h"
+#include "common/io/system_text.h"
 
 namespace palp::io {
 namespace {
@@ -20,6 +24,10 @@ using link::Role;
 
 constexpr char kBenchIdentity[] = "palp-bench";
 constexpr std::size_t kPreSharedKeySize = 32;  // [bytes]
+constexpr int kDaysToRenew = 14;
+constexpr char kCertificateFile[] = "certificate.pem";
+constexpr char kKeyFile[] = "key.pem";
+constexpr char kSharedKeyFile[] = "pre_shared_key.txt";
 /// Forward secret, authenticated encryption, 256 bits: nothing else is offered or accepted.
 constexpr char kCertificateSuites[] = "ECDHE-ECDSA-AES256-GCM-SHA384:ECDHE-RSA-AES256-GCM-SHA384";
 /// The only forward secret suite of OpenSSL 3.0 with a pre-shared key and authenticated encryption.
@@ -58,6 +66,9 @@ const Credentials::Context& context_of(SSL* ssl) {
   return *static_cast<const Credentials::Context*>(SSL_CTX_get_app_data(SSL_get_SSL_CTX(ssl)));
 }
 
+/// A key that has a passphrase is refused: OpenSSL would ask the terminal for it.
+int no_passphrase(char* /*out*/, int /*size*/, int /*writes*/, void* /*data*/) { return -1; }
+
 unsigned give_key(SSL* ssl, unsigned char* out, unsigned size_max) {
   const std::vector<unsigned char>& key = context_of(ssl).pre_shared_key;
   if (key.size() > size_max) return 0;
@@ -88,6 +99,7 @@ std::unique_ptr<Credentials::Context> make_context(Role role) {
   SSL_CTX* ssl = context->ssl.get();
   if (ssl == nullptr) return nullptr;
   SSL_CTX_set_app_data(ssl, context.get());
+  SSL_CTX_set_default_passwd_cb(ssl, no_passphrase);
   SSL_CTX_set_min_proto_version(ssl, DTLS1_2_VERSION);
   SSL_CTX_set_max_proto_version(ssl, DTLS1_2_VERSION);
   SSL_CTX_set_options(ssl,
@@ -105,9 +117,18 @@ Error unusable(const std::filesystem::path& file, const std::string& why) {
   return error;
 }
 
+/// Why a file that OpenSSL did not take could not be used: it speaks of its own libraries.
+Error not_taken(const std::filesystem::path& file, const std::string& wanted) {
+  ERR_clear_error();
+  errno = 0;
+  if (!std::ifstream{file}) return unusable(file, "cannot be read: " + system_text(errno));
+  return unusable(file, "holds no " + wanted);
+}
+
 Result<std::string> use_pre_shared_key(Credentials::Context& context,
                                        const std::filesystem::path& file) {
   std::ifstream stream{file};
+  if (!stream) return tl::unexpected{not_taken(file, "key")};
   std::string text{std::istreambuf_iterator<char>{stream}, {}};
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) {
     text.pop_back();
@@ -133,7 +154,7 @@ Result<std::string> use_pre_shared_key(Credentials::Context& context,
 Result<bool> trust(SSL_CTX* ssl, const std::filesystem::path& folder) {
   const std::filesystem::path authority = folder / "authority.pem";
   if (SSL_CTX_load_verify_file(ssl, authority.c_str()) != 1) {
-    return tl::unexpected{unusable(authority, openssl_complaint())};
+    return tl::unexpected{not_taken(authority, "certificate in PEM form")};
   }
   const std::filesystem::path revoked = folder / "revoked.pem";
   if (!std::filesystem::exists(revoked)) return false;
@@ -142,7 +163,7 @@ Result<bool> trust(SSL_CTX* ssl, const std::filesystem::path& folder) {
       file == nullptr ? nullptr : PEM_read_bio_X509_CRL(file.get(), nullptr, nullptr, nullptr)};
   X509_STORE* store = SSL_CTX_get_cert_store(ssl);
   if (list == nullptr || X509_STORE_add_crl(store, list.get()) != 1) {
-    return tl::unexpected{unusable(revoked, openssl_complaint())};
+    return tl::unexpected{not_taken(revoked, "revocation list in PEM form")};
   }
   X509_STORE_set_flags(store, X509_V_FLAG_CRL_CHECK);
   return true;
@@ -161,24 +182,63 @@ Result<std::string> use_certificates(Credentials::Context& context,
                                      const std::filesystem::path& folder,
                                      Role role) {
   SSL_CTX* ssl = context.ssl.get();
-  const std::filesystem::path certificate = folder / "certificate.pem";
+  const std::filesystem::path certificate = folder / kCertificateFile;
   if (SSL_CTX_use_certificate_chain_file(ssl, certificate.c_str()) != 1) {
-    return tl::unexpected{unusable(certificate, openssl_complaint())};
+    return tl::unexpected{not_taken(certificate, "certificate in PEM form")};
   }
   X509* own = SSL_CTX_get0_certificate(ssl);
   if (!names_role(own, role)) {
     return tl::unexpected{
         unusable(certificate, "is not made out to a " + role_name(role) + " site")};
   }
-  const std::filesystem::path key = folder / "key.pem";
-  if (SSL_CTX_use_PrivateKey_file(ssl, key.c_str(), SSL_FILETYPE_PEM) != 1 ||
-      SSL_CTX_check_private_key(ssl) != 1) {
-    return tl::unexpected{unusable(key, openssl_complaint())};
+  const std::filesystem::path key = folder / kKeyFile;
+  if (SSL_CTX_use_PrivateKey_file(ssl, key.c_str(), SSL_FILETYPE_PEM) != 1) {
+    const bool misfit = ERR_GET_REASON(ERR_peek_last_error()) == X509_R_KEY_VALUES_MISMATCH;
+    return tl::unexpected{misfit ? unusable(key, "does not fit the certificate beside it")
+                                 : not_taken(key, "private key in PEM form without passphrase")};
   }
   if (const auto trusted = trust(ssl, folder); !trusted) return tl::unexpected{trusted.error()};
   SSL_CTX_set_cipher_list(ssl, kCertificateSuites);
   SSL_CTX_set_verify(ssl, SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, check_role);
   return common_name(own);
+}
+
+/// Rights of others on a file that only its owner should read.
+std::optional<std::string> exposure(const std::filesystem::path& file) {
+  using std::filesystem::perms;
+  std::error_code refusal;
+  const perms rights = std::filesystem::status(file, refusal).permissions();
+  if (refusal || (rights & (perms::group_all | perms::others_all)) == perms::none) return {};
+  return "identity " + file.string() + ": others than its owner have rights on it; chmod 600";
+}
+
+/// Whether the wall clock lies within its time, and for how long.
+std::optional<std::string> time_trouble(const std::filesystem::path& file, const X509* own) {
+  const std::string name = "identity " + file.string();
+  if (X509_cmp_current_time(X509_get0_notBefore(own)) > 0) {
+    return name + " is not valid yet, by this machine's clock: the peer will refuse it";
+  }
+  if (X509_cmp_current_time(X509_get0_notAfter(own)) < 0) {
+    return name + " has expired, by this machine's clock: the peer will refuse it";
+  }
+  int days = 0;
+  int seconds = 0;
+  if (ASN1_TIME_diff(&days, &seconds, nullptr, X509_get0_notAfter(own)) == 1 &&
+      days < kDaysToRenew) {
+    return name + " expires in " + std::to_string(days) + " days";
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> cautions_of(const Credentials::Context& context,
+                                     const std::filesystem::path& folder) {
+  std::vector<std::string> cautions;
+  const bool shared = !context.pre_shared_key.empty();
+  if (auto one = exposure(folder / (shared ? kSharedKeyFile : kKeyFile))) cautions.push_back(*one);
+  if (shared) return cautions;
+  const X509* own = SSL_CTX_get0_certificate(context.ssl.get());
+  if (auto one = time_trouble(folder / kCertificateFile, own)) cautions.push_back(*one);
+  return cautions;
 }
 
 }  // namespace
@@ -198,12 +258,19 @@ Result<std::unique_ptr<Credentials>> Credentials::read(const std::string& folder
   }
   std::unique_ptr<Context> context = make_context(role);
   if (context == nullptr) return tl::unexpected{unusable(place, openssl_complaint())};
-  const std::filesystem::path shared = place / "pre_shared_key.txt";
+  const std::filesystem::path shared = place / kSharedKeyFile;
+  if (std::filesystem::exists(shared) && std::filesystem::exists(place / kCertificateFile)) {
+    return tl::unexpected{
+        unusable(place, "holds a certificate and a pre-shared key; take away what is not meant")};
+  }
   const Result<std::string> name = std::filesystem::exists(shared)
                                        ? use_pre_shared_key(*context, shared)
                                        : use_certificates(*context, place, role);
   if (!name) return tl::unexpected{name.error()};
-  return std::unique_ptr<Credentials>{new Credentials{std::move(context), role, *name}};
+  std::vector<std::string> cautions = cautions_of(*context, place);
+  std::unique_ptr<Credentials> read{new Credentials{std::move(context), role, *name}};
+  read->cautions_ = std::move(cautions);
+  return read;
 }
 
 }  // namespace palp::io

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/core/result.h"
 #include "common/link/telegram.h"
@@ -30,6 +31,10 @@ class Credentials {
   /// For people: the name in the own certificate, or "a pre-shared key".
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
+  /// What its owner should know, in sentences: a key that others can read, a certificate that is
+  /// not good now or not for long.
+  [[nodiscard]] const std::vector<std::string>& cautions() const noexcept { return cautions_; }
+
   /// The settings of a DTLS endpoint (an SSL_CTX): keeps OpenSSL's types out of this header.
   struct Context;
   [[nodiscard]] Context& context() const noexcept { return *context_; }
@@ -40,6 +45,7 @@ class Credentials {
   std::unique_ptr<Context> context_;
   link::Role role_;
   std::string name_;
+  std::vector<std::string> cautions_;
 };
 
 /// The URI in a certificate's subject alternative names that says which site it is for.
