@@ -13,25 +13,37 @@
 
 namespace palp::site_program {
 
-CheckCommand::CheckCommand(config::CommandLine& line, link::Role role) {
+CheckCommand::CheckCommand(config::CommandLine& line, link::Role role) : role_{role} {
   config::CommandLine& verb = line.verb(
       "check", "Looks whether this machine can run a site on time, and says what to change.");
   verb.number("--seconds", seconds_, {.min = 0.1, .max = 3600, .unit = "s"}, "of an idle loop");
   verb.report(report_, "palp.check/1");
+  verb.text("--identity", identity_, "FOLDER", "also whether this site's certificate is in order");
   if (role != link::Role::Surgeon) return;
   verb.text("--peer", peer_, "HOST:PORT", "also the way to the patient site, which runs there");
-  verb.text("--identity", identity_, "FOLDER", "this site's, for --peer");
 }
 
-Result<io::MachineFinding> CheckCommand::way_to_peer() const {
-  if (identity_.empty()) return fail("--peer needs --identity: strangers are not answered");
+/// Of what the command line names besides the machine.
+Result<std::vector<io::MachineFinding>> CheckCommand::beyond_the_machine() const {
+  std::vector<io::MachineFinding> findings;
+  if (identity_.empty()) {
+    if (!peer_.empty()) return fail("--peer needs --identity: strangers are not answered");
+    return findings;
+  }
+  const auto credentials = io::Credentials::read(identity_, role_);
+  if (!credentials) return tl::unexpected{credentials.error()};
+  findings.push_back(judge_identity(**credentials));
+  if (peer_.empty()) return findings;
   const auto place = parse_host_and_port(peer_, 1);
   if (!place) return fail("--peer: " + place.error().text);
-  const auto credentials = io::Credentials::read(identity_, link::Role::Surgeon);
-  if (!credentials) return fail(credentials.error().text);
   const auto facts = io::read_path(*place, **credentials);
-  if (!facts) return fail(facts.error().text);
-  return io::judge_path(*facts);
+  if (!facts) {
+    Error error = facts.error();
+    error.unreachable = true;
+    return tl::unexpected{error};
+  }
+  findings.push_back(io::judge_path(*facts));
+  return findings;
 }
 
 Ending CheckCommand::run() const {
@@ -40,14 +52,10 @@ Ending CheckCommand::run() const {
                             .spin = site.spin,
                             .priority = site.priority,
                             .lock_memory = site.lock_memory};
-  std::optional<io::MachineFinding> way;
-  if (!peer_.empty()) {
-    const auto found = way_to_peer();
-    if (!found) return bad_input(found.error().text);
-    way = *found;
-  }
+  const auto beyond = beyond_the_machine();
+  if (!beyond) return ending_of(beyond.error());
   auto findings = io::judge_machine(io::read_machine(loop, from_seconds(seconds_)), loop.period);
-  if (way) findings.push_back(*way);
+  findings.insert(findings.end(), beyond->begin(), beyond->end());
   std::fputs(check_text(findings).c_str(), stdout);
   if (!report_.empty()) {
     const auto written = config::write_whole_file(report_, check_json(findings));
@@ -56,6 +64,13 @@ Ending CheckCommand::run() const {
   const bool good = std::all_of(
       findings.begin(), findings.end(), [](const io::MachineFinding& one) { return one.good; });
   return {good ? config::ExitCode::Done : config::ExitCode::Missed, "completed", ""};
+}
+
+io::MachineFinding judge_identity(const io::Credentials& credentials) {
+  const std::vector<std::string>& cautions = credentials.cautions();
+  std::string advice;
+  for (const std::string& one : cautions) advice += (advice.empty() ? "" : "; ") + one;
+  return {"identity", credentials.name(), cautions.empty(), advice};
 }
 
 std::string check_text(const std::vector<io::MachineFinding>& findings) {

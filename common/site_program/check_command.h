@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/config/command_line.h"
+#include "common/io/credentials.h"
 #include "common/io/machine_check.h"
 #include "common/link/telegram.h"
 #include "common/site_program/ending.h"
@@ -14,21 +15,24 @@ namespace palp::site_program {
 class CheckCommand {
  public:
   /// Declares the verb; this object outlives the line's parse(). Only a surgeon can look at the way
-  /// to its peer: the patient is called.
+  /// to its peer: the patient is called. Both can look at their identity.
   CheckCommand(config::CommandLine& line, link::Role role);
   /// After the line was parsed with this verb: an idle loop with the default settings of a site's.
   /// Prints a line for each thing looked at. Missed where something should be changed.
   [[nodiscard]] Ending run() const;
 
  private:
-  [[nodiscard]] Result<io::MachineFinding> way_to_peer() const;
+  [[nodiscard]] Result<std::vector<io::MachineFinding>> beyond_the_machine() const;
 
+  link::Role role_;
   double seconds_{5};  ///< [s]
   std::string peer_;
   std::string identity_;
   std::string report_;
 };
 
+/// Whether what a site proves itself with is in order.
+[[nodiscard]] io::MachineFinding judge_identity(const io::Credentials& credentials);
 /// "good  timer lateness  99 % of ...", and the advice below what is not.
 [[nodiscard]] std::string check_text(const std::vector<io::MachineFinding>& findings);
 /// Schema palp.check/1.
