@@ -143,11 +143,7 @@ SessionServer::Io::Io(const SessionServerConfig& config, HandoverDesk& desk)
                              system_text(refusal.value())};
   }
   listening_.non_blocking(true);
-  if (wish.family() == AF_INET6) {
-    set_option(listening_, IPPROTO_IPV6, IPV6_TCLASS, kClassSelector3);
-  } else {
-    set_option(listening_, IPPROTO_IP, IP_TOS, kClassSelector3);
-  }
+  mark_datagrams(listening_.native_handle(), wish.family(), kClassSelector3);
   local_ = from_asio(listening_.local_endpoint());
   conversation_ = make_conversation(
       {.session = config_.session, .callee = callee_, .rekey_after = config_.rekey_after},

@@ -28,14 +28,12 @@ void set_option(int socket, int level, int name, int value) noexcept {
 void set_options(int socket, int family, const UdpSocketConfig& config) noexcept {
   set_option(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1);
   ask_receive_buffer(socket, config.receive_buffer);
+  mark_datagrams(socket, family, kExpeditedForwarding);
   // PROBE sets "don't fragment" without believing ICMP, which anybody can forge, on the path's MTU.
   if (family == AF_INET6) {
-    set_option(socket, IPPROTO_IPV6, IPV6_TCLASS, kExpeditedForwarding);
     set_option(socket, IPPROTO_IPV6, IPV6_MTU_DISCOVER, IPV6_PMTUDISC_PROBE);
-  } else {
-    set_option(socket, IPPROTO_IP, IP_TOS, kExpeditedForwarding);
-    set_option(socket, IPPROTO_IP, IP_MTU_DISCOVER, IP_PMTUDISC_PROBE);
   }
+  set_option(socket, IPPROTO_IP, IP_MTU_DISCOVER, IP_PMTUDISC_PROBE);
 }
 
 Duration span_of(const timespec& stamp) noexcept {
@@ -53,6 +51,11 @@ bool is_path_error(int error) noexcept {
 void ask_receive_buffer(int socket, int bytes) noexcept {
   set_option(socket, SOL_SOCKET, SO_RCVBUF, bytes);
   set_option(socket, SOL_SOCKET, SO_RCVBUFFORCE, bytes);
+}
+
+void mark_datagrams(int socket, int family, int traffic_class) noexcept {
+  if (family == AF_INET6) set_option(socket, IPPROTO_IPV6, IPV6_TCLASS, traffic_class);
+  set_option(socket, IPPROTO_IP, IP_TOS, traffic_class);
 }
 
 /// Room for one recvmmsg. What was taken but not handed over waits here, also over ticks.

@@ -240,6 +240,40 @@ TEST_F(UdpSocketTest, WhatWasTakenEarlyNamesItsSender) {
   EXPECT_FALSE(socket_->take_early(buffer_).has_value());
 }
 
+/// The TOS byte of the datagram that comes next, as its receiver sees it.
+int class_of_next(int socket) {
+  std::array<std::byte, 2000> bytes{};
+  std::array<std::byte, 100> control{};
+  iovec block{.iov_base = bytes.data(), .iov_len = bytes.size()};
+  msghdr message{};
+  message.msg_iov = &block;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  message.msg_controllen = control.size();
+  EXPECT_GT(::recvmsg(socket, &message, 0), 0);
+  const cmsghdr* one = CMSG_FIRSTHDR(&message);
+  return one == nullptr ? -1
+                        : std::to_integer<int>(*reinterpret_cast<const std::byte*>(CMSG_DATA(one)));
+}
+
+TEST(UdpSocketConnectTest, TelegramsAreExpeditedToPeersOfIpv4AlsoFromASocketOfIpv6) {
+  for (const char* family : {"127.0.0.1:", "[::ffff:127.0.0.1]:"}) {
+    const Descriptor receiver = test::bound_to(*resolve_endpoint("127.0.0.1:0"), false);
+    const int on = 1;
+    ASSERT_EQ(setsockopt(receiver.number(), IPPROTO_IP, IP_RECVTOS, &on, sizeof on), 0);
+    sockaddr_in place{};
+    socklen_t size = sizeof place;
+    ASSERT_EQ(getsockname(receiver.number(), reinterpret_cast<sockaddr*>(&place), &size), 0);
+    const Endpoint peer = *resolve_endpoint(family + std::to_string(ntohs(place.sin_port)));
+    SideInbox inbox;
+    const auto socket = UdpSocket::connect(peer.caller(), peer, inbox, {});
+    if (!socket && peer.family() == AF_INET6) GTEST_SKIP() << "no IPv6 here";
+    ASSERT_TRUE(socket);
+    ASSERT_TRUE((*socket)->send(bytes_of(0x80, 50), SteadyClock{}.now()));
+    EXPECT_EQ(class_of_next(receiver.number()), 46 << 2);
+  }
+}
+
 TEST(UdpSocketConnectTest, SaysInASentenceWhyItCannot) {
   SideInbox inbox;
   PlainSocket taken;
