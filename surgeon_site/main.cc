@@ -181,6 +181,7 @@ std::optional<Ending> Program::look(TimePoint now) {
   const SurgeonStatus& status = node_.status().get();
   round_trips_.add(status.link);
   const std::optional<std::string> hopeless = runner_.tell_news(line_);
+  watch_.note_refusal(runner_.refusal());
   recording_.tell_news(line_);
   if (!advised_ && settings_.coupling.name == "direct") {
     const auto advice =

@@ -97,6 +97,7 @@ class SessionServer::Io {
   [[nodiscard]] Result<std::unique_ptr<link::Transport>> way_to(const Endpoint& peer);
   void offer_waiting();
   void leave();
+  [[nodiscard]] std::string refusal_opening();
   void tell(SessionNews::Kind kind, const Endpoint& peer, std::string sentence, bool final = false);
 
   SessionServerConfig config_;
@@ -248,7 +249,7 @@ void SessionServer::Io::carry_out(ConversationOutput output, const Endpoint& fro
     if (const auto* session = std::get_if<link::Established>(&*output.event)) {
       meet(*session, std::move(output.protection), from);
     } else if (const auto* refused = std::get_if<link::Refused>(&*output.event)) {
-      tell(SessionNews::Kind::Refused, from, "no session: " + refused->text, refused->final);
+      tell(SessionNews::Kind::Refused, from, refusal_opening() + refused->text, refused->final);
     } else if (const auto* closed = std::get_if<link::Closed>(&*output.event)) {
       tell(SessionNews::Kind::Closed, connected_, "the session is over: " + closed->text);
       leave();
@@ -295,6 +296,13 @@ void SessionServer::Io::meet(const link::Established& session,
        "session with " + name_of_peer(config_.session.role) + " at " + peer.to_string() +
            (session.peer_git.empty() ? "" : ", its build " + session.peer_git) +
            (proof.empty() ? "" : ", proven by " + proof));
+}
+
+/// A surgeon in a session calls for new keys only; the session has those it has.
+std::string SessionServer::Io::refusal_opening() {
+  const LinkState link = desk_.link().state;
+  const bool works = link == LinkState::Live || link == LinkState::Hold;
+  return works && config_.session.role == link::Role::Surgeon ? "no new keys: " : "no session: ";
 }
 
 /// The present session goes on under other keys.

@@ -38,7 +38,7 @@ Ending PeerWatch::unreachable(const link::LinkHealth& link, Duration waited) con
   return {config::ExitCode::CannotOpen,
           "unreachable",
           "no session with " + config_.peer + " within " + config::number_text(seconds(waited)) +
-              " s: nobody answers there"};
+              " s: " + (refusal_.empty() ? "nobody answers there" : refusal_)};
 }
 
 }  // namespace palp::site_program

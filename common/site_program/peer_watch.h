@@ -24,6 +24,10 @@ class PeerWatch {
 
   /// nullopt: go on.
   [[nodiscard]] std::optional<Ending> judge(const link::LinkHealth& link, TimePoint now);
+  /// The peer, or whoever is there, has refused; empty: nothing new.
+  void note_refusal(const std::string& sentence) {
+    if (!sentence.empty()) refusal_ = sentence;
+  }
   [[nodiscard]] bool ever_worked() const noexcept { return ever_; }
   /// How a wait of this length ends in which no link ever worked.
   [[nodiscard]] Ending unreachable(const link::LinkHealth& link, Duration waited) const;
@@ -32,6 +36,7 @@ class PeerWatch {
   PeerWatchConfig config_;
   TimePoint worked_at_;  ///< last, or since when one is waited for
   bool ever_{};
+  std::string refusal_;  ///< the last; empty: nobody said anything
 };
 
 }  // namespace palp::site_program

@@ -1,6 +1,7 @@
 #include "common/site_program/runner.h"
 
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 namespace palp::site_program {
@@ -8,6 +9,12 @@ namespace {
 
 /// Of the io thread, below rt, which it must never keep waiting.
 int io_priority(int rt_priority) noexcept { return rt_priority > 10 ? rt_priority - 10 : 0; }
+
+/// What follows the words that all refusals begin with.
+std::string without_opening(const std::string& sentence) {
+  constexpr std::string_view kOpening = "no session: ";
+  return sentence.starts_with(kOpening) ? sentence.substr(kOpening.size()) : sentence;
+}
 
 }  // namespace
 
@@ -52,6 +59,10 @@ std::vector<std::string> Runner::shortcomings() const {
   std::vector<std::string> sentences;
   if (grant.priority < loop_.priority) sentences.push_back(grant.scheduling);
   if (loop_.lock_memory && !grant.memory_locked) sentences.push_back(grant.memory);
+  if (credentials_ != nullptr) {
+    const std::vector<std::string>& cautions = credentials_->cautions();
+    sentences.insert(sentences.end(), cautions.begin(), cautions.end());
+  }
   return sentences;
 }
 
@@ -64,6 +75,7 @@ std::optional<std::string> Runner::tell_news(StatusLine& line) {
       hopeless = news->sentence;
     } else if (news->kind == Kind::Refused) {
       line.warn(news->sentence);
+      refusal_ = without_opening(news->sentence);
     } else {
       line.info(news->sentence);
     }

@@ -39,10 +39,13 @@ class Runner {
   /// Ticks from now on until stop(), which comes before the end of all that `tick` refers to and of
   /// the link.
   void start(link::Link& link, std::function<void(TimePoint now)> tick);
-  /// What of real time was asked for and not granted, in sentences.
+  /// What of real time was asked for and not granted, and what is wrong with the identity, in
+  /// sentences.
   [[nodiscard]] std::vector<std::string> shortcomings() const;
   /// Tells people of sessions. @returns the sentence if there will never be one.
   std::optional<std::string> tell_news(StatusLine& line);
+  /// Why there was no session when one was tried last; empty: none was refused.
+  [[nodiscard]] const std::string& refusal() const noexcept { return refusal_; }
   [[nodiscard]] std::uint64_t sessions() const noexcept { return sessions_; }
   /// Says goodbye to the peer, then ends both threads. Idempotent.
   void stop(const std::string& why);
@@ -58,6 +61,7 @@ class Runner {
   std::unique_ptr<io::SessionServer> server_;
   std::unique_ptr<io::PeriodicThread> rt_;
   std::uint64_t sessions_{};
+  std::string refusal_;
 };
 
 }  // namespace palp::site_program

@@ -56,6 +56,16 @@ TEST(PeerWatchTest, KnowsWhetherThereEverWasALinkAndHowLongItWasWaitedFor) {
   EXPECT_TRUE(watch_it.ever_worked());
 }
 
+TEST(PeerWatchTest, WhoeverRefusedIsNotSaidToBeSilent) {
+  PeerWatch watch_it = watch();
+  watch_it.note_refusal("the peer's certificate is refused");
+  watch_it.note_refusal("");
+  const auto ending = watch_it.judge(link_in(LinkState::Down), kStart + seconds{30});
+  ASSERT_TRUE(ending);
+  EXPECT_EQ(ending->reason,
+            "no session with 127.0.0.1:9000 within 30 s: the peer's certificate is refused");
+}
+
 TEST(PeerWatchTest, ARoundTripAboveTheLimitIsNamed) {
   PeerWatch watch_it = watch();
   link::LinkHealth link = link_in(LinkState::Down);
