@@ -24,6 +24,8 @@ constexpr Duration kGreetingPause = milliseconds{200};
 constexpr Duration kGreetingLife = seconds{15};
 constexpr Duration kQuestionPause = milliseconds{200};
 constexpr int kQuestionsMax = 3;
+/// How far a sender may lie behind somebody who copies its telegrams.
+constexpr std::uint64_t kBehindMax = 256;  // [numbers]
 /// Bytes of questions to an unproven address per byte from it; to no more than three altogether,
 /// because rt sends telegrams there as well.
 constexpr std::size_t kUnprovenShare = 3 - Detour::kShare;
@@ -146,12 +148,12 @@ void SecureConversation::establish(Association& by, const Endpoint& from, Conver
   next_ = 0;
   key_id_ = 0;
   changeover_ends_at_.reset();
-  candidate_.reset();
+  candidates_ = {};
   greeted_ = 0;
   peer_ = from;
   proof_ = by.proof.peer_name;
   data_connection_ = std::get<link::Established>(*out.event).receive_connection;
-  data_newest_ = 0;
+  data_newest_.reset();
   out.protection = std::make_unique<AeadProtection>(data_keys(by, key_id_));
   opener_ = std::make_unique<AeadProtection>(data_keys(by, key_id_));
   associations_.keep_only(present_, 0);
@@ -162,7 +164,7 @@ void SecureConversation::forget() {
   next_ = 0;
   greeted_ = 0;
   changeover_ends_at_.reset();
-  candidate_.reset();
+  candidates_ = {};
   opener_.reset();
   data_connection_ = 0;
   associations_.keep_only(0, 0);
@@ -229,7 +231,9 @@ ConversationOutput SecureConversation::tick(TimePoint now, const LinkGlance& lin
     speak_as_surgeon(said, made, now);
     greet(now);
   }
-  if (candidate_ && now >= candidate_->next_at) ask(now);
+  for (std::optional<Candidate>& one : candidates_) {
+    if (one && now >= one->next_at) ask(one, now);
+  }
   tell_failure(now, out);
   out.letters = associations_.take_letters();
   return out;
@@ -281,32 +285,42 @@ bool SecureConversation::hear_data(std::span<const std::byte> datagram,
   const link::Header header = *link::parse_header(datagram);
   const bool follows = config_.session.role == Role::Patient && opener_ != nullptr &&
                        header.connection == data_connection_ && !(from == peer_);
-  // Only what is newer than all: an old datagram, sent again from elsewhere, must not move us.
-  if (!follows || header.number <= std::max(link_.newest_number, data_newest_)) {
-    ++foreign_;
-    return false;
-  }
+  const auto known = std::ranges::find_if(
+      candidates_, [&](const auto& one) { return one && one->address == from; });
+  // Only what is newer than all: an old datagram, sent again from elsewhere, must not move us. But
+  // where the newest came from elsewhere already, whoever comes a little later with what came there
+  // first may be the sender, and the other one somebody who copies it on its way and is faster.
+  const std::uint64_t newest_here = data_newest_.value_or(0);
+  const bool newest = header.number > std::max(link_.newest_number, newest_here);
+  const bool second = !newest && data_newest_ && newest_here >= link_.newest_number &&
+                      newest_here - std::min(newest_here, header.number) < kBehindMax &&
+                      (known == candidates_.end() || (*known)->newest < header.number);
   std::array<std::byte, link::kDatagramSizeMax> plain{};
-  if (!opener_->open(datagram, plain)) {
+  if (!follows || !(newest || second) || !opener_->open(datagram, plain)) {
     ++foreign_;
     return false;
   }
-  data_newest_ = header.number;
-  if (candidate_ && candidate_->address == from) {
-    candidate_->received += datagram.size();
-    return true;
+  data_newest_ = std::max(newest_here, header.number);
+  if (known != candidates_.end()) {
+    (*known)->newest = header.number;
+    (*known)->received += datagram.size();
+    return newest;
   }
-  candidate_ = Candidate{.address = from, .question = draw_question(), .received = datagram.size()};
-  ask(now);
-  return true;
+  std::optional<Candidate>& place = candidates_[newest ? 0 : 1];
+  place = Candidate{.address = from,
+                    .question = draw_question(),
+                    .newest = header.number,
+                    .received = datagram.size()};
+  ask(place, now);
+  return newest;
 }
 
-void SecureConversation::ask(TimePoint now) {
+void SecureConversation::ask(std::optional<Candidate>& place, TimePoint now) {
   Association* by = associations_.find(present_);
   constexpr std::size_t kSize = link::kHeaderSize + kPathSize + AeadProtection::kTagSize;
-  Candidate& candidate = *candidate_;
+  Candidate& candidate = *place;
   if (by == nullptr || candidate.asked >= kQuestionsMax) {
-    candidate_.reset();  // its next datagram may begin anew
+    place.reset();  // its next datagram may begin anew
     return;
   }
   candidate.next_at = now + kQuestionPause;
@@ -330,13 +344,15 @@ void SecureConversation::hear_path(const Associations::Opened& opened,
     associations_.send(*opened.association, path_message(kAnswer, nonce, path_number_++), from);
     return;
   }
-  if (content[0] != kAnswer || !candidate_ || !(candidate_->address == from) ||
-      !std::ranges::equal(nonce, candidate_->question)) {
+  const bool answered = std::ranges::any_of(candidates_, [&](const auto& one) {
+    return one && one->address == from && std::ranges::equal(nonce, one->question);
+  });
+  if (content[0] != kAnswer || !answered) {
     ++foreign_;
     return;
   }
   peer_ = from;
-  candidate_.reset();
+  candidates_ = {};
   out.moved_to = from;
 }
 

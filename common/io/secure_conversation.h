@@ -42,6 +42,7 @@ class SecureConversation final : public Conversation {
   struct Candidate {
     Endpoint address;
     Nonce question{};
+    std::uint64_t newest{};  ///< number of the telegrams from there
     std::size_t received{};  ///< [bytes] from there
     std::size_t sent{};      ///< [bytes] to there
     int asked{};
@@ -57,7 +58,7 @@ class SecureConversation final : public Conversation {
                                const Endpoint& from,
                                TimePoint now);
   void hear_path(const Associations::Opened& opened, const Endpoint& from, ConversationOutput& out);
-  void ask(TimePoint now);
+  void ask(std::optional<Candidate>& place, TimePoint now);
   void say(const link::SessionOutput& output, Association& by, const Endpoint& to);
   void establish(Association& by, const Endpoint& from, ConversationOutput& out);
   void forget();
@@ -83,8 +84,10 @@ class SecureConversation final : public Conversation {
   TimePoint keyed_at_{};
   std::uint32_t data_connection_{};               ///< ours
   std::unique_ptr<link::AeadProtection> opener_;  ///< io's own copy of the present data keys
-  std::uint64_t data_newest_{};                   ///< number of data seen by io
-  std::optional<Candidate> candidate_;
+  std::optional<std::uint64_t> data_newest_;      ///< number of data seen by io
+  /// Who was the first with a telegram, and who came second: somebody may be faster than the
+  /// sender.
+  std::array<std::optional<Candidate>, 2> candidates_;
   std::uint64_t path_number_{};
   std::uint64_t greeted_{};  ///< association that waits for an answer to our greeting
   TimePoint greet_next_{};

@@ -4,6 +4,7 @@
 #include "common/io/secure_conversation.h"
 
 #include <algorithm>
+#include <deque>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -244,6 +245,39 @@ TEST(RoamingTest, ANewTelegramTakenOffTheWayMovesNobodyAndDrawsLittle) {
   EXPECT_GE(std::ranges::count_if(world.watched, is_question), 1);
   EXPECT_TRUE(world.patient->moved_to.empty());
   EXPECT_TRUE(world.live());
+}
+
+TEST(RoamingTest, AThiefWhoIsFasterThanTheSenderKeepsHimFromNothing) {
+  const Endpoint thief = *resolve_endpoint("127.0.0.3:1000");
+  for (const std::size_t ahead : {0U, 5U}) {  // telegrams
+    World world{"faster"};
+    world.run(seconds{1});
+    world.surgeon_seen_at = kElsewhere;
+    world.elsewhere_watched = thief;
+    std::size_t in = 0;
+    std::deque<std::vector<std::byte>> behind;
+    for (int i = 0; i < 400; ++i, world.now += milliseconds{1}) {
+      world.surgeon->tick(world.now);
+      world.patient->tick(world.now);
+      for (auto& bytes : std::exchange(world.surgeon->wire.out, {})) {
+        in += bytes.size();
+        test::Parcel stolen{world.now, false, kPatientAt, thief, bytes};
+        world.arrive(stolen, *world.patient);
+        behind.push_back(bytes);
+      }
+      for (; behind.size() > ahead; behind.pop_front()) {
+        world.surgeon->wire.out.push_back(behind.front());
+      }
+      world.pass(*world.surgeon, *world.patient, kElsewhere);
+      world.pass(*world.patient, *world.surgeon, kPatientAt);
+    }
+    ASSERT_EQ(world.patient->moved_to.size(), 1U) << ahead;
+    EXPECT_TRUE(world.patient->moved_to[0] == kElsewhere);
+    EXPECT_TRUE(world.live());
+    std::size_t out = 0;
+    for (const auto& bytes : world.watched) out += bytes.size();
+    EXPECT_LE(out, 3 * in);
+  }
 }
 
 TEST(RoamingTest, AnAnswerFromAnotherPlaceThanTheQuestionWentToMovesNobody) {
