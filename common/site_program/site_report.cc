@@ -36,19 +36,21 @@ ordered_json rejected_json(const link::LinkHealth& link, const link::SessionCoun
           {"forged", link.forged}};
 }
 
-/// null before there is an estimate.
-ordered_json clock_json(const link::LinkHealth& link) {
-  if (!link.peer_clock) return nullptr;
-  return {{"offset_ms", milliseconds(link.peer_clock->offset)},
-          {"uncertainty_ms", milliseconds(link.peer_clock->uncertainty)},
-          {"skew_ppm", link.peer_clock->skew * 1e6},
-          {"way_there_ms", milliseconds(link.way_there)},
-          {"way_here_ms", milliseconds(link.way_here)}};
+/// null where there never was an estimate.
+ordered_json clock_json(const std::optional<link::LinkHealth>& link) {
+  if (!link) return nullptr;
+  const link::ClockOffset& clock = *link->peer_clock;
+  return {{"offset_ms", milliseconds(clock.offset)},
+          {"uncertainty_ms", milliseconds(clock.uncertainty)},
+          {"skew_ppm", clock.skew * 1e6},
+          {"way_there_ms", milliseconds(link->way_there)},
+          {"way_here_ms", milliseconds(link->way_here)}};
 }
 
 }  // namespace
 
 void RoundTrips::add(const link::LinkHealth& link) noexcept {
+  if (link.peer_clock) clocked_ = link;
   if (link.state != LinkState::Live || link.round_trip <= Duration{0}) return;
   all_.record(link.round_trip);
   least_ = std::min(least_.value_or(Duration::max()), link.round_trip_min);
@@ -96,7 +98,7 @@ std::string to_json(const SiteReport& report) {
   json["rejected"] = rejected_json(link, report.noise);
   json["round_trip_p50_ms"] = milliseconds(report.round_trips.median());
   json["round_trip_min_ms"] = milliseconds(report.round_trips.least());
-  json["clock"] = clock_json(link);
+  json["clock"] = clock_json(report.round_trips.clocked());
   json["sessions"] = report.sessions;
   if (report.estimates) {
     json["estimates"] = *report.estimates;

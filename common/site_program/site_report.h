@@ -19,8 +19,11 @@ class RoundTrips {
   void add(const link::LinkHealth& link) noexcept;
   [[nodiscard]] std::optional<Duration> median() const noexcept;
   [[nodiscard]] std::optional<Duration> least() const noexcept { return least_; }
+  /// As the link was when it last knew the peer's clock: after its session it forgets it.
+  [[nodiscard]] const std::optional<link::LinkHealth>& clocked() const noexcept { return clocked_; }
 
  private:
+  std::optional<link::LinkHealth> clocked_;
   Histogram all_;
   std::optional<Duration> least_;
 };

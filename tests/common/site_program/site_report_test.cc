@@ -59,11 +59,14 @@ TEST(SiteReportTest, HasTheKeysThatScriptsRelyOn) {
 TEST(SiteReportTest, TheClockOfThePeerIsNullBeforeItIsKnown) {
   SiteReport made;
   EXPECT_TRUE(json::parse(to_json(made))["clock"].is_null());
-  made.link.peer_clock = link::ClockOffset{.offset = std::chrono::milliseconds{-1500},
-                                           .skew = 20e-6,
-                                           .uncertainty = std::chrono::milliseconds{40},
-                                           .at = {}};
-  made.link.way_here = std::chrono::milliseconds{41};
+  link::LinkHealth health;
+  health.peer_clock = link::ClockOffset{.offset = std::chrono::milliseconds{-1500},
+                                        .skew = 20e-6,
+                                        .uncertainty = std::chrono::milliseconds{40},
+                                        .at = {}};
+  health.way_here = std::chrono::milliseconds{41};
+  made.round_trips.add(health);
+  made.round_trips.add({});  // the session is over
   const json clock = json::parse(to_json(made))["clock"];
   EXPECT_EQ(clock["offset_ms"], -1500);
   EXPECT_EQ(clock["uncertainty_ms"], 40);
