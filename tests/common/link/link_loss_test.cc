@@ -113,6 +113,41 @@ RC_GTEST_PROP(LinkLossTest, EachCallHandsOverSortedSamples, (std::uint64_t seed)
   }
 }
 
+RC_GTEST_PROP(LinkLossTest,
+              WhateverIsHandedOverWasSentAtThatTimeUnderThatNumber,
+              (std::uint64_t seed)) {
+  const Duration period = *rc::gen::element<Duration>(250us, 500us, 1ms, 2ms, 4ms, 7ms);
+  Couple couple{{.period = period}};
+  couple.pipe.up->fate = bad_path(seed, [](std::uint64_t, Bytes& bytes) { bytes.clear(); });
+  couple.connect();
+  const TimePoint began = couple.now;
+  std::map<std::uint64_t, std::pair<double, TimePoint>> sent;  // by number
+  couple.before_send = [&] {
+    const std::uint64_t number = sent.size();
+    // A float has room for these.
+    couple.surgeon.telegram.port.position = static_cast<double>(number % 4096) / 1024;
+    couple.surgeon.telegram.site.epoch = static_cast<std::uint32_t>(number / 100);
+    sent[number] = {couple.surgeon.telegram.port.position, couple.now};
+  };
+  for (int tick = 0; tick < 400; ++tick) {
+    couple.tick();
+    const double skips = random_uniform(seed, 77, static_cast<std::uint64_t>(tick));
+    if (skips < 0.03) couple.now += period * static_cast<int>(1 + 200 * skips);  // missed periods
+  }
+  std::set<std::uint64_t> numbers;
+  std::uint64_t repaired = 0;
+  for (const Incoming& incoming : couple.patient.samples) {
+    RC_ASSERT(numbers.insert(incoming.number).second);
+    const auto& [position, at] = sent.at(incoming.number);
+    RC_ASSERT(incoming.sample.position == position);
+    const Duration off = incoming.sent_at.time_since_epoch() - (at - began);
+    RC_ASSERT(std::chrono::abs(off) <= (incoming.repaired ? period / 2 : Duration{0}));
+    repaired += incoming.repaired ? 1 : 0;
+  }
+  RC_ASSERT(repaired == couple.patient_health().repaired);
+  RC_ASSERT(numbers.size() > 200U);
+}
+
 TEST(LinkLossTest, RepetitionLeavesNextToNothingMissingAtRandomLoss) {
   Couple couple{LinkConfig{}, true};
   couple.pipe.up->fate = [](std::uint64_t index, const Bytes& bytes) {
