@@ -216,6 +216,7 @@ link::DepthReport PatientNode::depth_report() noexcept {
 }
 
 void PatientNode::record_link() noexcept {
+  link_events_.look(now_.link, [this](NoteCode code, double detail) { note(code, detail); });
   if (link_recorded_at_ && now_.at - *link_recorded_at_ < config_.link_status_every) return;
   link_recorded_at_ = now_.at;
   record(record::LinkStatus{now_.at, now_.link});

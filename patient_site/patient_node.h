@@ -10,6 +10,7 @@
 #include "common/core/time.h"
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
+#include "common/record/link_events.h"
 #include "common/record/recorder.h"
 #include "patient_site/device_watch.h"
 #include "patient_site/force_sensor.h"
@@ -86,6 +87,7 @@ class PatientNode {
   Mailbox<UserCommand> commands_;
   Mailbox<PatientStatus> status_;
   PatientStatus now_;  ///< of this tick: what is shown, and what one tick leaves to the next
+  record::LinkEvents link_events_;
   LowPass co_filter_;  ///< of the tip, the transducer's pole
   bool begun_{};
   bool device_faulted_{};  ///< in this tick

@@ -188,6 +188,7 @@ void SurgeonNode::record_script() noexcept {
 }
 
 void SurgeonNode::record_link(TimePoint now) noexcept {
+  link_events_.look(now_.link, [this](NoteCode code, double detail) { note(code, detail); });
   if (link_recorded_at_ && now - *link_recorded_at_ < config_.link_status_every) return;
   link_recorded_at_ = now;
   record(record::LinkStatus{now, now_.link});

@@ -7,6 +7,7 @@
 #include "common/core/time.h"
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
+#include "common/record/link_events.h"
 #include "common/record/recorder.h"
 #include "surgeon_site/force_gate.h"
 #include "surgeon_site/haptic_device.h"
@@ -74,7 +75,8 @@ class SurgeonNode {
   Mailbox<UserCommand> commands_;
   Mailbox<SurgeonStatus> status_;
   SurgeonStatus now_;  ///< of this tick: what is shown, and what one tick leaves to the next
-  HandState hand_;     ///< last one with numbers
+  record::LinkEvents link_events_;
+  HandState hand_;  ///< last one with numbers
   bool hand_was_finite_{true};
   bool begun_{};
   std::uint32_t resets_{};        ///< last heard of

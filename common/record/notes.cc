@@ -54,6 +54,16 @@ std::string_view to_string(NoteCode code) noexcept {
       return "round trip too long for this coupling: engagement refused";
     case NoteCode::ScriptPhase:
       return "next phase of the script";
+    case NoteCode::LinkIsDown:
+      return "the link is down: no session";
+    case NoteCode::LinkIsLive:
+      return "the link is live";
+    case NoteCode::LinkHolds:
+      return "the link holds: nothing arrived";
+    case NoteCode::LinkIsLost:
+      return "the link is lost: nothing arrived for long";
+    case NoteCode::KeysReplaced:
+      return "telegrams come under new keys";
   }
   return "unknown note";
 }

@@ -37,6 +37,11 @@ enum class NoteCode : std::uint16_t {
   SessionBegan = 37,        ///< a new peer session; samples of the old one count no more
   RoundTripTooLong = 38,    ///< detail: round trip [s]; `direct` refuses to engage
   ScriptPhase = 39,         ///< detail: number of the script's phase that begins
+  LinkIsDown = 40,          ///< the session has ended; detail: gap [s], 0 where the peer ended it
+  LinkIsLive = 41,          ///< detail: round trip [s]
+  LinkHolds = 42,           ///< detail: gap [s]
+  LinkIsLost = 43,          ///< detail: gap [s]
+  KeysReplaced = 44,        ///< telegrams come under other keys; detail: their id
 };
 
 /// The text of a note, for people. Unknown codes give "unknown note".

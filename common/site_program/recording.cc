@@ -11,6 +11,22 @@ namespace {
 
 constexpr Duration kPause = std::chrono::milliseconds{20};
 
+/// What the status line or another sentence says as well.
+bool shown_elsewhere(record::NoteCode code) {
+  switch (code) {
+    case record::NoteCode::ScriptPhase:
+    case record::NoteCode::SessionBegan:
+    case record::NoteCode::LinkIsDown:
+    case record::NoteCode::LinkIsLive:
+    case record::NoteCode::LinkHolds:
+    case record::NoteCode::LinkIsLost:
+    case record::NoteCode::KeysReplaced:
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 Recording::Recording(const settings::RecordSettings& settings,
@@ -58,9 +74,7 @@ void Recording::tell_of(const record::Record& record) {
                             std::string{to_string(change->to)} + ": " + std::string{reason});
   } else if (const auto* note = std::get_if<record::Note>(&record)) {
     const auto code = static_cast<record::NoteCode>(note->code);
-    const bool shown_elsewhere =
-        code == record::NoteCode::ScriptPhase || code == record::NoteCode::SessionBegan;
-    if (!shown_elsewhere) (void)news_.try_enqueue(std::string{record::to_string(code)});
+    if (!shown_elsewhere(code)) (void)news_.try_enqueue(std::string{record::to_string(code)});
   }
 }
 

@@ -218,6 +218,21 @@ TEST(RoamingTest, AnOldTelegramFromElsewhereMovesNobody) {
   }
 }
 
+TEST(RoamingTest, AnOldTelegramMovesNobodyAfterAChangeOfAddressEither) {
+  World world{"after"};
+  world.run(seconds{1});
+  world.surgeon_seen_at = kElsewhere;
+  world.run(milliseconds{100});
+  ASSERT_EQ(world.patient->moved_to.size(), 1U);
+  world.patient->tick(world.now);
+  const Endpoint third = *resolve_endpoint("127.0.0.3:1000");
+  for (const auto& bytes : world.recorded) {
+    const auto out = world.patient->conversation.hear(bytes, third, world.now);
+    EXPECT_TRUE(out.letters.empty());
+    EXPECT_FALSE(out.detours);
+  }
+}
+
 TEST(RoamingTest, ANewTelegramTakenOffTheWayMovesNobodyAndDrawsLittle) {
   World world{"steal"};
   world.run(seconds{1});
