@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palp::coupling {
 namespace {
 
-// A step of the tracker up is 499 times one down: it settles at the 99.8 % quantile.
-constexpr double kUpShare = 0.99;
-constexpr double kDownShare = 0.002;
-constexpr double kStepMin = 0.2e-3;  // [s]
-constexpr double kStepShare = 0.02;  // of the delay's spread, per sample
+constexpr double kGrowth = 4e-3;     // [s], of the delay, at most for one pause
+constexpr double kShrinkage = 1e-4;  // of the time that passes: 1 ms in 10 s
+constexpr double kHaste = 0.1;       // more than real time, when late
+constexpr double kLateMax = 5e-3;    // [s], later than this is dropped
 constexpr double kTooOld = 5e-3;     // [s], behind what was played
-constexpr double kGapMax = 0.1;      // [s], a longer one is not caught up
+constexpr double kGapMax = 0.1;      // [s], what lies in a longer one is silence
 constexpr double kKept = 0.2;        // [s], behind what was played: for interpolation
 
 }  // namespace
@@ -21,7 +21,11 @@ void PlayOut::restart() noexcept {
   count_ = 0;
   heard_ = false;
   playing_ = false;
+  newest_at_ = 0;
+  age_ = 0;
   delay_ = 0;
+  played_to_ = 0;
+  integral_played_ = 0;
   energy_received_ = 0;
   energy_played_ = 0;
   newest_number_ = 0;
@@ -55,15 +59,11 @@ void PlayOut::hear(const Incoming& incoming) noexcept {
     energy_received_ = wave->wave_energy;
   }
   const double sent = seconds(incoming.sent_at - sent_first_);
-  const double offset = seconds(incoming.arrived_at - arrived_first_) - sent;
-  if (!incoming.repaired) {
-    const double step = std::max(kStepMin, kStepShare * std::abs(delay_));
-    delay_ += offset > delay_ ? kUpShare * step : -kDownShare * step;
-  }
   if (incoming.number >= newest_number_) {
     newest_number_ = incoming.number;
     energy_received_ = std::max(energy_received_, wave->wave_energy);
   }
+  newest_at_ = std::max(newest_at_, sent);
   if (playing_ && sent < played_to_ - kTooOld) return;
   insert({sent, wave->wave_integral});
 }
@@ -94,21 +94,39 @@ void PlayOut::forget_before(double at) noexcept {
   count_ -= gone;
 }
 
+/// `clock` [s] is the age of the first sample now. What counts of a pause is how old the news had
+/// become at its end.
+void PlayOut::follow_age(double clock) noexcept {
+  const double age = clock - newest_at_;
+  const double excess = age_ - delay_;
+  if (age < age_ && excess > 0 && excess < kGapMax) delay_ += std::min(excess, kGrowth);
+  age_ = age;
+  delay_ -= kShrinkage * period_;
+}
+
 double PlayOut::step(TimePoint now, std::span<const Incoming> arrived) noexcept {
   for (const Incoming& incoming : arrived) hear(incoming);
   if (!heard_ || count_ == 0) return 0;
-  const double wanted = seconds(now - arrived_first_) - delay_ - period_;
-  const double before = played_to_;
+  const double clock = seconds(now - arrived_first_);
   if (!playing_) {
     playing_ = true;
-    played_to_ = wanted;
+    age_ = delay_ = clock - newest_at_;
+    played_to_ = newest_at_;
+    bool in_gap = false;
+    integral_played_ = integral_at(played_to_, in_gap);
     return 0;
   }
-  played_to_ = std::max(played_to_, wanted);
-  bool gap_now = false;
+  follow_age(clock);
+  const double wanted = std::min(clock - delay_, newest_at_);
   bool gap_before = false;
+  if (wanted > played_to_ + period_ + kLateMax) {
+    played_to_ = wanted - period_;
+    integral_played_ = integral_at(played_to_, gap_before);
+  }
+  played_to_ = std::clamp(wanted, played_to_, played_to_ + (1 + kHaste) * period_);
+  bool gap_now = false;
   const double to = integral_at(played_to_, gap_now);
-  const double from = integral_at(before, gap_before);
+  const double from = std::exchange(integral_played_, to);
   forget_before(played_to_);
   if (gap_now || gap_before) return 0;
   const double room = std::max(0.0, energy_received_ - energy_played_);

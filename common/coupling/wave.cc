@@ -6,7 +6,9 @@
 namespace palp::coupling {
 namespace {
 
-constexpr double kMeanGain = 0.1;  // per tick: 10 ms
+constexpr double kMeanGain = 0.1;     // per tick: 10 ms
+constexpr double kEchoUnfelt = 0.05;  // [s], a round trip after which an echo joins its call ...
+constexpr double kEchoFelt = 0.1;     // [s], ... and one after which it is felt by itself
 
 void send(WavePayload& sent, double wave, double period) noexcept {
   sent.wave_integral += wave * period;
@@ -59,6 +61,12 @@ void WavePatient::begin_epoch(double position) noexcept {
   hand_ = position;
 }
 
+/// [N s/m]: matched where an echo comes late.
+double WavePatient::termination(Duration round_trip) const noexcept {
+  const double late = (seconds(round_trip) - kEchoUnfelt) / (kEchoFelt - kEchoUnfelt);
+  return impedance_ * std::lerp(config_.termination, 1.0, std::clamp(late, 0.0, 1.0));
+}
+
 PatientOutput WavePatient::step(const PatientInput& in, Duration /*dt*/) noexcept {
   const double wave = play_out_.step(in.now, in.arrived);
   if (const Incoming* last = newest(in.arrived)) hand_ = last->sample.position;
@@ -68,8 +76,9 @@ PatientOutput WavePatient::step(const PatientInput& in, Duration /*dt*/) noexcep
     target_ = in.position;
     return {target_, {in.position, in.velocity, in.contact_force, sent_}};
   }
-  const double speed = (root_ * wave - force) / (2 * impedance_);
-  const double port = force + impedance_ * speed;
+  const double end = termination(in.round_trip);
+  const double speed = (root_ * wave - force) / (impedance_ + end);
+  const double port = force + end * speed;
   send(sent_, (impedance_ * speed - port) / root_, config_.period);
   target_ += speed * config_.period;
   if (force_mean_ < config_.contact_zero && force == 0) {

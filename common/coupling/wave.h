@@ -13,12 +13,15 @@ struct WaveConfig {
   double impedance{0};             ///< [N s/m], b; 0: from the next two
   double stiffness_expected{370};  ///< [N/m], the stiffest tissue
   double stage_lag{22.3e-3};       ///< [s], of servo and transducer together: 2 zeta/w + 1/(2 pi f)
-  double velocity_cut_off{60};     ///< [Hz]
-  double drift_rate{2};            ///< [1/s], drift is repaired at zero force, costing no energy
-  double drift_speed{0.02};        ///< [m/s], at most
-  double contact_zero{0.03};       ///< [N], a mean force below it is none
-  double fade{1};                  ///< [s], in Retract
-  double period{1e-3};             ///< [s]
+  /// [-], of the impedance, at the stage: the fifth more is not for it. It makes free air lighter
+  /// where the echo it leaves comes back at once.
+  double termination{1 / 1.2};
+  double velocity_cut_off{60};  ///< [Hz]
+  double drift_rate{2};         ///< [1/s], drift is repaired at zero force, costing no energy
+  double drift_speed{0.02};     ///< [m/s], at most
+  double contact_zero{0.03};    ///< [N], a mean force below it is none
+  double fade{1};               ///< [s], in Retract
+  double period{1e-3};          ///< [s]
 };
 
 /// The impedance asked for, or what keeps a stage with that lag passive on the stiffest tissue:
@@ -42,8 +45,8 @@ class WaveSurgeon {
   Ramp presence_{1};
 };
 
-/// Moves the stage at v = (sqrt(2b) u - F)/(2b): terminated so that a stage which follows reflects
-/// nothing.
+/// Moves the stage at v = (sqrt(2b) u - F)/(b + t): terminated by t = b a stage which follows
+/// reflects nothing, by less it does. Any t >= 0 is passive at any time.
 class WavePatient {
  public:
   explicit WavePatient(const WaveConfig& config) noexcept;
@@ -51,6 +54,8 @@ class WavePatient {
   PatientOutput step(const PatientInput& in, Duration dt) noexcept;
 
  private:
+  [[nodiscard]] double termination(Duration round_trip) const noexcept;
+
   WaveConfig config_;
   double impedance_;  ///< [N s/m]
   double root_;       ///< [sqrt(N s/m)], sqrt(2b)
