@@ -24,8 +24,8 @@ struct UdpSocketConfig {
 /// With the right to it also above what the system allows everybody.
 void ask_receive_buffer(int socket, int bytes) noexcept;
 
-/// What `socket` sends bears this TOS byte and is never fragmented. A socket of IPv6 that is bound
-/// to any address serves peers of IPv4 too, so both kinds of its datagrams are marked.
+/// What `socket` sends bears this TOS byte. A socket of IPv6 that is bound to any address serves
+/// peers of IPv4 too, so both kinds of its datagrams are marked.
 void mark_datagrams(int socket, int family, int traffic_class) noexcept;
 
 /// A connected, non-blocking UDP socket: the kernel lets through what the peer's address sent.
