@@ -15,19 +15,43 @@ enum class FaultKind : std::uint8_t {
   KillPatient,       ///< the same at the patient's site
   StepSurgeonClock,  ///< the clock that the process reads jumps, and stays there
   StepPatientClock,
-  LiftPedal  ///< the operator lets go and presses again: another epoch
+  LiftPedal,  ///< the operator lets go and presses again: another epoch
+  // Devices that fail and work again.
+  SensorSilent,     ///< gives nothing
+  SensorStuck,      ///< gives the same reading again and again
+  SensorNotFinite,  ///< gives no number
+  SensorOffset,     ///< gives 1 N too much
+  StageStuck,       ///< stands where it is
+  StageFaulted,     ///< says so itself
+  HandNotFinite,    ///< the haptic device gives no number
+  HandFaulted,      ///< says so itself
+  EmergencyStop     ///< pressed at the surgeon's
 };
 
 struct Fault {
   FaultKind kind{FaultKind::None};
   Duration at_script_time{};
-  /// How long the process is dead or the pedal up; by how much the clock jumps, of either sign.
+  /// How long the process is dead, the pedal up or the device failing; by how much the clock jumps,
+  /// of either sign.
   Duration amount{};
 };
 
 [[nodiscard]] constexpr std::string_view to_string(FaultKind kind) noexcept {
-  constexpr std::array<std::string_view, 6> kNames{
-      "none", "kill-surgeon", "kill-patient", "clock-surgeon", "clock-patient", "pedal"};
+  constexpr std::array<std::string_view, 15> kNames{"none",
+                                                    "kill-surgeon",
+                                                    "kill-patient",
+                                                    "clock-surgeon",
+                                                    "clock-patient",
+                                                    "pedal",
+                                                    "sensor-silent",
+                                                    "sensor-stuck",
+                                                    "sensor-not-finite",
+                                                    "sensor-offset",
+                                                    "stage-stuck",
+                                                    "stage-faulted",
+                                                    "hand-not-finite",
+                                                    "hand-faulted",
+                                                    "emergency-stop"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 

@@ -55,8 +55,9 @@ struct PlanAsk {
                                       ///< any phantom
 };
 
-/// table, net, mc, mc-hard, mc-noise, mc-adv, grips, inc, blackout, breath, long, faults. Random
-/// sets draw case i from (seed, i) alone, so that the first 100 of 1000 are the first 100 of 100.
+/// table, net, mc, mc-hard, mc-noise, mc-adv, grips, inc, blackout, breath, long, faults,
+/// device-faults. Random sets draw case i from (seed, i) alone, so that the first 100 of 1000 are
+/// the first 100 of 100.
 [[nodiscard]] Result<Plan> make_set(const std::string& name, const PlanAsk& ask);
 [[nodiscard]] std::string describe_sets();
 

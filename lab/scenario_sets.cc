@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <span>
 #include <string_view>
 
 #include "common/core/random.h"
@@ -193,20 +194,17 @@ void fill_long(Plan& plan, const PlanAsk& ask) {
   plan.cases.back().settings.push_back({"surgeon.hand.master", "script:long"});
 }
 
-/// One fault in each case, of every kind, place and size, over the links and hands of `mc`.
-void fill_faults(Plan& plan, const PlanAsk& ask) {
+/// One fault in each case, of every kind there is in `kinds`, place and size, over the links and
+/// hands of `mc`.
+void fill_with(std::span<const FaultKind> kinds, Plan& plan, const PlanAsk& ask) {
   fill_random(plan, ask, false);
   plan.label_names.insert(plan.label_names.end(), {"fault", "place", "amount_s"});
   for (Case& one : plan.cases) {
     const auto uniform = [&](std::uint64_t which) {
       return random_uniform(ask.seed, kCaseStream + 20 + which, one.index);
     };
-    constexpr std::array kKinds{FaultKind::KillSurgeon,
-                                FaultKind::KillPatient,
-                                FaultKind::StepSurgeonClock,
-                                FaultKind::StepPatientClock,
-                                FaultKind::LiftPedal};
-    one.fault.kind = kKinds[static_cast<std::size_t>(uniform(0) * kKinds.size())];
+    const auto kind_count = static_cast<double>(kinds.size());
+    one.fault.kind = kinds[static_cast<std::size_t>(uniform(0) * kind_count)];
     one.fault_place = kFaultPlaces[static_cast<std::size_t>(uniform(1) * kFaultPlaces.size())];
     double amount = pick(std::array{0.05, 0.3, 1.0, 5.0, 40.0}, uniform(2));
     if (one.fault.kind == FaultKind::LiftPedal)
@@ -221,6 +219,28 @@ void fill_faults(Plan& plan, const PlanAsk& ask) {
                        std::string{one.fault_place},
                        text("%.9g", amount)});
   }
+}
+
+void fill_faults(Plan& plan, const PlanAsk& ask) {
+  constexpr std::array kKinds{FaultKind::KillSurgeon,
+                              FaultKind::KillPatient,
+                              FaultKind::StepSurgeonClock,
+                              FaultKind::StepPatientClock,
+                              FaultKind::LiftPedal};
+  fill_with(kKinds, plan, ask);
+}
+
+void fill_device_faults(Plan& plan, const PlanAsk& ask) {
+  constexpr std::array kKinds{FaultKind::SensorSilent,
+                              FaultKind::SensorStuck,
+                              FaultKind::SensorNotFinite,
+                              FaultKind::SensorOffset,
+                              FaultKind::StageStuck,
+                              FaultKind::StageFaulted,
+                              FaultKind::HandNotFinite,
+                              FaultKind::HandFaulted,
+                              FaultKind::EmergencyStop};
+  fill_with(kKinds, plan, ask);
 }
 
 void set_for_all(Plan& plan, const Setting& setting) {
@@ -260,6 +280,9 @@ constexpr std::array kSets{
     Set{"breath", "a surface that breathes, 1 mm at 0.25 Hz", fill_breath},
     Set{"long", "ten minutes on the worst link", fill_long},
     Set{"faults", "mc with a process killed, a clock that jumps or another epoch", fill_faults},
+    Set{"device-faults",
+        "mc with a sensor, a stage or a haptic device that fails",
+        fill_device_faults},
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "lab/site_process.h"
 
+#include <cmath>
 #include <utility>
 
 #include "common/link/codec_wire.h"
@@ -26,18 +27,33 @@ surgeon::HandState HandAtClock::read(TimePoint now) noexcept {
   state.sampled_at = clock_.local(state.sampled_at);
   if (lifted_) state.dead_man_held = false;
   held_ = state.dead_man_held;
+  if (failing_ == FaultKind::HandNotFinite) state.position = std::nan("");
+  if (failing_ == FaultKind::HandFaulted) state.faulted = true;
+  if (failing_ == FaultKind::EmergencyStop) state.emergency_stop = true;
   return state;
 }
 
 patient::StageState PhantomAtClock::read(TimePoint now) noexcept {
   patient::StageState state = phantom_.read(clock_.world(now));
   state.sampled_at = clock_.local(state.sampled_at);
+  if (failing_ == FaultKind::StageFaulted) state.faulted = true;
   return state;
+}
+
+void PhantomAtClock::move_to(const patient::StageTarget& target) noexcept {
+  if (failing_ == FaultKind::StageStuck) return phantom_.halt();
+  phantom_.move_to(target);
 }
 
 std::optional<patient::ForceSample> PhantomAtClock::sample(TimePoint now) noexcept {
   auto sample = phantom_.sample(clock_.world(now));
-  if (sample) sample->sampled_at = clock_.local(sample->sampled_at);
+  if (!sample || failing_ == FaultKind::SensorSilent) return std::nullopt;
+  constexpr double kOffset = 1;  // [N]
+  sample->sampled_at = clock_.local(sample->sampled_at);
+  if (failing_ == FaultKind::SensorStuck) sample->force = reading_;
+  reading_ = sample->force;
+  if (failing_ == FaultKind::SensorOffset) sample->force += kOffset;
+  if (failing_ == FaultKind::SensorNotFinite) sample->force = std::nan("");
   return sample;
 }
 

@@ -8,6 +8,7 @@
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
 #include "common/record/recorder.h"
+#include "lab/fault.h"
 #include "lab/local_clock.h"
 #include "lab/meeting.h"
 #include "lab/scenario.h"
@@ -27,6 +28,8 @@ class HandAtClock final : public surgeon::HapticDevice {
   HandAtClock(surgeon::SimulatedHand& hand, const LocalClock& clock) noexcept
       : hand_{hand}, clock_{clock} {}
   void lift_pedal(bool lifted) noexcept { lifted_ = lifted; }
+  /// One of the device's own; None: it works.
+  void fail(FaultKind how) noexcept { failing_ = how; }
   [[nodiscard]] bool pedal_held() const noexcept { return held_; }  ///< at the last read()
 
   surgeon::HandState read(TimePoint now) noexcept override;
@@ -45,6 +48,7 @@ class HandAtClock final : public surgeon::HapticDevice {
   const LocalClock& clock_;
   bool lifted_{};
   bool held_{};
+  FaultKind failing_{};
 };
 
 /// Stage and sensor, seen through the process's clock.
@@ -52,14 +56,18 @@ class PhantomAtClock final : public patient::Stage, public patient::ForceSensor 
  public:
   PhantomAtClock(patient::SimulatedPhantom& phantom, const LocalClock& clock) noexcept
       : phantom_{phantom}, clock_{clock} {}
+  /// One of stage or sensor; None: they work.
+  void fail(FaultKind how) noexcept { failing_ = how; }
   patient::StageState read(TimePoint now) noexcept override;
-  void move_to(const patient::StageTarget& target) noexcept override { phantom_.move_to(target); }
+  void move_to(const patient::StageTarget& target) noexcept override;
   void halt() noexcept override { phantom_.halt(); }
   std::optional<patient::ForceSample> sample(TimePoint now) noexcept override;
 
  private:
   patient::SimulatedPhantom& phantom_;
   const LocalClock& clock_;
+  FaultKind failing_{};
+  double reading_{};  ///< [N], last that was given
 };
 
 class SurgeonProcess {
@@ -113,6 +121,7 @@ class PatientProcess {
   void kill(TimePoint now);
   void tick(TimePoint now);
   [[nodiscard]] LocalClock& clock() noexcept { return meeting_.clock(); }
+  [[nodiscard]] PhantomAtClock& devices() noexcept { return device_; }
   [[nodiscard]] link::LinkHealth health(TimePoint now) const noexcept;
 
  private:

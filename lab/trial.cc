@@ -193,11 +193,15 @@ class Mishap {
     if (fault_.kind == FaultKind::StepSurgeonClock) surgeon_.clock().ahead += fault_.amount;
     if (fault_.kind == FaultKind::StepPatientClock) patient_.clock().ahead += fault_.amount;
     if (fault_.kind == FaultKind::LiftPedal) surgeon_.hand().lift_pedal(true);
+    surgeon_.hand().fail(fault_.kind);
+    patient_.devices().fail(fault_.kind);
   }
   void end(TimePoint now) {
     if (fault_.kind == FaultKind::KillSurgeon) surgeon_.start(now);
     if (fault_.kind == FaultKind::KillPatient) patient_.start(now);
     if (fault_.kind == FaultKind::LiftPedal) surgeon_.hand().lift_pedal(false);
+    surgeon_.hand().fail(FaultKind::None);
+    patient_.devices().fail(FaultKind::None);
   }
 
   Fault fault_;

@@ -204,7 +204,8 @@ TEST(PlanTest, EverySetCanBeMadeIntoScenarios) {
                            "blackout",
                            "breath",
                            "long",
-                           "faults"}) {
+                           "faults",
+                           "device-faults"}) {
     const auto plan = make_set(name, {.count = 3});
     ASSERT_TRUE(plan) << name;
     EXPECT_TRUE(make_case(*plan, plan->cases.back())) << name;

@@ -171,6 +171,30 @@ TEST(TrialTest, APedalLiftedInAPressEngagesAgain) {
   expect_unharmed(faulty(FaultKind::LiftPedal, std::chrono::seconds{1}));
 }
 
+TEST(TrialTest, ADeviceThatFailsInATapStopsTheSitesAndHarmsNobody) {
+  constexpr double kSlack = 0.05e-3;  // [J], one tick of held force and half an encoder count
+  for (const FaultKind kind : {FaultKind::SensorSilent,
+                               FaultKind::SensorStuck,
+                               FaultKind::SensorNotFinite,
+                               FaultKind::SensorOffset,
+                               FaultKind::StageStuck,
+                               FaultKind::StageFaulted,
+                               FaultKind::HandNotFinite,
+                               FaultKind::HandFaulted,
+                               FaultKind::EmergencyStop}) {
+    SCOPED_TRACE(to_string(kind));
+    Scenario failing = faulty(kind, std::chrono::seconds{5});
+    // On the way in, in contact: the second tap is from 7.5 s to 8.5 s.
+    failing.fault.at_script_time = std::chrono::milliseconds{7850};
+    const TrialResult result = run_trial(failing);
+    EXPECT_LE(result.metrics.energy_operator, failing.coupling.mmt.tank_start + kSlack);
+    EXPECT_LE(result.metrics.contact_force_max, 3.3);
+    // What is wrong by a newton is no device that fails, as far as a site can tell.
+    if (kind == FaultKind::SensorOffset) continue;
+    EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Stopped);
+  }
+}
+
 TEST(TrialTest, AFaultIsAFault) {
   // Else the tests above would look at runs without any.
   const Scenario killed = faulty(FaultKind::KillPatient, std::chrono::seconds{1});
