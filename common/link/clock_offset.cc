@@ -18,7 +18,10 @@ constexpr double kScatter = 2e-6;  // [s]
 /// Half of all lie within 0.67 standard deviations, here half the scatter.
 constexpr double kDeviationPerScatter = 0.5 / 0.6745;
 /// Jitter remembers itself for longer than this: a denser look says nothing more.
-constexpr double kKeptEvery = 4e-3;  // [s]
+constexpr Duration kKeptEvery = std::chrono::milliseconds{4};
+/// Where half the differences are known so much better than each way, both ways moved together; by
+/// chance they never are.
+constexpr double kMuchLess = 0.2;  // [-]
 /// Lines and weights in turn until they agree.
 constexpr int kRounds = 8;
 
@@ -76,8 +79,9 @@ double slope_of(Way& there, Way& here) noexcept {
   return std::clamp(covariance / variance, -kSkewMax, kSkewMax);
 }
 
-/// The height of the line; then weights by the points' scatter and, above it, by their distance.
-void place(Way& way, double slope) noexcept {
+/// The height of the line; then weights by the points' scatter and, beyond it, by their distance:
+/// above the line, or on both of its sides.
+void place(Way& way, double slope, bool both_sides = false) noexcept {
   const Point centre = centre_of(way.all());
   way.height = centre.y - slope * centre.x;
   std::array<double, ClockOffsetEstimator::kSeconds> distances{};
@@ -90,8 +94,9 @@ void place(Way& way, double slope) noexcept {
   const double scatter = std::max(kScatter, 2 * *middle);
   way.scatter = scatter * kDeviationPerScatter;
   for (Point& point : way.all()) {
-    const double above = std::max(0.0, point.y - way.height - slope * point.x);
-    point.weight = 1 / (scatter * scatter + above * above);
+    const double off = point.y - way.height - slope * point.x;
+    const double beyond = both_sides ? off : std::max(0.0, off);
+    point.weight = 1 / (scatter * scatter + beyond * beyond);
   }
 }
 
@@ -117,11 +122,47 @@ void lay(Lines& lines, double now) noexcept {
   lines.error = std::sqrt(variance + reach * reach / information);
 }
 
+/// The line through half the differences of both directions, second by second: whatever lengthens
+/// both ways alike, another route or another satellite, is not in them.
+void lay_halves(Lines& lines, double now) noexcept {
+  Way halves;
+  for (std::size_t i = 0; i < lines.there.count; ++i) {
+    const Point& there = lines.there.points[i];
+    const Point& here = lines.here.points[i];
+    halves.add(0.5 * (there.x + here.x), 0.5 * (there.y - here.y));
+  }
+  double slope = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    const Point centre = centre_of(halves.all());
+    double covariance = 0;
+    double variance = 1 / (kSkewSpread * kSkewSpread);
+    for (const Point& point : halves.all()) {
+      covariance += point.weight * (point.x - centre.x) * (point.y - centre.y);
+      variance += point.weight * (point.x - centre.x) * (point.x - centre.x);
+    }
+    slope = std::clamp(covariance / variance, -kSkewMax, kSkewMax);
+    place(halves, slope, true);
+  }
+  const Point centre = centre_of(halves.all());
+  const double square = halves.scatter * halves.scatter;
+  double information = 1 / (kSkewSpread * kSkewSpread);
+  for (const Point& point : halves.all()) {
+    information += (point.x - centre.x) * (point.x - centre.x) / square;
+  }
+  const double reach = now - centre.x;
+  const double error =
+      std::sqrt(square / static_cast<double>(halves.count) + reach * reach / information);
+  if (error >= kMuchLess * lines.error) return;
+  lines.slope = slope;
+  lines.offset = halves.height + slope * now;
+  lines.error = error;
+}
+
 /// What the middles would be wrong by where one direction is spread more than the other, as far as
-/// it shows behind what is not known of the edges.
+/// it shows behind what is not known of the edges. Now, not where the lines began: there, hours
+/// ago, the least difference of their slopes would be a gulf.
 double lean_of(const Lines& edges, const Lines& middles) noexcept {
-  const double lean = 0.5 * ((middles.there.height - edges.there.height) -
-                             (middles.here.height - edges.here.height));
+  const double lean = middles.offset - edges.offset;
   return std::max(0.0, std::abs(lean) - std::hypot(edges.error, middles.error));
 }
 
@@ -145,80 +186,98 @@ std::int64_t second_of(TimePoint at) noexcept {
 
 }  // namespace
 
-void ClockOffsetEstimator::add(Duration there, Duration here, TimePoint arrived_at) noexcept {
+void ClockOffsetEstimator::Direction::add(Duration way,
+                                          Duration tick,
+                                          TimePoint arrived_at,
+                                          double at) noexcept {
+  if (!begun) {
+    begun = true;
+    origin = smoothed = way;
+  }
+  smoothed += (way - smoothed) / 8;
+  const Way one{seconds(way - origin), at};
+  const std::int64_t number = second_of(arrived_at);
+  Second& second = bins[index_of(number)];
+  if (!second.used || second.number < number) {
+    second = {number, true, one, one};
+  } else if (second.number == number && one.value < second.least.value) {
+    second.least = one;
+  }
+  if (count == kKeptMax || (count > 0 && tick - kept_at < kKeptEvery)) return;
+  kept[count++] = one.value;
+  kept_at = tick;
+}
+
+/// The middle of the second that was the newest one.
+void ClockOffsetEstimator::Direction::end_second(std::int64_t number, double centre) noexcept {
+  Second& second = bins[index_of(number)];
+  if (count > 0 && second.number == number) {
+    second.middle = {middle_of(std::span{kept}.first(count)), centre};
+  }
+  count = 0;
+}
+
+void ClockOffsetEstimator::begin_or_end_second(TimePoint arrived_at) noexcept {
   const std::int64_t number = second_of(arrived_at);
   if (!begun_) {
     begun_ = true;
     newest_ = number;
     origin_ = arrived_at;
-    there_origin_ = there_ = there;
-    here_origin_ = here_ = here;
   }
   newest_at_ = arrived_at;
-  there_ += (there - there_) / 8;
-  here_ += (here - here_) / 8;
-  if (number > newest_) {
-    end_second();
-    fit(newest_);
-    newest_ = number;
-  }
-  const double at = seconds(arrived_at - origin_);
-  const Ways ways{{seconds(there - there_origin_), at}, {seconds(here - here_origin_), at}};
-  Second& second = seconds_[index_of(number)];
-  if (!second.used || second.number < number) {
-    second = {number, true, ways, ways};
-  } else if (second.number == number) {
-    if (ways.there.value < second.least.there.value) second.least.there = ways.there;
-    if (ways.here.value < second.least.here.value) second.least.here = ways.here;
-  }
-  const bool due = kept_.count == 0 || at - kept_.newest_at >= kKeptEvery;
-  if (number != newest_ || !due || kept_.count == Kept::kMax) return;
-  kept_.there[kept_.count] = ways.there.value;
-  kept_.here[kept_.count] = ways.here.value;
-  ++kept_.count;
-  kept_.newest_at = at;
+  if (number <= newest_) return;
+  const double centre = static_cast<double>(newest_) + 0.5 - seconds(origin_.time_since_epoch());
+  there_.end_second(newest_, centre);
+  here_.end_second(newest_, centre);
+  fit(newest_);
+  newest_ = number;
 }
 
-/// The middles of the second that was the newest one.
-void ClockOffsetEstimator::end_second() noexcept {
-  Second& second = seconds_[index_of(newest_)];
-  if (kept_.count > 0 && second.number == newest_) {
-    const double centre = static_cast<double>(newest_) + 0.5 - seconds(origin_.time_since_epoch());
-    second.middle.there = {middle_of(std::span{kept_.there}.first(kept_.count)), centre};
-    second.middle.here = {middle_of(std::span{kept_.here}.first(kept_.count)), centre};
-  }
-  kept_.count = 0;
+void ClockOffsetEstimator::add_there(Duration way, Duration tick, TimePoint arrived_at) noexcept {
+  begin_or_end_second(arrived_at);
+  there_.add(way, tick, arrived_at, seconds(arrived_at - origin_));
+}
+
+void ClockOffsetEstimator::add_here(Duration way, TimePoint tick, TimePoint arrived_at) noexcept {
+  begin_or_end_second(arrived_at);
+  here_.add(way, tick.time_since_epoch(), arrived_at, seconds(arrived_at - origin_));
 }
 
 Duration ClockOffsetEstimator::way_there() const noexcept {
-  return estimate_ ? there_ - estimate_->offset_at(newest_at_) : Duration{};
+  return estimate_ ? there_.smoothed - estimate_->offset_at(newest_at_) : Duration{};
 }
 
 Duration ClockOffsetEstimator::way_here() const noexcept {
-  return estimate_ ? here_ + estimate_->offset_at(newest_at_) : Duration{};
+  return estimate_ ? here_.smoothed + estimate_->offset_at(newest_at_) : Duration{};
 }
 
 /// From the seconds up to `until`, whose exchanges are all there.
 void ClockOffsetEstimator::fit(std::int64_t until) noexcept {
   Lines edges;
   Lines middles;
-  for (const Second& second : seconds_) {
-    if (!second.used || second.number > until || second.number <= until - kSeconds) continue;
-    edges.there.add(second.least.there.at, second.least.there.value);
-    edges.here.add(second.least.here.at, second.least.here.value);
-    middles.there.add(second.middle.there.at, second.middle.there.value);
-    middles.here.add(second.middle.here.at, second.middle.here.value);
+  for (std::size_t i = 0; i < there_.bins.size(); ++i) {
+    const Second& there = there_.bins[i];
+    const Second& here = here_.bins[i];
+    const bool both = there.used && here.used && there.number == here.number;
+    if (!both || there.number > until || there.number <= until - kSeconds) continue;
+    edges.there.add(there.least.at, there.least.value);
+    edges.here.add(here.least.at, here.least.value);
+    middles.there.add(there.middle.at, there.middle.value);
+    middles.here.add(here.middle.at, here.middle.value);
   }
+  if (edges.there.count == 0) return;
   const double now = static_cast<double>(until + 1) - seconds(origin_.time_since_epoch());
   lay(edges, now);
   lay(middles, now);
+  lay_halves(edges, now);
+  lay_halves(middles, now);
   const double risk = std::hypot(middles.error, lean_of(edges, middles));
   const double share = edges.error * edges.error / (edges.error * edges.error + risk * risk);
   const auto mixed = [share](double of_edges, double of_middles) {
     return of_edges + share * (of_middles - of_edges);
   };
-  const Duration apart = there_origin_ - here_origin_;
-  const Duration sum = there_origin_ + here_origin_;
+  const Duration apart = there_.origin - here_.origin;
+  const Duration sum = there_.origin + here_.origin;
   const double least = edges.there.height + edges.here.height;
   estimate_ = ClockOffset{.offset = apart / 2 + from_seconds(mixed(edges.offset, middles.offset)),
                           .skew = mixed(edges.slope, middles.slope),

@@ -31,14 +31,21 @@ struct ClockOffset {
 /// Where a way's least is hardly ever reached, as where its jitter has no edge, the middle of all
 /// ways of a second scatters less: lines through those are laid as well, and what both say counts
 /// by how well it is known. Of the middles this includes by how much more one direction is spread
-/// than the other, because that is what they would be wrong by. A value. Thread: its Link's.
+/// than the other, because that is what they would be wrong by. Where both ways move together, as
+/// with another route or satellite, one line through half their differences takes the place of two.
+/// A value. Thread: its Link's.
 class ClockOffsetEstimator {
  public:
   static constexpr std::int64_t kSeconds = 32;
 
-  /// One exchange. `there`: arrival at the peer, on its clock, less our send, on ours; `here`: our
-  /// arrival less the peer's send. Both contain the offset, with opposite signs.
-  void add(Duration there, Duration here, TimePoint arrived_at) noexcept;
+  /// How long the newest datagram that the peer had in one of its ticks was on its way: arrival, on
+  /// its clock, less our send, on ours. `tick`: on its clock.
+  void add_there(Duration way, Duration tick, TimePoint arrived_at) noexcept;
+  /// The same of the newest that we had in one of our ticks: our arrival less the peer's send. Both
+  /// contain the offset, with opposite signs. Only the newest of a tick, and of both directions in
+  /// the same manner: else one way would seem longer than it is, for of those that come in a bunch
+  /// the older ones waited longer, and the first after a gap comes late.
+  void add_here(Duration way, TimePoint tick, TimePoint arrived_at) noexcept;
 
   /// As of the last whole second; nullopt before there was one.
   [[nodiscard]] const std::optional<ClockOffset>& estimate() const noexcept { return estimate_; }
@@ -52,38 +59,35 @@ class ClockOffsetEstimator {
     double value{};  ///< [s]
     double at{};     ///< [s]
   };
-  /// Of both directions.
-  struct Ways {
-    Way there{};
-    Way here{};
-  };
   struct Second {
     std::int64_t number{};
     bool used{};
-    Ways least{};
-    Ways middle{};
+    Way least{};
+    Way middle{};
   };
-  /// Some of the second that runs, from which its middle will be taken.
-  struct Kept {
-    static constexpr std::size_t kMax = 256;
-    std::array<double, kMax> there{};  ///< [s]
-    std::array<double, kMax> here{};   ///< [s]
-    std::size_t count{};
-    double newest_at{};  ///< [s]
+  /// One way.
+  struct Direction {
+    static constexpr std::size_t kKeptMax = 256;
+    void add(Duration way, Duration tick, TimePoint arrived_at, double at) noexcept;
+    void end_second(std::int64_t number, double centre) noexcept;
+
+    std::array<Second, kSeconds> bins{};
+    std::array<double, kKeptMax> kept{};  ///< [s], of the second that runs: for its middle
+    std::size_t count{};                  ///< of those
+    Duration kept_at{};                   ///< tick of the last of them
+    bool begun{};
+    Duration origin{};  ///< the first way; near it doubles are exact enough
+    Duration smoothed{};
   };
-  void end_second() noexcept;
+  void begin_or_end_second(TimePoint arrived_at) noexcept;
   void fit(std::int64_t until) noexcept;
 
-  std::array<Second, kSeconds> seconds_{};
-  Kept kept_;
+  Direction there_;
+  Direction here_;
   std::int64_t newest_{};  ///< [s]
   bool begun_{};
-  TimePoint origin_{};  ///< the first exchange; near it doubles are exact enough
-  Duration there_origin_{};
-  Duration here_origin_{};
+  TimePoint origin_{};  ///< the first arrival
   TimePoint newest_at_{};
-  Duration there_{};  ///< smoothed
-  Duration here_{};   ///< smoothed
   std::optional<ClockOffset> estimate_;
 };
 

@@ -152,11 +152,11 @@ void Link::send(const Telegram& telegram, TimePoint now) noexcept {
   conversation.epoch_sent = std::max(conversation.epoch_sent, epoch);
   ++conversation.next_number;
   ++counters_.sent;
-  note_exchange();
+  note_ways(now);
 }
 
 Arrivals Link::receive(TimePoint now) noexcept {
-  note_exchange();  // of the last tick, if nothing was sent in it
+  note_ways(now);  // of the last tick, if nothing was sent in it
   samples_.clear();
   accepted_now_ = 0;
   if (transport_) drain(now);
@@ -305,6 +305,8 @@ void Link::accept(const WireTelegram& wire, std::uint64_t number, TimePoint arri
     samples_.clear();
   }
 
+  const Duration sent_at = as_duration(wire.sent_at_ns);
+  conversation.ways.here = {arrived_at - conversation.began_at - sent_at, sent_at, arrived_at};
   if (wire.echo_ns == kNothingHeard) return;
   const TimePoint echo = conversation.began_at + as_duration(wire.echo_ns);
   const microseconds hold{wire.hold_us};
@@ -312,19 +314,20 @@ void Link::accept(const WireTelegram& wire, std::uint64_t number, TimePoint arri
   if (conversation.echo_ns != kNothingHeard && wire.echo_ns <= conversation.echo_ns) return;
   conversation.echo_ns = wire.echo_ns;
   ++conversation.exchanges;
-  const Duration sent_at = as_duration(wire.sent_at_ns);
-  conversation.exchange = Exchange{.there = sent_at - hold - as_duration(wire.echo_ns),
-                                   .here = arrived_at - conversation.began_at - sent_at,
-                                   .arrived_at = arrived_at};
+  WaysTaken& ways = conversation.ways;
+  if (ways.count == WaysTaken::kMax) return;
+  ways.there[ways.count++] = {sent_at - hold - as_duration(wire.echo_ns), sent_at, arrived_at};
 }
 
-/// The peer's echo tells of the newest telegram it had in a tick, not of those that came in a bunch
-/// with it and had waited longer; so of ours only the newest of a tick may count as well, or the
-/// way here would seem longer than the way there.
-void Link::note_exchange() noexcept {
-  if (const auto exchange = std::exchange(conversation_.exchange, std::nullopt)) {
-    conversation_.offset.add(exchange->there, exchange->here, exchange->arrived_at);
+/// The peer's echo tells of the newest telegram that it had in a tick; of ours it is the same.
+void Link::note_ways(TimePoint now) noexcept {
+  WaysTaken& ways = conversation_.ways;
+  for (const WayTaken& one : std::span{ways.there}.first(ways.count)) {
+    conversation_.offset.add_there(one.way, one.tick, one.arrived_at);
   }
+  if (ways.here) conversation_.offset.add_here(ways.here->way, now, ways.here->arrived_at);
+  ways.count = 0;
+  ways.here.reset();
 }
 
 /// The newest epoch that either side is known to be in.

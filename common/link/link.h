@@ -66,11 +66,18 @@ class Link {
     PortSample sample;  ///< with wave sums as payload or none
   };
 
-  /// What one telegram tells of the ways there and here.
-  struct Exchange {
-    Duration there{};
-    Duration here{};
+  /// How long the newest telegram of a tick, the peer's or ours, was on its way.
+  struct WayTaken {
+    Duration way{};
+    Duration tick{};  ///< the peer's, since its session began
     TimePoint arrived_at{};
+  };
+  /// Of a tick. A bunch tells of many ticks of the peer; more than these say nothing more.
+  struct WaysTaken {
+    static constexpr std::size_t kMax = 16;
+    std::array<WayTaken, kMax> there{};
+    std::size_t count{};
+    std::optional<WayTaken> here;
   };
 
   /// All that begins anew with a session.
@@ -85,8 +92,8 @@ class Link {
     ReplayWindow handed_over;   ///< samples, repaired ones included
     PeerClock clock;
     ClockOffsetEstimator offset;
-    std::optional<Exchange> exchange;  ///< the newest of this tick
-    bool heard{};                      ///< the next four speak of the newest accepted telegram
+    WaysTaken ways;  ///< not yet told to `offset`
+    bool heard{};    ///< the next four speak of the newest accepted telegram
     std::uint64_t newest_number{};
     std::uint64_t newest_sent_at_ns{};
     TimePoint newest_arrived_at{};
@@ -111,7 +118,7 @@ class Link {
   void count(Rejection rejection) noexcept;
   void take(const WireTelegram& wire, std::uint64_t number, TimePoint arrived_at) noexcept;
   void accept(const WireTelegram& wire, std::uint64_t number, TimePoint arrived_at) noexcept;
-  void note_exchange() noexcept;
+  void note_ways(TimePoint now) noexcept;
   void hand_over(const Incoming& incoming, std::uint32_t epoch) noexcept;
   void synchronise(TimePoint now) noexcept;
   [[nodiscard]] std::uint32_t epoch_wanted() const noexcept;

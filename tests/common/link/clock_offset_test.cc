@@ -32,7 +32,8 @@ struct Peer {
     const TimePoint met = now + there;
     const TimePoint sent = met + 300us;
     const TimePoint back = sent + here;
-    estimator.add(clock(met) - now.time_since_epoch(), back.time_since_epoch() - clock(sent), back);
+    estimator.add_there(clock(met) - now.time_since_epoch(), clock(sent), back);
+    estimator.add_here(back.time_since_epoch() - clock(sent), back, back);
   }
 };
 
@@ -78,8 +79,12 @@ TEST(ClockOffsetTest, AnUnequalWayShowsAsHalfItsDifferenceWhichIsWithinTheUncert
 }
 
 /// Absolute errors [s] after 20 s over `seeds` links whose queues are Pareto's (shape 2, mean
-/// excess `queue`), 100 exchanges a second, 20 ppm.
-std::vector<double> errors_over_queues(Duration way, Duration queue, std::uint64_t seeds) {
+/// excess `queue`), 100 exchanges a second, 20 ppm. `step`: so much longer both ways are in every
+/// second 15 s.
+std::vector<double> errors_over_queues(Duration way,
+                                       Duration queue,
+                                       std::uint64_t seeds,
+                                       Duration step = {}) {
   std::vector<double> errors;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     Peer peer{1234567us, 20e-6};
@@ -87,7 +92,8 @@ std::vector<double> errors_over_queues(Duration way, Duration queue, std::uint64
     for (std::uint64_t k = 0; k < 3000; ++k) {
       const auto queued = [&](std::uint64_t stream) {
         const double u = random_middle(random_bits(seed, stream, k));
-        return way + from_seconds(seconds(queue) * (1 / std::sqrt(u) - 1));
+        const Duration level = k / 1500 % 2 == 1 ? way + step : way;
+        return level + from_seconds(seconds(queue) * (1 / std::sqrt(u) - 1));
       };
       const TimePoint now{10ms * static_cast<std::int64_t>(k)};
       peer.exchange(estimator, now, queued(1), queued(2));
@@ -107,14 +113,25 @@ TEST(ClockOffsetTest, QueuesWithAFloorLeaveMicroseconds) {
   }
 }
 
+TEST(ClockOffsetTest, WhatLengthensBothWaysAlikeIsNotInTheOffset) {
+  // As when another satellite takes over every 15 s.
+  const auto errors = errors_over_queues(25ms, 1ms, 20, 12ms);
+  EXPECT_LE(errors[errors.size() / 2], 20e-6);
+  EXPECT_LE(errors[errors.size() * 99 / 100], 100e-6);
+}
+
 /// As above, with normal jitter of `spread` that remembers itself for 40 ms, and no edge.
-std::vector<double> errors_over_normal_jitter(Duration spread, std::uint64_t seeds) {
+/// The session began `age` before.
+std::vector<double> errors_over_normal_jitter(Duration spread,
+                                              std::uint64_t seeds,
+                                              Duration age = {}) {
   constexpr Duration kStep = 4ms;
   const double memory = std::exp(-seconds(kStep) / 0.04);
   std::vector<double> errors;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     Peer peer{1234567us, 20e-6};
     ClockOffsetEstimator estimator;
+    peer.exchange(estimator, TimePoint{-age}, 40ms, 40ms);
     std::array<double, 2> state{};
     for (std::uint64_t k = 0; k < 7500; ++k) {
       for (std::uint64_t way = 0; way < 2; ++way) {
@@ -136,8 +153,8 @@ std::vector<double> errors_over_normal_jitter(Duration spread, std::uint64_t see
 }
 
 TEST(ClockOffsetTest, JitterWithoutAnEdgeLeavesLittleMoreThanTheCramerRaoBound) {
-  for (const Duration spread : {300us, 1000us}) {
-    const auto errors = errors_over_normal_jitter(spread, 40);
+  for (const auto& [spread, age] : {std::pair{300us, 0s}, {1000us, 0s}, {300us, 7200s}}) {
+    const auto errors = errors_over_normal_jitter(spread, 40, age);
     // Of an Ornstein-Uhlenbeck process that is seen for T the mean is known to no better than
     // sd * sqrt(2 memory / (T + 2 memory)); of two ways half the difference; at the end of a line
     // whose slope is not known, twice that. Here of 20 s, the shortest that are judged.
