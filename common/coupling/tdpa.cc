@@ -7,7 +7,16 @@ namespace palp::coupling {
 namespace {
 
 constexpr double kLow = 0.5;
-constexpr double kContact = 0.1;  // [N], two steps of the transducer
+constexpr double kContact = 0.1;     // [N], two steps of the transducer
+constexpr double kNoise = 0.025;     // [N], a mean force below it is none
+constexpr double kMeanGain = 0.2;    // per sample: 5 of them
+constexpr double kDragShare = 0.15;  // of the slew, on top of what the spring takes of it
+// [s], round trips: up to the first the law knows of no path; from the second on it is a long one.
+constexpr double kNear = 0.06;
+constexpr double kFar = 0.16;
+// [s], from here on the local spring is there in full; over shorter paths, by their square, it is
+// not needed, and would make taps feel too stiff.
+constexpr double kLocal = 0.09;
 
 /// The newest sum that arrived: late, lost or repeated samples can only make it too small.
 void take_largest(double& known, std::span<const Incoming> arrived) noexcept {
@@ -28,7 +37,8 @@ void TdpaSurgeon::begin_epoch(double position) noexcept {
   velocity_.reset();
   position_before_ = position;
   energy_in_ = energy_out_ = energy_remote_ = 0;
-  tip_force_ = reserve_ = pull_ = drag_ = 0;
+  tip_force_ = calm_force_ = mean_force_ = reserve_ = pull_ = drag_ = 0;
+  tip_position_ = position;
   heard_ = false;
   fade_.set(1);
 }
@@ -37,6 +47,8 @@ void TdpaSurgeon::hear(std::span<const Incoming> arrived) noexcept {
   take_largest(energy_remote_, arrived);
   if (const Incoming* last = newest(arrived)) {
     tip_force_ = std::max(0.0, last->sample.force);
+    tip_position_ = last->sample.position;
+    mean_force_ += kMeanGain * (tip_force_ - mean_force_);
     heard_ = true;
   }
 }
@@ -50,20 +62,46 @@ void TdpaSurgeon::account(double work, double way) noexcept {
   reserve_ += work - (stored() - before);
 }
 
-/// Letting go of the spring gives energy back, pulling it costs: first of the reserve, then of what
-/// entered at the other end. What the reserve cannot hold goes on to there.
-void TdpaSurgeon::approach_tip_force(double wanted) noexcept {
+/// The tip's force where the tip was, and the local spring from there to where the hand is.
+double TdpaSurgeon::wanted_force(double position, double trip) noexcept {
+  const double time = config_.calm * std::max(0.0, trip - kNear);
+  calm_force_ += (tip_force_ - calm_force_) * config_.period / (config_.period + time);
+  const double touch = std::clamp((mean_force_ - kNoise) / (kContact - kNoise), 0.0, 1.0);
+  const double share = std::min(1.0, trip * trip / (kLocal * kLocal));
+  return std::max(0.0,
+                  calm_force_ + touch * share * config_.spring_local * (position - tip_position_));
+}
+
+/// Letting go of the spring gives energy back, pulling it costs. It is pulled no faster than it
+/// would be by a hand that moves its reach in a round trip: one that moves away faster lets go.
+void TdpaSurgeon::approach(double wanted, double trip) noexcept {
   const double remote = std::max(0.0, energy_remote_ - energy_out_);
-  const double whole = std::max(0.0, stored() + reserve_ + remote);
   const double before = stored();
-  pull_ = std::min(wanted, std::sqrt(2 * config_.spring * whole));
+  const double whole = std::max(0.0, before + reserve_ + remote);
+  const double pace = std::max(config_.creep, config_.reach / std::max(trip, config_.period));
+  const double rise = std::min(config_.slew, config_.spring * pace) * config_.period;
+  pull_ = std::min({wanted, pull_ + rise, std::sqrt(2 * config_.spring * whole)});
   reserve_ -= stored() - before;
-  const double drawn = std::clamp(kLow * config_.reserve - reserve_, 0.0, remote);
+}
+
+/// What the reserve lacks is drawn from what entered at the other end, what it cannot hold goes on
+/// to there. So does what came from there and is not needed here: kept, it would lack there, and
+/// the tip could not follow the hand into the tissue.
+void TdpaSurgeon::share_energy(double trip) noexcept {
+  const double far = std::clamp((trip - kNear) / (kFar - kNear), 0.0, 1.0);
+  const double kept =
+      std::lerp(config_.reserve, std::max(config_.reserve, config_.reserve_far), far);
+  const double remote = std::max(0.0, energy_remote_ - energy_out_);
+  const double drawn = std::clamp(kLow * kept - reserve_, 0.0, remote);
   energy_out_ += drawn;
   reserve_ += drawn;
-  const double surplus = std::max(0.0, reserve_ - config_.reserve);
+  const double surplus = std::max(0.0, reserve_ - kept);
   energy_in_ += surplus;
   reserve_ -= surplus;
+  const double due = std::max(0.0, 0.5 * tip_force_ * tip_force_ / config_.spring - stored());
+  const double returned = std::max(0.0, remote - drawn - config_.credit - due);
+  energy_out_ += returned;
+  energy_in_ += returned;
 }
 
 /// More on the way back only: on the way in stiffness is judged, and damping that falls
@@ -86,10 +124,15 @@ SurgeonOutput TdpaSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   } else {
     fade_.fall(seconds(dt), config_.fade_out);
   }
+  const double trip = std::max(0.0, seconds(in.round_trip));
   const double change = config_.slew * seconds(dt);
-  const double wanted = heard_ ? fade_.value() * tip_force_ : 0;
-  approach_tip_force(std::max(0.0, std::clamp(wanted, pulled - change, pulled + change)));
-  drag_ = step_towards(drag_, heard_ ? damping(speed) * speed : 0, change);
+  const double felt = wanted_force(in.position, trip);
+  const double wanted = heard_ ? fade_.value() * felt : 0;
+  approach(std::max(0.0, std::clamp(wanted, pulled - change, pulled + change)), trip);
+  share_energy(trip);
+  // Spring and damping have one slew: what is felt is their sum.
+  const double left = std::max(kDragShare * change, change - std::abs(pull_ - pulled));
+  drag_ = step_towards(drag_, heard_ ? damping(speed) * speed : 0, left);
   // After a turn drag points the wrong way until the filter has followed: not at others' cost.
   if (reserve_ < 0 && drag_ * way < 0) drag_ = 0;
   const double force = pull_ + drag_;

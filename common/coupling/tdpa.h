@@ -6,7 +6,8 @@
 
 /// Coupling `tdpa`: position forward, force back, and at both ends an observer of the energy that
 /// has come out of the channel against what is known to have gone in, with a controller that
-/// dissipates the difference (time-domain passivity, with drift compensation). A baseline.
+/// dissipates the difference (time-domain passivity, with drift compensation). A baseline. Round
+/// trips only tune it.
 namespace palp::coupling {
 
 struct TdpaConfig {
@@ -17,14 +18,21 @@ struct TdpaConfig {
   /// [N/m], of the spring through which the hand is given the tip's force; > tissue's. With the
   /// damping above half of stiffness times period, holding the force for a period costs nothing.
   double spring{650};
-  double reserve{0.04e-3};    ///< [J], kept here of what the hand puts in; the rest goes on
-  double slew{25};            ///< [N/s], of the force
-  double drift_rate{20};      ///< [1/s], of what the controller kept the stage from doing
-  double speed_max{0.15};     ///< [m/s], of the target
-  double sensor_cut_off{20};  ///< [Hz], the transducer's pole: the tip is given the same
-  double fade_out{0.2};       ///< [s], in Hold
-  double fade_in{0.5};        ///< [s]
-  double period{1e-3};        ///< [s]
+  double reserve{0.04e-3};     ///< [J], kept here of what the hand puts in; the rest goes on
+  double reserve_far{0.6e-3};  ///< [J], the same over a long path: what a force that comes late to
+                               ///< a hand at rest costs
+  double credit{0.6e-3};       ///< [J], kept here of what entered at the other end; more goes back
+  double slew{25};             ///< [N/s], of the force
+  double spring_local{250};    ///< [N/m], over a long path: between hand and tip while it touches
+  double reach{2e-3};          ///< [m], of the hand in a round trip: beyond, news of a force is old
+  double creep{6e-3};          ///< [m/s], a hand this slow is at rest
+  double calm{0.3};            ///< [-], of a long round trip: the force is smoothed over it
+  double drift_rate{20};       ///< [1/s], of what the controller kept the stage from doing
+  double speed_max{0.15};      ///< [m/s], of the target
+  double sensor_cut_off{20};   ///< [Hz], the transducer's pole: the tip is given the same
+  double fade_out{0.2};        ///< [s], in Hold
+  double fade_in{0.5};         ///< [s]
+  double period{1e-3};         ///< [s]
 };
 
 /// The hand holds one end of a spring; at its other end is what the tip feels. The spring makes the
@@ -32,6 +40,11 @@ struct TdpaConfig {
 /// and where there is none left the force falls along the spring, not at once. At every tick:
 /// reserve + stored = work of the hand + energy out - energy in, energy out <= energy known to have
 /// entered at the other end, reserve >= 0 up to what holding the force for a tick may cost.
+///
+/// Over a long path the force comes late. To a hand at rest it is given all the same, out of work
+/// that the hand has done before; a hand that has moved on is not pushed after it, which would only
+/// drain the channel. There the tip's force is followed on to where the hand is by a spring of this
+/// site's own: a hand on tissue as stiff as itself would else swing, for ever.
 class TdpaSurgeon {
  public:
   explicit TdpaSurgeon(const TdpaConfig& config) noexcept;
@@ -46,12 +59,17 @@ class TdpaSurgeon {
   [[nodiscard]] double stored() const noexcept;
   void account(double work, double way) noexcept;
   [[nodiscard]] double damping(double speed) const noexcept;
-  void approach_tip_force(double wanted) noexcept;
+  [[nodiscard]] double wanted_force(double position, double trip) noexcept;
+  void approach(double wanted, double trip) noexcept;
+  void share_energy(double trip) noexcept;
 
   TdpaConfig config_;
   VelocityEstimate velocity_;
   double position_before_{};  ///< [m]
   double tip_force_{};        ///< [N], newest
+  double tip_position_{};     ///< [m], newest
+  double calm_force_{};       ///< [N], the tip's, smoothed
+  double mean_force_{};       ///< [N], the tip's over 5 samples: noise is no touch
   double energy_in_{};        ///< [J], that entered here
   double energy_out_{};       ///< [J], that left here
   double energy_remote_{};    ///< [J], known to have entered there
