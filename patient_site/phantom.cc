@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -57,6 +58,32 @@ double exponential_force(double indentation) noexcept {
 }
 
 using Law = double (*)(double indentation) noexcept;
+
+/// A round tip in tissue that stiffens as Fung's law does (Lin, Shreiber, Dimitriadis and Horkay
+/// 2009): 8 kPa at first, as liver has, twice as stiff as a linear one 4 mm deep.
+double fung_force(double indentation) noexcept {
+  constexpr double kModulus = 8e3;                         // [Pa]
+  constexpr double kStiffening = 6;                        // [-]
+  constexpr double kScale = 80 / 27.0 / std::numbers::pi;  // [-]: small strains are Hertz's
+  const double area = std::numbers::pi * kIndenterRadius * indentation;
+  const double stretch = 1 - 0.2 * std::sqrt(indentation / kIndenterRadius);
+  const double stress = 1 / (stretch * stretch) - stretch;
+  const double strain = stretch * stretch + 2 / stretch - 3;
+  return kScale * kModulus * area * stress * std::exp(kStiffening * strain);
+}
+
+/// Skin over fat over muscle: a membrane and soft fat, and from 2 mm on, within some tenths of a
+/// millimetre, muscle (moduli of the orders of Pailler-Mattei and others 2008).
+double layered_force(double indentation) noexcept {
+  constexpr double kSkin = 60;      // [N/m]
+  constexpr double kFat = 503;      // [N/m^1.5], 4 kPa
+  constexpr double kMuscle = 120;   // [N/m]
+  constexpr double kBegins = 2e-3;  // [m]
+  constexpr double kWithin = 2e-4;  // [m]
+  const auto soft_step = [](double x) { return kWithin * std::log1p(std::exp(x / kWithin)); };
+  return kSkin * indentation + kFat * indentation * std::sqrt(indentation) +
+         kMuscle * (soft_step(indentation - kBegins) - soft_step(-kBegins));
+}
 
 /// Tabulated so finely that the table stands for the law (relative difference below 1e-5 from
 /// 0.05 mm on), to as deep as any gate lets a stage go.
@@ -187,6 +214,23 @@ void append_rows(std::string& text, char site, const ForceTable& table) {
 
 }  // namespace
 
+/// exp(-sqrt(t/T)) is a sum over rates k of exp(-k t), of which those below k are
+/// erfc(1/(2 sqrt(k T))) (Laplace): cut into parts by the mean of their logarithms.
+Relaxation stretched_relaxation(double share, double time) noexcept {
+  constexpr double kSlowest = 0.03;  // [-], least rate in units of 1/time, beyond it all is one
+  constexpr double kPace = 3;        // [-], of rates
+  const auto below = [](double rate) { return std::erfc(0.5 / std::sqrt(rate)); };
+  Relaxation relaxation;
+  double rate = kSlowest;
+  double before = 0;
+  for (std::size_t k = 0; k < Relaxation::kParts; ++k, rate *= kPace) {
+    const double until = k + 1 < Relaxation::kParts ? below(rate * std::sqrt(kPace)) : 1;
+    relaxation.parts[k] = {.share = share * (until - before), .time = time / rate};
+    before = until;
+  }
+  return relaxation;
+}
+
 double Phantom::depth_max() const noexcept { return std::min(plain.depth_max(), over.depth_max()); }
 
 Result<Phantom> make_phantom(std::string_view spec) {
@@ -213,10 +257,14 @@ Result<Phantom> make_phantom(std::string_view spec) {
                    .shape = "none"};
   }
   // Silicone rubber loses about a tenth of its force within seconds, and so the one that relaxes.
-  constexpr std::array kLaws{NamedLaw{"closed-form", closed_form_force, {}},
-                             NamedLaw{"exponential", exponential_force, {}},
-                             NamedLaw{"relaxing", closed_form_force, {.share = 0.1, .time = 1}}};
-  for (const NamedLaw& law : kLaws) {
+  // What drains: flesh loses more than silicone, and at all times at once.
+  const std::array laws{
+      NamedLaw{"closed-form", closed_form_force, {}},
+      NamedLaw{"exponential", exponential_force, {}},
+      NamedLaw{"relaxing", closed_form_force, {{Relaxation::Part{.share = 0.1, .time = 1}}}},
+      NamedLaw{"draining", fung_force, stretched_relaxation(0.2, 2)},
+      NamedLaw{"layered", layered_force, {}}};
+  for (const NamedLaw& law : laws) {
     const bool named = spec.starts_with(law.name) &&
                        (spec.size() == law.name.size() || spec[law.name.size()] == ':');
     if (named) return law_phantom(spec, law);
@@ -226,8 +274,9 @@ Result<Phantom> make_phantom(std::string_view spec) {
   if (spec.starts_with(kFile)) return file_phantom(spec, spec.substr(kFile.size()));
   return fail("unknown phantom '" + std::string{spec} +
               "'; there are paper-5mm, paper-10mm, paper-15mm, paper-20mm, paper-25mm, none, "
-              "closed-form[:DEPTH_MM], exponential[:DEPTH_MM], relaxing[:DEPTH_MM], file:PATH.csv "
-              "and \"ball depth=12 radius=8 ratio=200\" (or cylinder)");
+              "closed-form[:DEPTH_MM], exponential[:DEPTH_MM], relaxing[:DEPTH_MM], "
+              "draining[:DEPTH_MM], layered[:DEPTH_MM], file:PATH.csv and "
+              "\"ball depth=12 radius=8 ratio=200\" (or cylinder)");
 }
 
 std::string tissue_csv(const Phantom& phantom) {

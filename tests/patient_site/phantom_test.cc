@@ -105,8 +105,25 @@ TEST(PhantomTest, TheExponentialOneStiffensAsFungsLawDoes) {
   }
 }
 
+TEST(PhantomTest, TheDrainingOneIsHertzAtFirstAndStiffensTwofold) {
+  const auto phantom = make_phantom("draining");
+  ASSERT_TRUE(phantom);
+  const double hertz = 16.0 / 9 * 8e3 * std::sqrt(5e-3);  // [N/m^1.5], incompressible
+  const auto above = [&](double d) { return phantom->plain.force(d) / (hertz * std::pow(d, 1.5)); };
+  EXPECT_NEAR(above(2e-5), 1, 0.03);
+  EXPECT_NEAR(above(4e-3), 2, 0.5);
+}
+
+TEST(PhantomTest, TheLayeredOneIsTwiceAsStiffBelowTheFat) {
+  const auto phantom = make_phantom("layered");
+  ASSERT_TRUE(phantom);
+  const double above = phantom->plain.derivative(1.4e-3);
+  EXPECT_NEAR(phantom->plain.derivative(1.5e-3) / above, 1, 0.1);
+  EXPECT_GT(phantom->plain.derivative(2.6e-3), 2 * above);
+}
+
 TEST(RelaxingForceTest, AHeldTissueLetsGoOfItsShareAndNeverPulls) {
-  RelaxingForce tissue{{.share = 0.1, .time = 1}};
+  RelaxingForce tissue{{{Relaxation::Part{.share = 0.1, .time = 1}}}};
   EXPECT_NEAR(tissue.step(1, 1e-4), 1, 1e-4) << "at once it is elastic";
   double force = 0;
   for (int i = 0; i < 10'000; ++i) force = tissue.step(1, 1e-4);
@@ -116,8 +133,19 @@ TEST(RelaxingForceTest, AHeldTissueLetsGoOfItsShareAndNeverPulls) {
   EXPECT_EQ(tissue.step(0.01, 1e-4), 0) << "the tip leaves faster than the tissue follows";
 }
 
+TEST(RelaxingForceTest, WhatDrainsLetsGoByTheRootOfTime) {
+  constexpr double kTime = 2;  // [s]
+  RelaxingForce tissue{stretched_relaxation(0.2, kTime)};
+  double at = 0;
+  for (const double until : {0.03, 0.1, 0.5, 2.0, 10.0, 60.0}) {
+    double force = 0;
+    for (; at < until; at += 1e-4) force = tissue.step(1, 1e-4);
+    EXPECT_NEAR(force, 1 - 0.2 * (1 - std::exp(-std::sqrt(at / kTime))), 1e-3) << until;
+  }
+}
+
 TEST(RelaxingForceTest, WithoutAShareItIsTheElasticForceToTheBit) {
-  RelaxingForce tissue{{}};
+  RelaxingForce tissue{Relaxation{}};
   for (const double elastic : {0.0, 0.3, 1e-9}) EXPECT_EQ(tissue.step(elastic, 1e-4), elastic);
 }
 
