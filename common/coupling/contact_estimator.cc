@@ -25,6 +25,7 @@ constexpr double kFullSpeed = 2e-3;          // [m/s], of the tip: below it data
 constexpr double kBreathSpeed = 10e-3;       // [m/s], the same where the surface breathes
 constexpr double kBreathWeightMin = 0.4;     // [-], and what is too slow to say anything there
 constexpr double kStillWeight = 0.2;         // [-], of an equation that repeats the last one
+constexpr double kOutwardWeight = 0.5;       // [-], of one on the way out: the way in is judged
 constexpr std::uint32_t kDoubtTicks = 60;    // after the first contact
 constexpr double kDoubtShare = 0.25;         // [-], of the force that counts as contact
 constexpr double kDoubtRetreat = 0.1e-3;     // [m], a tip that went farther out says nothing
@@ -210,14 +211,18 @@ double ContactEstimator::equation_noise() const noexcept {
 }
 
 void ContactEstimator::absorb() noexcept {
-  const double travelled = std::abs(tip_.value() - box_tip_);
+  const double inward = tip_.value() - box_tip_;
+  const double travelled = std::abs(inward);
   box_tip_ = tip_.value();
   // A tip that stands still in a breathing tissue sees stiffness times motion of the surface, and
   // cannot tell a soft tissue that moves much from a stiff one that moves little: motion can.
   const bool breathes = model_.swing_rate > 0;
   const double full = (breathes ? kBreathSpeed : kFullSpeed) * config_.period * kBox;
-  const double weight = std::clamp(travelled / full, breathes ? 0.0 : kStillWeight, 1.0);
+  double weight = std::clamp(travelled / full, breathes ? 0.0 : kStillWeight, 1.0);
   if (breathes && weight < kBreathWeightMin) return;
+  // Whatever makes the way out another one than the way in, and is not among the terms: a finger
+  // judges stiffness on the way in.
+  if (inward < 0) weight *= kOutwardWeight;
   const double keep = 1 - weight * config_.period * kBox / config_.memory;
   const double scale = 1.0 / kBox;
   const double force = box_force_ * scale;

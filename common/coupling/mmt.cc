@@ -38,6 +38,7 @@ void MmtSurgeon::drop_model() noexcept {
   stored_ = 0;
   shown_force_ = 0;
   offset_ = 0;
+  brake_ = 0;
   ContactModel nothing = shown_.elastic();
   nothing.c = {};
   shown_.become(nothing, {});
@@ -113,16 +114,22 @@ void MmtSurgeon::choose_offset(double position, double energy_max, double force_
   offset_ = high;
 }
 
-/// How fast a new model may come in. A large force that appears under a light hand throws it back.
-double MmtSurgeon::slew_for(double position, double speed, Duration round_trip) const noexcept {
+/// How fast a new model may come in under a hand on its way in. A large force that appears under a
+/// light hand throws it back.
+double MmtSurgeon::slew_for(double position, Duration round_trip) const noexcept {
   const double there = candidate_ ? candidate_->force(position - candidate_->surface) : 0;
   const double missing = std::max(there, shown_.force(depth_at(position))) - shown_force_;
   const double room = (config_.gap_large - missing) / (config_.gap_large - config_.gap_small);
   const double small =
       round_trip < config_.round_trip_short ? config_.slew_short : config_.slew_small;
-  const double slew = config_.slew + (small - config_.slew) * std::clamp(room, 0.0, 1.0);
-  // A hand that is being thrown back is not to be pushed on.
-  return slew * std::clamp(1 + speed / config_.slew_speed, 0.0, 1.0);
+  return config_.slew + (small - config_.slew) * std::clamp(room, 0.0, 1.0);
+}
+
+/// A hand that runs into tissue not shown yet is stopped by more than this, or it goes in too far;
+/// by a spring alone, it would be thrown back and come in a second time.
+void MmtSurgeon::brake(double missing, double speed, double rise_max) noexcept {
+  brake_ =
+      std::min({std::max(0.0, missing), config_.brake * std::max(0.0, speed), brake_ + rise_max});
 }
 
 /// How much the tank lacks, 0 to 1. A surface that breathes takes and gives its strokes' energy
@@ -174,9 +181,11 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   tank_ = std::min(config_.tank_max, tank_ + work - (moved - stored_));
 
   approach_candidate(in.position, depth_before, span);
-  const double slew = slew_for(in.position, speed, in.round_trip);
+  const double rise_max = slew_for(in.position, in.round_trip) * span;
+  // As a hand stops less and less comes in: what stops it must not push it back.
+  const double moving = std::clamp(config_.slew_rest + speed / config_.slew_speed, 0.0, 1.0);
   const double force_max =
-      std::max(force_before + config_.slew_beside * span, shown_force_ + slew * span);
+      std::max(force_before + config_.slew_beside * span, shown_force_ + moving * rise_max);
   choose_offset(in.position, std::max(0.0, moved + tank_), force_max);
 
   const double depth = depth_at(in.position) - offset_;
@@ -184,7 +193,9 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   tank_ -= stored_ - moved;
 
   shown_force_ = shown_.force(depth);
-  const double force = damp(shown_force_, depth, speed);
+  const double risen = std::max(0.0, shown_force_ - force_before);
+  brake(shown_.force(depth_at(in.position)) - shown_force_, speed, std::max(0.0, rise_max - risen));
+  const double force = damp(shown_force_, depth, speed) + brake_;
   return {force, {in.position, in.velocity, force, std::monostate{}}, shown_force_};
 }
 

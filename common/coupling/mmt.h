@@ -24,10 +24,12 @@ struct MmtConfig {
   double slew_small{9};     ///< [N/s], the same where little force is missing
   double gap_small{0.1};    ///< [N], of missing force: up to here it is little
   double gap_large{0.3};    ///< [N], and from here on it is not
-  double slew_speed{0.03};  ///< [m/s], of a hand moving out: none comes in
+  double slew_speed{0.06};  ///< [m/s], of a hand moving in: from here on all of it comes in
+  double slew_rest{0.1};    ///< [-], share of it under a hand at rest; none a little faster out
   double slew_beside{1};    ///< [N/s], of a new model beside what motion alone does
   Duration round_trip_short{std::chrono::milliseconds{8}};
   double blend{0.05};           ///< [s], time constant of changes of the model
+  double brake{2};              ///< [N s/m], on the way in, while a force is still to come in
   double contact_damping{0.2};  ///< [N s/m], on the way out: the way in is what a finger judges
   double air_damping{0.3};      ///< [N s/m], fills the tank
   double repay_contact{3};      ///< [N s/m], on top on the way out while the tank is empty
@@ -70,8 +72,9 @@ class MmtSurgeon {
   [[nodiscard]] double depth_at(double position) const noexcept {
     return position - shown_.elastic().surface;
   }
-  [[nodiscard]] double slew_for(double position, double speed, Duration round_trip) const noexcept;
+  [[nodiscard]] double slew_for(double position, Duration round_trip) const noexcept;
   void choose_offset(double position, double energy_max, double force_max) noexcept;
+  void brake(double missing, double speed, double rise_max) noexcept;
   [[nodiscard]] double debt() const noexcept;
   [[nodiscard]] double damp(double force, double depth, double speed) const noexcept;
 
@@ -82,6 +85,7 @@ class MmtSurgeon {
   double stored_{};           ///< [J]
   double shown_force_{};      ///< [N], of the shown model, last tick
   double offset_{};           ///< [m]
+  double brake_{};            ///< [N]
   RelaxingContact shown_;
   bool showing_{};
   Swing swing_;                                   ///< of the newest model, when it was sent

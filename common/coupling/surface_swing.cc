@@ -18,10 +18,12 @@ constexpr double kFastest = 2 * pi * 0.60;  // [rad/s]
 // A short arc fits many paces: an adult at rest breathes 12 to 20 times a minute.
 constexpr double kUsual = 2 * pi * 0.26;     // [rad/s]
 constexpr double kUnusual = 1;               // [-], cost of an octave
-constexpr double kSeenFor = 4;               // [s], since the first sight
+constexpr double kSeenFor = 4;               // [s], since the first sight, to believe a breath
+constexpr double kStillSeenFor = 2;          // [s], to believe that there is none
 constexpr double kSamplesMin = 30;           // to say anything
 constexpr double kAmplitudeMin = 0.2e-3;     // [m]
 constexpr double kStillBelow = 0.35e-3;      // [m]
+constexpr double kStillBelowSoon = 0.2e-3;   // [m], before a breath can be believed
 constexpr double kAmplitudeMax = 4e-3;       // [m]
 constexpr double kExplainedMin = 0.6;        // [-], to begin believing
 constexpr double kExplainedLeast = 0.3;      // [-], to go on
@@ -264,7 +266,8 @@ void SurfaceSwing::improve(Guess& guess, std::size_t pace) noexcept {
 }
 
 void SurfaceSwing::judge() noexcept {
-  if (time_ - first_seen_ < kSeenFor || static_cast<double>(count_) < kSamplesMin) return;
+  const double seen_for = time_ - first_seen_;
+  if (seen_for < kStillSeenFor || static_cast<double>(count_) < kSamplesMin) return;
   best_ = 1;
   for (std::size_t i = 2; i < guesses_.size(); ++i) {
     if (guesses_[i].cost < guesses_[best_].cost) best_ = i;
@@ -272,9 +275,10 @@ void SurfaceSwing::judge() noexcept {
   const Guess& best = guesses_[best_];
   const double amplitude = std::hypot(best.cosine, best.sine);
   const double explained = guesses_[0].square > 0 ? 1 - best.square / guesses_[0].square : 0;
-  believed_ = amplitude > kAmplitudeMin && amplitude < kAmplitudeMax &&
+  const bool early = seen_for < kSeenFor;
+  believed_ = !early && amplitude > kAmplitudeMin && amplitude < kAmplitudeMax &&
               explained > (believed_ ? kExplainedLeast : kExplainedMin);
-  still_ = !believed_ && (still_ || amplitude < kStillBelow);
+  still_ = !believed_ && (still_ || amplitude < (early ? kStillBelowSoon : kStillBelow));
   if (!believed_) return;
   const double angle = best.rate * (time_ - best.origin);
   const double c = std::cos(angle);

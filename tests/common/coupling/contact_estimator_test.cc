@@ -1,5 +1,6 @@
 #include "common/coupling/contact_estimator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -105,6 +106,20 @@ TEST(ContactEstimatorTest, DampingIsNoStiffnessAndDoesNotRelax) {
   const auto felt = [&](double x) { return found.force(x - found.surface); };
   EXPECT_NEAR(secant(felt) / secant(hertz), 1, 0.01);
   EXPECT_LT(model.relaxing[0] + model.relaxing[1], 0.02);
+}
+
+TEST(ContactEstimatorTest, ATissueThatLetsGoOnTheWayOutIsAsStiffAsOnTheWayIn) {
+  double before = 0;
+  double share = 1;
+  const auto tissue = [&](double depth) {
+    share = std::clamp(share + (depth > before ? 0.01 : -0.01), 0.9, 1.0);
+    before = depth;
+    return share * hertz(depth);
+  };
+  const ModelPayload model = learn(tissue);
+  const ContactModel found = contact_model(model);
+  const auto felt = [&](double x) { return found.force(x - found.surface); };
+  EXPECT_NEAR(secant(felt) / secant(hertz), 1, 0.06);
 }
 
 TEST(ContactEstimatorTest, TissueThatBreathesIsFoundAsStiffAsItIsAtAnyPace) {
