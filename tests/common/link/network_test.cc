@@ -1,6 +1,7 @@
 // Goal: what a Link stands over a wide-area network: losses repaired, blackouts survived.
 // Method: two Links under keys over the engine of palp-netem, in virtual time.
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -132,6 +133,26 @@ TEST(NetworkTest, WhatAStallHeldBackIsNeverTakenForFresh) {
         static_cast<double>(std::max<Duration>(Duration{}, span - 200ms) / 1ms);
     EXPECT_NEAR(static_cast<double>(couple.patient.health.stale), held_too_long, 3);
   }
+}
+
+TEST(NetworkTest, TheClockLeansToNeitherSideWhereBothWaysAreAlike) {
+  // A busy wireless network: telegrams wait for their slot and come in bunches, in both directions.
+  const netem::PathPlan way{
+      .impairment = netem::impaired(
+          "delay 2ms 1ms distribution lognormal correlation-time 20ms slot 1ms 10ms")};
+  constexpr int kLinks = 12;
+  double sum = 0;      // [s], of the errors
+  double squares = 0;  // [s^2]
+  for (std::uint64_t seed = 1; seed <= kLinks; ++seed) {
+    NetworkCouple couple{way, way, seed};
+    couple.run(20s);
+    const double error = seconds(couple.surgeon.health.peer_clock->offset_at(couple.now));
+    sum += error;
+    squares += error * error;
+  }
+  const double spread = std::sqrt(squares / kLinks);
+  EXPECT_LE(spread, 100e-6);
+  EXPECT_LE(std::abs(sum / kLinks), 3 * spread / std::sqrt(kLinks));
 }
 
 }  // namespace
