@@ -119,7 +119,7 @@ TEST(ContactEstimatorTest, ATissueThatLetsGoOnTheWayOutIsAsStiffAsOnTheWayIn) {
   const ModelPayload model = learn(tissue);
   const ContactModel found = contact_model(model);
   const auto felt = [&](double x) { return found.force(x - found.surface); };
-  EXPECT_NEAR(secant(felt) / secant(hertz), 1, 0.06);
+  EXPECT_NEAR(secant(felt) / secant(hertz), 1, 0.048);
 }
 
 TEST(ContactEstimatorTest, TissueThatBreathesIsFoundAsStiffAsItIsAtAnyPace) {
