@@ -20,6 +20,7 @@ using testing::HasSubstr;
 
 constexpr int kBadInput = 2;
 constexpr int kNotReached = 3;
+constexpr int kCutShort = 4;
 
 class BadInputTest : public ::testing::Test {
  protected:
@@ -91,6 +92,14 @@ TEST_F(BadInputTest, MissingFile) {
                  kNotReached,
                  "no-such-file");
   expect_refusal("palp-lab run no-such-file", kBadInput, "no-such-file");
+}
+
+TEST_F(BadInputTest, ARunWhoseOperatorIsRefusedIsNotDone) {
+  const std::string scenario = folder_ + "/refused.textproto";
+  std::ofstream{scenario} << "surgeon { coupling { name: 'direct' } } up { delay_ms: 50 }\n"
+                             "patient { coupling { name: 'direct' } } down { delay_ms: 50 }\n";
+  EXPECT_EQ(run("palp-lab run --bare " + scenario), kCutShort);
+  EXPECT_THAT(text("out"), HasSubstr("refused"));
 }
 
 }  // namespace
