@@ -1,5 +1,6 @@
 /// palp-lab: whole sessions in virtual time.
 
+#include <cstdio>
 #include <optional>
 #include <string>
 
@@ -76,11 +77,17 @@ Result<SessionFiles> open_files(const std::string& prefix) {
   return files;
 }
 
-/// A run that its duration ends is done; one that the operator gave up is not.
-ExitCode exit_code_of(surgeon::ScriptOutcome outcome) {
+/// A run that its duration ends is done; one that the operator gave up is not, whatever was felt
+/// until then.
+Ending ending_of(surgeon::ScriptOutcome outcome, const std::string& summary) {
   using surgeon::ScriptOutcome;
-  const bool whole = outcome == ScriptOutcome::Completed || outcome == ScriptOutcome::None;
-  return whole ? ExitCode::Done : ExitCode::CutShort;
+  if (outcome == ScriptOutcome::Completed || outcome == ScriptOutcome::None) {
+    return {ExitCode::Done, summary};
+  }
+  (void)std::fputs(summary.c_str(), stdout);
+  return {ExitCode::CutShort,
+          "palp-lab: the script was not played to its end: " +
+              std::string{surgeon::to_string(outcome)}};
 }
 
 Ending run(const Arguments& arguments) {
@@ -112,7 +119,7 @@ Ending run(const Arguments& arguments) {
     const auto written = config::write_whole_file(arguments.trace, trace_csv(result));
     if (!written) return {ExitCode::CannotOpen, "palp-lab: " + written.error().text};
   }
-  return {exit_code_of(result.outcome), run_summary(*scenario, result, account)};
+  return ending_of(result.outcome, run_summary(*scenario, result, account));
 }
 
 Machine machine() {

@@ -36,9 +36,6 @@ class BadInputTest : public ::testing::Test {
     EXPECT_EQ(text("out"), "");
   }
 
-  std::string folder_{make_folder("bad-input")};
-
- private:
   /// @returns the exit code; 124 if it still ran after 20 s.
   [[nodiscard]] int run(const std::string& command) const {
     const std::string line = "timeout -s KILL 20 '" PALP_BINARY_FOLDER "'/" + command + " >'" +
@@ -50,6 +47,8 @@ class BadInputTest : public ::testing::Test {
     std::ifstream file{folder_ + "/" + name};
     return {std::istreambuf_iterator<char>{file}, {}};
   }
+
+  std::string folder_{make_folder("bad-input")};
 };
 
 TEST_F(BadInputTest, UnknownFlag) {
@@ -99,7 +98,8 @@ TEST_F(BadInputTest, ARunWhoseOperatorIsRefusedIsNotDone) {
   std::ofstream{scenario} << "surgeon { coupling { name: 'direct' } } up { delay_ms: 50 }\n"
                              "patient { coupling { name: 'direct' } } down { delay_ms: 50 }\n";
   EXPECT_EQ(run("palp-lab run --bare " + scenario), kCutShort);
-  EXPECT_THAT(text("out"), HasSubstr("refused"));
+  EXPECT_THAT(text("out"), HasSubstr("stability"));
+  EXPECT_THAT(text("err"), HasSubstr("refused"));
 }
 
 }  // namespace
