@@ -23,8 +23,8 @@ class UnguardedSurgeon {
   void begin_epoch(double /*position*/) noexcept {}
   SurgeonOutput step(const SurgeonInput& in, Duration /*dt*/) noexcept {
     if (const Incoming* last = newest(in.arrived)) {
-      const auto& model = std::get<ModelPayload>(last->sample.payload);
-      if (is_sound(model, 60e-3, 2000)) shown_ = contact_model(model);
+      const auto* model = std::get_if<ModelPayload>(&last->sample.payload);
+      if (model != nullptr && is_sound(*model, 60e-3, 2000)) shown_ = contact_model(*model);
     }
     SurgeonOutput out;
     out.force = shown_.force(in.position - shown_.surface);
