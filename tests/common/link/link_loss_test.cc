@@ -23,7 +23,7 @@ double chance(std::uint64_t seed, Stream stream, std::uint64_t index) {
 }
 
 /// 5 % lost, 5 % doubled, 4 % spoiled, 0 to 8 ms late; `spoil` changes the bytes.
-Fate bad_path(std::uint64_t seed, std::function<void(std::uint64_t, Bytes&)> spoil) {
+Fate bad_path(std::uint64_t seed, const std::function<void(std::uint64_t, Bytes&)>& spoil) {
   return [=](std::uint64_t index, const Bytes& bytes) {
     std::vector<Release> releases;
     if (chance(seed, Stream::Loss, index) < 0.05) return releases;
