@@ -89,7 +89,8 @@ TEST(PhantomTest, TissueTextIsATableThatCanBeReadBack) {
   const std::string b = "site,d_mm,F_N\n" + text.substr(text.find("B,"));
   const auto table = parse_force_table(b, "B");
   ASSERT_TRUE(table) << table.error().text;
-  for (double d = 0; d < 5e-3; d += 1e-4) {
+  for (int tenths = 0; tenths < 50; ++tenths) {
+    const double d = 1e-4 * tenths;
     EXPECT_NEAR(table->force(d), phantom->over.force(d), 1e-8);
   }
 }
@@ -136,10 +137,11 @@ TEST(RelaxingForceTest, AHeldTissueLetsGoOfItsShareAndNeverPulls) {
 TEST(RelaxingForceTest, WhatDrainsLetsGoByTheRootOfTime) {
   constexpr double kTime = 2;  // [s]
   RelaxingForce tissue{stretched_relaxation(0.2, kTime)};
-  double at = 0;
+  int tick = 0;
   for (const double until : {0.03, 0.1, 0.5, 2.0, 10.0, 60.0}) {
     double force = 0;
-    for (; at < until; at += 1e-4) force = tissue.step(1, 1e-4);
+    for (; 1e-4 * tick < until; ++tick) force = tissue.step(1, 1e-4);
+    const double at = 1e-4 * tick;
     EXPECT_NEAR(force, 1 - 0.2 * (1 - std::exp(-std::sqrt(at / kTime))), 1e-3) << until;
   }
 }
