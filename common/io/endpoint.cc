@@ -14,6 +14,22 @@ struct FreeAddresses {
   void operator()(addrinfo* list) const noexcept { freeaddrinfo(list); }
 };
 
+const sockaddr_in6& in6(const sockaddr* address) noexcept {
+  return *reinterpret_cast<const sockaddr_in6*>(address);
+}
+
+/// Whether both are addresses of one family and the same, of IPv6 in their first bytes.
+bool agree(const sockaddr* a, const sockaddr* b, std::size_t ipv6_bytes) noexcept {
+  if (a->sa_family != b->sa_family) {
+    return false;
+  }
+  if (a->sa_family == AF_INET) {
+    return reinterpret_cast<const sockaddr_in*>(a)->sin_addr.s_addr ==
+           reinterpret_cast<const sockaddr_in*>(b)->sin_addr.s_addr;
+  }
+  return std::memcmp(&in6(a).sin6_addr, &in6(b).sin6_addr, ipv6_bytes) == 0;
+}
+
 }  // namespace
 
 Endpoint::Endpoint(const void* address, std::size_t size) noexcept {
@@ -72,34 +88,21 @@ std::string Endpoint::to_string() const {
 }
 
 bool Endpoint::operator==(const Endpoint& other) const noexcept {
-  if (!valid() || !other.valid() || family() != other.family() || port() != other.port()) {
+  if (!valid() || !other.valid() || port() != other.port() ||
+      !agree(address(), other.address(), sizeof(in6_addr))) {
     return false;
   }
-  if (family() == AF_INET) {
-    const auto& a = reinterpret_cast<const sockaddr_in&>(storage_);
-    const auto& b = reinterpret_cast<const sockaddr_in&>(other.storage_);
-    return a.sin_addr.s_addr == b.sin_addr.s_addr;
-  }
-  const auto& a = reinterpret_cast<const sockaddr_in6&>(storage_);
-  const auto& b = reinterpret_cast<const sockaddr_in6&>(other.storage_);
-  return a.sin6_scope_id == b.sin6_scope_id &&
-         std::memcmp(&a.sin6_addr, &b.sin6_addr, sizeof a.sin6_addr) == 0;
+  return family() != AF_INET6 || in6(address()).sin6_scope_id == in6(other.address()).sin6_scope_id;
 }
 
 bool Endpoint::same_host(const Endpoint& other) const noexcept {
-  if (!valid() || !other.valid() || family() != other.family()) {
+  if (!valid() || !other.valid()) {
     return false;
   }
-  if (family() == AF_INET) {
-    const auto& a = reinterpret_cast<const sockaddr_in&>(storage_);
-    const auto& b = reinterpret_cast<const sockaddr_in&>(other.storage_);
-    return a.sin_addr.s_addr == b.sin_addr.s_addr;
-  }
-  const auto& a = reinterpret_cast<const sockaddr_in6&>(storage_);
-  const auto& b = reinterpret_cast<const sockaddr_in6&>(other.storage_);
-  constexpr std::size_t kPrefix = 8;                     // [bytes]
-  const bool ipv4 = IN6_IS_ADDR_V4MAPPED(&a.sin6_addr);  // all of them share a prefix
-  return std::memcmp(&a.sin6_addr, &b.sin6_addr, ipv4 ? sizeof a.sin6_addr : kPrefix) == 0;
+  constexpr std::size_t kPrefix = 8;  // [bytes]
+  // All mapped ones share a prefix.
+  const bool ipv4 = family() == AF_INET6 && IN6_IS_ADDR_V4MAPPED(&in6(address()).sin6_addr);
+  return agree(address(), other.address(), ipv4 ? sizeof(in6_addr) : kPrefix);
 }
 
 Endpoint Endpoint::caller() const noexcept {
