@@ -28,6 +28,17 @@ enum class FaultKind : std::uint8_t {
   EmergencyStop     ///< pressed at the surgeon's
 };
 
+/// Those of devices.
+inline constexpr std::array kDeviceFaults{FaultKind::SensorSilent,
+                                          FaultKind::SensorStuck,
+                                          FaultKind::SensorNotFinite,
+                                          FaultKind::SensorOffset,
+                                          FaultKind::StageStuck,
+                                          FaultKind::StageFaulted,
+                                          FaultKind::HandNotFinite,
+                                          FaultKind::HandFaulted,
+                                          FaultKind::EmergencyStop};
+
 struct Fault {
   FaultKind kind{FaultKind::None};
   Duration at_script_time{};

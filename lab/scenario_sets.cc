@@ -230,18 +230,7 @@ void fill_faults(Plan& plan, const PlanAsk& ask) {
   fill_with(kKinds, plan, ask);
 }
 
-void fill_device_faults(Plan& plan, const PlanAsk& ask) {
-  constexpr std::array kKinds{FaultKind::SensorSilent,
-                              FaultKind::SensorStuck,
-                              FaultKind::SensorNotFinite,
-                              FaultKind::SensorOffset,
-                              FaultKind::StageStuck,
-                              FaultKind::StageFaulted,
-                              FaultKind::HandNotFinite,
-                              FaultKind::HandFaulted,
-                              FaultKind::EmergencyStop};
-  fill_with(kKinds, plan, ask);
-}
+void fill_device_faults(Plan& plan, const PlanAsk& ask) { fill_with(kDeviceFaults, plan, ask); }
 
 void set_for_all(Plan& plan, const Setting& setting) {
   for (Case& one : plan.cases) one.settings.push_back(setting);

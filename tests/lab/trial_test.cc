@@ -173,15 +173,7 @@ TEST(TrialTest, APedalLiftedInAPressEngagesAgain) {
 
 TEST(TrialTest, ADeviceThatFailsInATapStopsTheSitesAndHarmsNobody) {
   constexpr double kSlack = 0.05e-3;  // [J], one tick of held force and half an encoder count
-  for (const FaultKind kind : {FaultKind::SensorSilent,
-                               FaultKind::SensorStuck,
-                               FaultKind::SensorNotFinite,
-                               FaultKind::SensorOffset,
-                               FaultKind::StageStuck,
-                               FaultKind::StageFaulted,
-                               FaultKind::HandNotFinite,
-                               FaultKind::HandFaulted,
-                               FaultKind::EmergencyStop}) {
+  for (const FaultKind kind : kDeviceFaults) {
     SCOPED_TRACE(to_string(kind));
     Scenario failing = faulty(kind, std::chrono::seconds{5});
     // On the way in, in contact: the second tap is from 7.5 s to 8.5 s.
