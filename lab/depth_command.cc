@@ -153,11 +153,8 @@ void declare_depth(config::CommandLine& line, DepthFlags& flags) {
 Ending run_depth(const DepthFlags& flags) {
   const auto study = study_of(flags);
   if (!study) return bad_input(study.error().text);
-  for (const std::string& path : {flags.report, flags.csv, flags.svg}) {
-    if (path.empty()) continue;
-    if (const auto can = config::can_write_file(path); !can) {
-      return {ExitCode::CannotOpen, "palp-lab: " + can.error().text};
-    }
+  if (const auto can = config::can_write_files({flags.report, flags.csv, flags.svg}); !can) {
+    return {ExitCode::CannotOpen, "palp-lab: " + can.error().text};
   }
   const auto cases = run_all(*study, static_cast<std::uint32_t>(flags.cores));
   if (!cases) return bad_input(cases.error().text);

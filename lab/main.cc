@@ -93,11 +93,8 @@ Ending ending_of(surgeon::ScriptOutcome outcome, const std::string& summary) {
 Ending run(const Arguments& arguments) {
   const auto scenario = scenario_of(arguments);
   if (!scenario) return refusal(scenario.error());
-  for (const std::string& path : {arguments.report, arguments.trace}) {
-    if (path.empty()) continue;
-    if (const auto can = config::can_write_file(path); !can) {
-      return {ExitCode::CannotOpen, "palp-lab: " + can.error().text};
-    }
+  if (const auto can = config::can_write_files({arguments.report, arguments.trace}); !can) {
+    return {ExitCode::CannotOpen, "palp-lab: " + can.error().text};
   }
   auto files = open_files(arguments.session_files);
   if (!files) return {ExitCode::CannotOpen, "palp-lab: " + files.error().text};

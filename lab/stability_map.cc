@@ -68,7 +68,7 @@ const char* colour_of(std::optional<bool> stable) {
 
 std::string map_report(const Plan& plan,
                        const std::vector<CaseResult>& results,
-                       const MapAccount& account) {
+                       const BatchAccount& account) {
   using Json = nlohmann::ordered_json;
   const Map map = map_of(results);
   Json json;

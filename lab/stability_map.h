@@ -1,27 +1,20 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "lab/batch.h"
+#include "lab/batch_report.h"
 #include "lab/plan.h"
 
 /// The stability of eq. (1) over springs, round trips and grips, whole or of a shard: what was not
 /// run is left open.
 namespace palp::lab {
 
-struct MapAccount {
-  std::string shard{};    ///< "i/n", empty: whole
-  std::uint64_t cores{};  ///< 0: merged
-  double cpu{};           ///< [s]
-  double wall{};          ///< [s]
-};
-
 /// palp.map/1; null: not run.
 [[nodiscard]] std::string map_report(const Plan& plan,
                                      const std::vector<CaseResult>& results,
-                                     const MapAccount& account);
+                                     const BatchAccount& account);
 /// A picture: one square a run, rows of springs, columns of round trips, one panel per grip.
 [[nodiscard]] std::string map_svg(const std::vector<CaseResult>& results);
 /// A line per grip and spring: S stable, . unstable, ? not run.

@@ -1,7 +1,6 @@
 #include "lab/verbs.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
@@ -21,9 +20,9 @@ constexpr const char* kMontecarlo = "palp.montecarlo/1";
 constexpr const char* kAdversary = "palp.adversary/1";
 constexpr const char* kCompare = "palp.compare/1";
 constexpr const char* kMap = "palp.map/1";
+constexpr const char* kSweep = "palp.sweep/1";
 constexpr std::string_view kMapName = "map";
 constexpr std::string_view kSweepName = "sweep";
-constexpr const char* kSweep = "palp.sweep/1";
 
 using config::Ending;
 using config::ExitCode;
@@ -53,13 +52,9 @@ std::optional<Ending> write_files(const std::vector<std::pair<std::string, std::
 
 /// Before hours are spent on what nobody could write down.
 std::optional<Ending> check_files(const BatchArguments& arguments) {
-  for (const std::string& path : {arguments.cases, arguments.report, arguments.svg}) {
-    if (path.empty()) continue;
-    if (const auto can = config::can_write_file(path); !can) {
-      return Ending{ExitCode::CannotOpen, "palp-lab: " + can.error().text};
-    }
-  }
-  return std::nullopt;
+  const auto can = config::can_write_files({arguments.cases, arguments.report, arguments.svg});
+  if (can) return std::nullopt;
+  return Ending{ExitCode::CannotOpen, "palp-lab: " + can.error().text};
 }
 
 std::string set_of(const BatchArguments& arguments) {
@@ -156,11 +151,10 @@ Ending sweep(const BatchArguments& arguments, const Machine& machine) {
 
 /// What a map has to say, run here or merged.
 Ending finish_map(const Run& done, const BatchArguments& arguments) {
-  const MapAccount account{
-      done.account.shard, done.account.cores, done.account.cpu, done.account.wall};
-  if (auto failed = write_files({{arguments.cases, cases_csv(done.plan, done.results)},
-                                 {arguments.report, map_report(done.plan, done.results, account)},
-                                 {arguments.svg, map_svg(done.results)}})) {
+  if (auto failed =
+          write_files({{arguments.cases, cases_csv(done.plan, done.results)},
+                       {arguments.report, map_report(done.plan, done.results, done.account)},
+                       {arguments.svg, map_svg(done.results)}})) {
     return *failed;
   }
   return {ExitCode::Done, map_text(done.results)};
@@ -309,27 +303,17 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   declare_common(joined, arguments, kMontecarlo);
 }
 
-namespace {
-
-bool is_batch_verb(std::string_view verb) {
-  constexpr std::array<std::string_view, 6> kVerbs{
-      "montecarlo", "adversary", "compare", "map", "sweep", "merge"};
-  return std::find(kVerbs.begin(), kVerbs.end(), verb) != kVerbs.end();
-}
-
-}  // namespace
-
 std::optional<Ending> run_batch_verb(const std::string& verb,
                                      const BatchArguments& arguments,
                                      const Machine& machine) {
-  if (!is_batch_verb(verb)) return std::nullopt;
   if (auto closed = check_files(arguments)) return closed;
   if (verb == "montecarlo") return montecarlo(arguments, machine, false);
   if (verb == "adversary") return montecarlo(arguments, machine, true);
   if (verb == "compare") return compare(arguments, machine);
   if (verb == "map") return map(arguments, machine);
   if (verb == "sweep") return sweep(arguments, machine);
-  return merge(arguments);
+  if (verb == "merge") return merge(arguments);
+  return std::nullopt;
 }
 
 }  // namespace palp::lab

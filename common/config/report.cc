@@ -58,10 +58,6 @@ void sync_folder(const std::filesystem::path& file) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// Where the bytes of a file go.
 struct Destination {
   bool renamed{};         ///< through `temporary`, else straight to the path
@@ -101,6 +97,14 @@ Result<void> can_write_file(const std::string& path) {
   const int error = fill_file(to->temporary, {}, false);
   (void)::unlink(to->temporary.c_str());
   return error == 0 ? Result<void>{} : cannot_write(path, error);
+}
+
+Result<void> can_write_files(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) {
+    if (path.empty()) continue;
+    if (auto can = can_write_file(path); !can) return can;
+  }
+  return {};
 }
 
 Result<void> write_whole_file(const std::string& path, std::string_view text) {

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/config/ending.h"
 #include "common/core/result.h"
@@ -17,6 +18,8 @@ namespace palp::config {
 /// Whether write_whole_file() could write there now: tries, and leaves nothing behind. For runs
 /// that take long. The error is a CannotOpen.
 [[nodiscard]] Result<void> can_write_file(const std::string& path);
+/// The same of several; nobody asked for those whose path is empty.
+[[nodiscard]] Result<void> can_write_files(const std::vector<std::string>& paths);
 
 /// Of a run that came to nothing, as JSON: schema, outcome ("bad input" or "cannot start"), reason.
 [[nodiscard]] std::string failure_report(const std::string& schema, const Ending& ending);
