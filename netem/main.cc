@@ -18,6 +18,7 @@
 #include "netem/model/simulation.h"
 #include "netem/relay/datagram_socket.h"
 #include "netem/relay/relay_program.h"
+#include "netem/syntax/impairment_text.h"
 #include "netem/syntax/presets.h"
 
 namespace palp::netem {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "netem/model/impaired_transport.h"
-#include "netem/model/impairment.h"
+#include "netem/syntax/impairment_text.h"
 
 namespace palp::site_program {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "common/config/settings_text.h"
 #include "lab/plan/scenario_texts.h"
+#include "netem/syntax/impairment_text.h"
 #include "patient_site/settings.h"
 #include "proto/config.pb.h"
 #include "surgeon_site/script_reader.h"

@@ -12,6 +12,7 @@
 #include "netem/relay/relay.h"
 #include "netem/relay/relay_changes.h"
 #include "netem/relay/relay_report.h"
+#include "netem/syntax/impairment_text.h"
 
 namespace palp::netem {
 namespace {

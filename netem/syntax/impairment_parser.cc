@@ -1,7 +1,7 @@
 #include <limits>
 
-#include "netem/model/impairment.h"
 #include "netem/syntax/data_files.h"
+#include "netem/syntax/impairment_text.h"
 #include "netem/syntax/impairment_words.h"
 
 namespace palp::netem {

@@ -9,7 +9,7 @@
 
 #include "common/core/result.h"
 #include "common/core/time.h"
-#include "netem/model/impairment.h"
+#include "netem/syntax/impairment_text.h"
 
 namespace palp::netem {
 

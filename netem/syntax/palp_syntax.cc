@@ -1,3 +1,4 @@
+#include "netem/syntax/impairment_text.h"
 #include "netem/syntax/impairment_words.h"
 
 namespace palp::netem {

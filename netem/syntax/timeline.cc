@@ -7,6 +7,7 @@
 #include <google/protobuf/text_format.h>
 #include <google/protobuf/util/json_util.h>
 
+#include "netem/syntax/impairment_text.h"
 #include "proto/timeline.pb.h"
 
 namespace palp::netem {

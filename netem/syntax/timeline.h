@@ -9,6 +9,7 @@
 #include "common/core/result.h"
 #include "netem/model/path_plan.h"
 #include "netem/syntax/data_files.h"
+#include "netem/syntax/impairment_text.h"
 
 namespace palp::netem {
 

@@ -24,6 +24,7 @@
 #include "common/io/realtime/realtime.h"
 #include "netem/relay/relay.h"
 #include "netem/syntax/data_files.h"
+#include "netem/syntax/impairment_text.h"
 #include "tests/bench/raw_relays.h"
 
 namespace palp::bench {

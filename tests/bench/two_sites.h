@@ -9,8 +9,8 @@
 #include "common/record/queue_recorder.h"
 #include "lab/plan/scenario_file.h"
 #include "lab/run/session_setup.h"
-#include "netem/model/impairment.h"
 #include "netem/model/pipe.h"
+#include "netem/syntax/impairment_text.h"
 #include "patient_site/patient_node.h"
 #include "surgeon_site/surgeon_node.h"
 

@@ -1,13 +1,12 @@
 // Input: an impairment as text, the text of a timeline, and lines of live control, which are done
 // to a path under traffic.
-#include "netem/model/impairment.h"
-
 #include <algorithm>
 #include <array>
 
 #include "common/core/check.h"
 #include "netem/model/channel.h"
 #include "netem/model/impairment_model.h"
+#include "netem/syntax/impairment_text.h"
 #include "netem/syntax/timeline.h"
 #include "tests/fuzz/fuzz.h"
 

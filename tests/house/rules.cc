@@ -145,10 +145,11 @@ Violations clocks_and_sleeps(const Source& source) {
                           "sleep_for",
                           "sleep_until"},
                          "only common/io asks a clock or sleeps; take `now` as an argument",
-                         {"common/io/*",
+                         {"common/io/*/*",
                           "netem/relay/relay.cc",
                           "netem/relay/datagram_socket.cc",  // the relay's
                           "tests/common/io/*",
+                          "tests/common/io/*/*",
                           "tests/system/*",
                           "tests/bench/*",
                           "tests/support/realtime_*"});
@@ -175,7 +176,7 @@ Violations threads(const Source& source) {
   return forbidden_words(source,
                          {"std::thread", "std::jthread", "std::async", "pthread_create"},
                          "threads belong to common/io",
-                         {"common/io/*", "tests/*", "tests/*/*", "tests/*/*/*"});
+                         {"common/io/*/*", "tests/*", "tests/*/*", "tests/*/*/*", "tests/*/*/*/*"});
 }
 
 Violations shared_ownership(const Source& source) {

@@ -12,7 +12,7 @@ namespace palp::house {
 namespace {
 
 /// What only the programs of a session are made of; tests/system runs those.
-constexpr std::string_view kTestedAsPrograms = "common/site_program";
+constexpr std::string_view kTestedAsPrograms = "site_program";
 
 using Files = std::map<std::string, const Source*, std::less<>>;
 

@@ -24,6 +24,7 @@
 #include "common/record/session_writer.h"
 #include "lab/plan/scenario_file.h"
 #include "netem/model/pipe.h"
+#include "netem/syntax/impairment_text.h"
 #include "patient_site/estimator_worker.h"
 #include "surgeon_site/script_builder.h"
 #include "tests/lab/run/hostile_end.h"

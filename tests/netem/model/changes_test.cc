@@ -6,6 +6,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "netem/model/channel.h"
+#include "netem/syntax/impairment_text.h"
 #include "netem/syntax/timeline.h"
 #include "tests/support/realtime_guard.h"
 

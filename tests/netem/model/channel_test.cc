@@ -10,6 +10,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "common/link/transport.h"
+#include "netem/syntax/impairment_text.h"
 #include "tests/netem/model/impairment_builders.h"
 #include "tests/netem/model/impairment_generators.h"
 

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "common/core/check.h"
-#include "netem/model/impairment.h"
+#include "netem/syntax/impairment_text.h"
 
 /// Impairments for tests.
 namespace palp::netem {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "netem/syntax/impairment_text.h"
 #include "tests/netem/model/impairment_builders.h"
 #include "tests/netem/model/outcomes.h"
 

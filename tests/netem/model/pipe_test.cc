@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "netem/model/impaired_transport.h"
+#include "netem/syntax/impairment_text.h"
 #include "tests/netem/model/impairment_builders.h"
 
 namespace palp::netem {

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "netem/model/simulation.h"
+#include "netem/syntax/impairment_text.h"
 #include "tests/netem/model/impairment_builders.h"
 
 /// Goal: mode netem-6.1 does what Linux does. Method: each recorded case of reference/ is run in

@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "netem/model/occupancy.h"
+#include "netem/syntax/impairment_text.h"
 #include "tests/netem/model/impairment_builders.h"
 #include "tests/netem/model/impairment_generators.h"
 

@@ -7,6 +7,7 @@
 
 #include "netem/model/channel.h"
 #include "netem/model/simulation.h"
+#include "netem/syntax/impairment_text.h"
 #include "netem/syntax/presets.h"
 
 namespace palp::netem {

@@ -1,4 +1,4 @@
-#include "netem/model/impairment.h"
+#include "netem/syntax/impairment_text.h"
 
 #include <iomanip>
 #include <limits>
