@@ -44,12 +44,12 @@ double uniform_information(double low, double high, double value) {
 /// The curves at the truth and round it.
 class Curves {
  public:
-  Curves(const fem::DepthDatabase& database, const fem::DepthDatabase::Query& truth)
+  Curves(const depth::DepthDatabase& database, const depth::DepthDatabase::Query& truth)
       : database_{database}, plain_{database.plain()}, here_{database.curve(truth)} {
     const std::array<double, 3> off{0.01 * truth.depth, 0.01 * truth.radius, 0.02};
     for (std::size_t i = 0; i < 3; ++i) {
       const auto shifted = [&](double by) {
-        fem::DepthDatabase::Query query = truth;
+        depth::DepthDatabase::Query query = truth;
         if (i == 0) query.depth += by;
         if (i == 1) query.radius += by;
         if (i == 2) query.ratio *= std::exp(by);
@@ -71,17 +71,17 @@ class Curves {
   }
 
  private:
-  [[nodiscard]] double slope(const fem::DepthDatabase::Curve& curve, double d) const {
+  [[nodiscard]] double slope(const depth::DepthDatabase::Curve& curve, double d) const {
     constexpr double kStep = 1e-6;  // [m]
     const double low = std::max(0.0, d - kStep);
     return (database_.force(curve, d + kStep) - database_.force(curve, low)) / (d + kStep - low);
   }
 
-  const fem::DepthDatabase& database_;
-  fem::DepthDatabase::Curve plain_;
-  fem::DepthDatabase::Curve here_;
-  std::array<fem::DepthDatabase::Curve, 3> low_;
-  std::array<fem::DepthDatabase::Curve, 3> high_;
+  const depth::DepthDatabase& database_;
+  depth::DepthDatabase::Curve plain_;
+  depth::DepthDatabase::Curve here_;
+  std::array<depth::DepthDatabase::Curve, 3> low_;
+  std::array<depth::DepthDatabase::Curve, 3> high_;
   std::array<double, 3> step_{};
 };
 
@@ -99,9 +99,7 @@ struct Response {
   Vector along_plain{};  ///< of the force without
 };
 
-Response respond(const Curves& curves,
-                 const estimator::StiffnessPrior& stiffness,
-                 const TipState& at) {
+Response respond(const Curves& curves, const depth::StiffnessPrior& stiffness, const TipState& at) {
   Response out{};
   const double d = at.indentation;
   if (!(d > 0)) return out;
@@ -191,10 +189,10 @@ double sample_information(double force, double noise, double quantum) {
   return sum;
 }
 
-DepthBound depth_bound(const fem::DepthDatabase& database,
-                       const fem::DepthDatabase::Query& truth,
-                       const estimator::DepthPrior& prior,
-                       const estimator::StiffnessPrior& stiffness,
+DepthBound depth_bound(const depth::DepthDatabase& database,
+                       const depth::DepthDatabase::Query& truth,
+                       const depth::DepthPrior& prior,
+                       const depth::StiffnessPrior& stiffness,
                        const ForceSensing& sensing,
                        std::span<const TipState> motion) {
   const Curves curves{database, truth};
@@ -216,7 +214,7 @@ DepthBound depth_bound(const fem::DepthDatabase& database,
     }
     signal_squares += weight * off * off;
   }
-  constexpr double kSurface = 1 / (estimator::kSurfaceSpread * estimator::kSurfaceSpread);
+  constexpr double kSurface = 1 / (depth::kSurfaceSpread * depth::kSurfaceSpread);
   const Vector known{uniform_information(prior.depth_min, prior.depth_max, truth.depth),
                      uniform_information(prior.radius_min, prior.radius_max, truth.radius),
                      uniform_information(std::log(prior.ratio_min), std::log(prior.ratio_max), 1),

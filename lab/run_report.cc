@@ -10,9 +10,9 @@
 
 #include "common/core/depth_text.h"
 #include "common/core/number_text.h"
+#include "depth/depth_summary.h"
 #include "lab/digest.h"
 #include "lab/metric_table.h"
-#include "patient_site/estimator/depth_summary.h"
 #include "patient_site/phantom.h"
 
 namespace palp::lab {
@@ -36,7 +36,7 @@ std::vector<DepthEstimate> estimates_at(Site site, std::span<const DepthEstimate
   return here;
 }
 
-Json depth_json(const DepthEstimate& estimate, estimator::EstimatorKind kind) {
+Json depth_json(const DepthEstimate& estimate, depth::EstimatorKind kind) {
   const bool found = estimate.verdict == DepthVerdict::Found;
   const bool spread = found && estimate.depth_stddev > 0;
   Json json;
@@ -55,7 +55,7 @@ Json depth_json(const DepthEstimate& estimate, estimator::EstimatorKind kind) {
 }
 
 /// The strokes of a site follow each other as its taps do; presses come behind them.
-Json taps_json(const TrialResult& result, estimator::EstimatorKind kind) {
+Json taps_json(const TrialResult& result, depth::EstimatorKind kind) {
   const std::array<std::vector<DepthEstimate>, 2> strokes{estimates_at(Site::A, result.depths),
                                                           estimates_at(Site::B, result.depths)};
   Json taps = Json::array();
@@ -141,7 +141,7 @@ std::string run_report(const Scenario& scenario,
   json["records"] = result.records;
   json.update(metrics_json(result.metrics));
   json["taps"] = taps_json(result, scenario.estimator.kind);
-  json["depth"] = depth_json(estimator::summarise_depths(estimates_at(Site::B, result.depths)),
+  json["depth"] = depth_json(depth::summarise_depths(estimates_at(Site::B, result.depths)),
                              scenario.estimator.kind);
   // A file's name need not be UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

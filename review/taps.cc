@@ -5,7 +5,7 @@
 
 #include "common/core/depth_text.h"
 #include "common/core/median.h"
-#include "patient_site/estimator/depth_summary.h"
+#include "depth/depth_summary.h"
 #include "review/text.h"
 
 namespace palp::review {
@@ -122,7 +122,7 @@ OverallDepth judge_depth(const std::vector<Tap>& taps) {
   if (over.empty()) {
     return {};
   }
-  const DepthEstimate summary = estimator::summarise_depths(over);
+  const DepthEstimate summary = depth::summarise_depths(over);
   OverallDepth overall;
   overall.verdict = summary.verdict;
   overall.says = depth_text_of(summary);

@@ -42,7 +42,7 @@ struct OverallDepth {
   std::optional<double> excluded;       ///< [m], as DepthEstimate::depth_low of verdict None
   std::string says;                     ///< for people
 };
-/// By estimator::summarise_depths() of the taps at B.
+/// By depth::summarise_depths() of the taps at B.
 [[nodiscard]] OverallDepth judge_depth(const std::vector<Tap>& taps);
 
 /// True if the estimator gave an interval: it does so by low below high.
