@@ -8,40 +8,46 @@ namespace {
 
 constexpr double kSofter = 4;  // standard deviations from which another place is the reference
 constexpr std::size_t kTouchesFresh = 5;  // of a place, looked at anew with each answer
-static_assert(kTouchesFresh < PaperEstimator::kTouchesKept);
+static_assert(kTouchesFresh < kTouchesKept);
 constexpr std::size_t kWeightMax = 32;  // touches; then what is settled is half forgotten
-constexpr std::size_t kPlacesMax = 32;
 
 }  // namespace
 
-BayesEstimator::BayesEstimator(const DepthDatabase& database, const BayesEstimatorConfig& config)
-    : config_{config}, strokes_{config.strokes}, model_{database, config.prior} {}
+BayesEstimator::BayesEstimator(const DepthDatabase& database,
+                               const BayesEstimatorConfig& config,
+                               const StrokeTrackerConfig& strokes)
+    : config_{config}, strokes_{strokes}, model_{database, config.prior} {}
 
-std::optional<DepthEstimate> BayesEstimator::add(const ContactSample& sample) {
-  std::optional<DepthEstimate> estimate = strokes_.add(sample);
-  if (!estimate) return estimate;
-  const auto place = strokes_.place();
-  // What the paper's formula (3) cannot tell, this one may; what is no stroke stays none.
-  const bool long_enough = estimate->reason == DepthReason::StrokeTooShort &&
-                           estimate->indentation_max >= config_.indentation_min;
-  const bool usable = estimate->reason == DepthReason::Ok ||
-                      estimate->reason == DepthReason::HashOutOfRange || long_enough;
-  if (usable && place) judge(*estimate, *place);
+DepthEstimate BayesEstimator::judge(const Stroke& stroke) {
+  DepthEstimate estimate = unjudged(stroke);
+  if (stroke.reason != DepthReason::Ok) return estimate;
+  if (stroke.indentation_max < config_.indentation_min) {
+    estimate.reason = DepthReason::StrokeTooShort;
+    return estimate;
+  }
+  update(stroke.place);
+  const bool found =
+      posterior_.log_evidence > config_.evidence_min && posterior_.gain > config_.gain_min;
+  estimate.verdict = found ? DepthVerdict::Found : DepthVerdict::None;
+  estimate.depth = found ? posterior_.depth : 0;
+  estimate.depth_stddev = found ? posterior_.depth_stddev : 0;
+  estimate.depth_low = found ? posterior_.depth_low : posterior_.excluded;
+  estimate.depth_high = found ? posterior_.depth_high : 0;
+  estimate.fit_rms = posterior_.misfit;
   return estimate;
 }
 
-void BayesEstimator::judge(DepthEstimate& estimate, const PaperEstimator::PlaceData& place) {
+void BayesEstimator::update(const TouchedPlace& place) {
   DepthModel::Input input{.touches = place.touches,
                           .surface = place.surface,
                           .noise = place.noise,
-                          .quantum = config_.strokes.force_quantum,
-                          .cut_off = config_.strokes.sensor_cut_off,
+                          .quantum = strokes_.force_quantum,
+                          .cut_off = strokes_.sensor_cut_off,
                           .stiffness = config_.stiffness,
                           .expected = {}};
   Settled& settled = settled_at(place);
   settle(place, input, settled);
-  const bool here =
-      reference_ && std::abs(reference_->lateral - place.lateral) <= config_.strokes.place_size;
+  const bool here = reference_ && strokes_.same_place(reference_->lateral, place.lateral);
   if (reference_ && !here) {
     input.stiffness = reference_->stiffness;
     input.stiffness.scale_stddev =
@@ -49,48 +55,30 @@ void BayesEstimator::judge(DepthEstimate& estimate, const PaperEstimator::PlaceD
   }
   posterior_ = model_.update(input);
   settled.best = posterior_.best;
-  const StiffnessPrior& plain = posterior_.plain;
-  if (!reference_ || here) {
-    reference_ = Reference{place.lateral, plain};
-  } else {
-    const double spread = std::hypot(plain.scale_stddev, reference_->stiffness.scale_stddev);
-    if (plain.scale < reference_->stiffness.scale - kSofter * spread) {
-      reference_ = Reference{place.lateral, plain};
-    }
-  }
-  const bool found =
-      posterior_.log_evidence > config_.evidence_min && posterior_.gain > config_.gain_min;
-  estimate.verdict = found ? DepthVerdict::Found : DepthVerdict::None;
-  estimate.reason = DepthReason::Ok;
-  estimate.depth = found ? posterior_.depth : 0;
-  estimate.depth_stddev = found ? posterior_.depth_stddev : 0;
-  estimate.depth_low = found ? posterior_.depth_low : posterior_.excluded;
-  estimate.depth_high = found ? posterior_.depth_high : 0;
-  estimate.fit_rms = posterior_.misfit;
+  learn_reference(place, here);
 }
 
-BayesEstimator::Settled& BayesEstimator::settled_at(const PaperEstimator::PlaceData& place) {
-  for (Settled& one : settled_) {
-    if (one.lateral != place.lateral) continue;
-    if (one.generation != place.generation) {
-      one.generation = place.generation;
-      one.count = one.weight = 0;
-      one.sums = TouchSums{place.surface};
-      one.best.reset();
-    }
-    return one;
+/// The first place is the reference, and later one that is plainly softer.
+void BayesEstimator::learn_reference(const TouchedPlace& place, bool here) {
+  const StiffnessPrior& plain = posterior_.plain;
+  if (reference_ && !here) {
+    const double spread = std::hypot(plain.scale_stddev, reference_->stiffness.scale_stddev);
+    if (!(plain.scale < reference_->stiffness.scale - kSofter * spread)) return;
   }
-  if (settled_.size() == kPlacesMax) settled_.erase(settled_.begin());
-  return settled_.emplace_back(Settled{.lateral = place.lateral,
-                                       .generation = place.generation,
-                                       .sums = TouchSums{place.surface},
-                                       .best = {}});
+  reference_ = Reference{place.lateral, plain};
+}
+
+BayesEstimator::Settled& BayesEstimator::settled_at(const TouchedPlace& place) {
+  if (settled_.size() <= place.index) settled_.resize(place.index + 1);
+  Settled& settled = settled_[place.index];
+  if (settled.generation != place.generation) {
+    settled = Settled{.generation = place.generation, .sums = TouchSums{place.surface}, .best = {}};
+  }
+  return settled;
 }
 
 /// All but the last touches: their surface is known, and they need not be looked at again.
-void BayesEstimator::settle(const PaperEstimator::PlaceData& place,
-                            DepthModel::Input& input,
-                            Settled& settled) {
+void BayesEstimator::settle(const TouchedPlace& place, DepthModel::Input& input, Settled& settled) {
   const std::size_t forgotten = place.touched - place.touches.size();
   settled.count = std::max(settled.count, forgotten);
   if (settled.best && place.touched > settled.count + kTouchesFresh) {

@@ -7,6 +7,8 @@
 
 #include "depth/bayes_estimator.h"
 #include "depth/depth_database.h"
+#include "depth/paper_estimator.h"
+#include "depth/stroke_tracker.h"
 
 namespace palp::depth {
 
@@ -18,11 +20,14 @@ enum class EstimatorKind { Bayes, Paper };
 
 struct DepthEstimatorConfig {
   EstimatorKind kind{EstimatorKind::Bayes};
-  BayesEstimatorConfig bayes;  ///< with the strokes' settings, which the paper's uses as well
+  StrokeTrackerConfig strokes;
+  BayesEstimatorConfig bayes;
+  PaperEstimatorConfig paper;
   std::optional<DepthDatabase> database;  ///< nothing: the one in the program
 };
 
-/// Strokes in, a depth out, by one of two ways. Thread: estimator; allocates.
+/// Samples in, a depth for each stroke out: a tracker cuts the strokes, one of two estimators
+/// judges them. Thread: estimator; allocates.
 class DepthEstimator {
  public:
   explicit DepthEstimator(const DepthEstimatorConfig& config);
@@ -31,9 +36,10 @@ class DepthEstimator {
   [[nodiscard]] std::optional<DepthEstimate> add(const ContactSample& sample);
 
   /// The loading branch that gave an estimate. Valid until the next add().
-  [[nodiscard]] std::span<const StrokeSample> stroke() const noexcept;
+  [[nodiscard]] std::span<const StrokeSample> stroke() const noexcept { return tracker_.loading(); }
 
  private:
+  StrokeTracker tracker_;
   std::variant<BayesEstimator, PaperEstimator> estimator_;
 };
 

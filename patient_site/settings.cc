@@ -77,7 +77,7 @@ Result<depth::DepthEstimatorConfig> make_estimator(const proto::config::Estimato
   }
   config.kind =
       message.kind() == "paper" ? depth::EstimatorKind::Paper : depth::EstimatorKind::Bayes;
-  depth::PaperEstimatorConfig& strokes = config.bayes.strokes;
+  depth::StrokeTrackerConfig& strokes = config.strokes;
   strokes.sensor_cut_off = message.sensor_pole_hz();
   strokes.filter_cut_off = message.filter_hz();
   strokes.period = seconds(period);

@@ -5,18 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "depth/cubic_fit.h"
-#include "depth/paper_hash.h"
 #include "tests/depth/tapping.h"
 
 namespace palp::patient {
 namespace {
-
-double hash_of(const ForceTable& table) {
-  std::vector<depth::CurvePoint> points;
-  for (int i = 0; i <= 80; ++i) points.push_back({i * 50e-6, table.force(i * 50e-6)});
-  return depth::hash(*depth::fit_cubic(points));
-}
 
 /// Error of the median h of 8 taps, share of h.
 double median_error(const Phantom& phantom, double expected, std::uint64_t seed, double depth) {

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "common/core/filters.h"
-#include "depth/paper_estimator.h"
+#include "depth/cubic_fit.h"
+#include "depth/depth_estimator.h"
+#include "depth/paper_hash.h"
 #include "patient_site/simulated_phantom.h"
 
 namespace palp::patient {
@@ -62,17 +65,57 @@ TimePoint feel_taps(const Phantom& phantom,
   return now;
 }
 
+/// The paper's estimator.
+inline depth::DepthEstimatorConfig paper_estimator(const depth::StrokeTrackerConfig& strokes = {}) {
+  depth::DepthEstimatorConfig config;
+  config.kind = depth::EstimatorKind::Paper;
+  config.strokes = strokes;
+  return config;
+}
+
 /// What the paper's estimator says of such taps.
 inline std::vector<DepthEstimate> tap(const Phantom& phantom,
                                       const SimulatedPhantomConfig& config,
                                       const Tapping& tapping,
-                                      const depth::PaperEstimatorConfig& estimator_config = {}) {
-  depth::PaperEstimator estimator{estimator_config};
+                                      const depth::StrokeTrackerConfig& strokes = {}) {
+  depth::DepthEstimator estimator{paper_estimator(strokes)};
   std::vector<DepthEstimate> estimates;
   feel_taps(phantom, config, tapping, {}, [&](const ContactSample& sample) {
     if (const auto estimate = estimator.add(sample)) estimates.push_back(*estimate);
   });
   return estimates;
+}
+
+/// What the tracker says of such taps; their places' touches are gone.
+inline std::vector<depth::Stroke> strokes_of(const Phantom& phantom,
+                                             const SimulatedPhantomConfig& config,
+                                             const Tapping& tapping,
+                                             const depth::StrokeTrackerConfig& tracking = {}) {
+  depth::StrokeTracker tracker{tracking};
+  std::vector<depth::Stroke> strokes;
+  feel_taps(phantom, config, tapping, {}, [&](const ContactSample& sample) {
+    auto stroke = tracker.take(sample);
+    if (!stroke) return;
+    stroke->place.touches = {};
+    strokes.push_back(*stroke);
+  });
+  return strokes;
+}
+
+/// The paper's h of a table.
+inline double hash_of(const ForceTable& table) {
+  std::vector<depth::CurvePoint> points;
+  for (int i = 0; i <= 80; ++i) points.push_back({i * 50e-6, table.force(i * 50e-6)});
+  return depth::hash(*depth::fit_cubic(points));
+}
+
+/// The median h of strokes or estimates.
+template <typename List>
+double median_hash(const List& list) {
+  std::vector<double> values;
+  for (const auto& one : list) values.push_back(one.hash);
+  std::sort(values.begin(), values.end());
+  return values.empty() ? 0 : (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
 }
 
 /// Gives `feel` taps beside the inclusion, at 0, and as many over it, at 20 mm.
