@@ -8,6 +8,7 @@
 
 #include "common/core/filters.h"
 #include "common/core/random.h"
+#include "common/core/small_solver.h"
 
 namespace palp::lab {
 namespace {
@@ -15,25 +16,9 @@ namespace {
 // depth, radius, log ratio, stiffness, rate factor, surface above the inclusion, surface beside it
 constexpr std::size_t kUnknowns = 7;
 using Vector = std::array<double, kUnknowns>;
-using Matrix = std::array<Vector, kUnknowns>;
+using System = SmallSystem<kUnknowns>;
 
 constexpr double kExact = 1e-6;  // of a value known exactly, relative
-
-/// Solves m x = v for a symmetric positive matrix by elimination.
-Vector solve(Matrix m, Vector v) {
-  for (std::size_t i = 0; i < kUnknowns; ++i) {
-    for (std::size_t j = i + 1; j < kUnknowns; ++j) {
-      const double factor = m[j][i] / m[i][i];
-      for (std::size_t k = i; k < kUnknowns; ++k) m[j][k] -= factor * m[i][k];
-      v[j] -= factor * v[i];
-    }
-  }
-  for (std::size_t i = kUnknowns; i-- > 0;) {
-    for (std::size_t k = i + 1; k < kUnknowns; ++k) v[i] -= m[i][k] * v[k];
-    v[i] /= m[i][i];
-  }
-  return v;
-}
 
 /// Information of a uniform prior as a Gaussian of the same variance.
 double uniform_information(double low, double high, double value) {
@@ -85,9 +70,9 @@ class Curves {
   std::array<double, 3> step_{};
 };
 
-void add(Matrix& to, const Vector& x, double weight) {
+void add(System& to, const Vector& x, double weight) {
   for (std::size_t i = 0; i < kUnknowns; ++i) {
-    for (std::size_t j = 0; j < kUnknowns; ++j) to[i][j] += weight * x[i] * x[j];
+    for (std::size_t j = 0; j <= i; ++j) to.matrix[i][j] += weight * x[i] * x[j];
   }
 }
 
@@ -196,9 +181,8 @@ DepthBound depth_bound(const depth::DepthDatabase& database,
                        const ForceSensing& sensing,
                        std::span<const TipState> motion) {
   const Curves curves{database, truth};
-  Matrix information{};
-  Matrix plain_information{};
-  Vector signal_right{};
+  System information{.matrix = {}, .right = {1}};
+  System plain_information;
   double signal_squares = 0;
   Pole pole{sensing};
   for (const TipState& at : motion) {
@@ -210,7 +194,7 @@ DepthBound depth_bound(const depth::DepthDatabase& database,
     add(plain_information, sensed.along_plain, weight);
     const double off = sensed.force - sensed.plain;
     for (std::size_t i = 0; i < kUnknowns; ++i) {
-      signal_right[i] += weight * sensed.along_plain[i] * off;
+      plain_information.right[i] += weight * sensed.along_plain[i] * off;
     }
     signal_squares += weight * off * off;
   }
@@ -223,13 +207,12 @@ DepthBound depth_bound(const depth::DepthDatabase& database,
                      kSurface,
                      kSurface};
   for (std::size_t i = 0; i < kUnknowns; ++i) {
-    information[i][i] += known[i];
-    plain_information[i][i] += known[i];
+    information.matrix[i][i] += known[i];
+    plain_information.matrix[i][i] += known[i];
   }
   DepthBound bound;
-  bound.depth_stddev = std::sqrt(std::max(0.0, solve(information, {1})[0]));
-  const Vector explained = solve(plain_information, signal_right);
-  for (std::size_t i = 0; i < kUnknowns; ++i) signal_squares -= explained[i] * signal_right[i];
+  bound.depth_stddev = std::sqrt(std::max(0.0, solve(information).x[0]));
+  signal_squares -= solve(plain_information).explained;
   bound.signal = std::sqrt(std::max(0.0, signal_squares));
   return bound;
 }
