@@ -121,7 +121,7 @@ depth::DepthPrior prior_of(const CasePlan& plan) {
 /// What the tip did up to `until`, the reversal with which the last answer came.
 std::vector<TipState> motion_of(const TrialResult& result, TimePoint until) {
   std::vector<TipState> out;
-  for (const TrialTick& tick : result.ticks) {
+  for (const judge::TrialTick& tick : result.ticks) {
     if (result.began_at + from_seconds(tick.at) > until) break;
     out.push_back({tick.tip, tick.tip_velocity, tick.tip_lateral >= kStage});
   }

@@ -124,7 +124,7 @@ class Witness {
                                              seconds(scenario_.link.period));
     if (!hand.performing || !site.alive()) return;
 
-    TrialTick tick;
+    judge::TrialTick tick;
     tick.at = at;
     tick.phase = phases_.at(hand.script_time);
     tick.counted = status.state == SiteState::Engaged || status.state == SiteState::Hold;
@@ -142,8 +142,8 @@ class Witness {
     tick.energy_net_min = net_min_;
     ticks_.push_back(tick);
   }
-  [[nodiscard]] const std::vector<TrialTick>& ticks() const { return ticks_; }
-  [[nodiscard]] std::vector<TrialTick> take_ticks() { return std::move(ticks_); }
+  [[nodiscard]] const std::vector<judge::TrialTick>& ticks() const { return ticks_; }
+  [[nodiscard]] std::vector<judge::TrialTick> take_ticks() { return std::move(ticks_); }
   [[nodiscard]] double work_min() const { return work_min_; }  ///< [J], of the whole run
   [[nodiscard]] double net_min() const { return net_min_; }    ///< [J], of the whole run
   /// [N], in 10 ms, whatever the operator was doing.
@@ -166,7 +166,7 @@ class Witness {
   double net_min_{};           ///< [J]
   std::deque<double> forces_;  ///< [N], newest last
   double step_max_{};          ///< [N]
-  std::vector<TrialTick> ticks_;
+  std::vector<judge::TrialTick> ticks_;
 };
 
 /// Makes the one fault of a run happen, and ends it.
@@ -289,12 +289,12 @@ TrialResult run_trial(const Scenario& scenario, const TrialFiles& files) {
   result.began_at = start;
   result.virtual_span = world.now() - start;
   result.outcome = hand.progress().outcome;
-  MetricsConfig judging{.force_cap = scenario.hand.force_max, .period = seconds(period)};
+  judge::MetricsConfig judging{.force_cap = scenario.hand.force_max, .period = seconds(period)};
   if (dark_from) {
     judging.blackout_from = seconds(*dark_from - start);
     judging.blackout_to = judging.blackout_from + seconds(kBlackout) + kAfterBlackout;
   }
-  result.metrics = judge(witness.ticks(), judging);
+  result.metrics = judge::metrics_of(witness.ticks(), judging);
   result.metrics.force_step_guarded = witness.force_step_max();
   // Energy has no script: what the hand gets while it waits or lets go counts too.
   result.metrics.energy_operator = std::max(0.0, -witness.work_min());

@@ -6,7 +6,7 @@
 #include "common/core/stroke.h"
 #include "common/link/telegram.h"
 #include "common/record/byte_sink.h"
-#include "lab/metrics.h"
+#include "judge/metrics.h"
 #include "lab/scenario.h"
 #include "surgeon_site/haptic_device.h"
 
@@ -18,9 +18,9 @@ struct TrialResult {
   TimePoint began_at{};
   Duration virtual_span{};
   surgeon::ScriptOutcome outcome{};
-  TrialMetrics metrics;
-  std::vector<TrialTick> ticks;       ///< while the script was performed
-  std::vector<DepthEstimate> depths;  ///< one per stroke, in order
+  judge::TrialMetrics metrics;
+  std::vector<judge::TrialTick> ticks;  ///< while the script was performed
+  std::vector<DepthEstimate> depths;    ///< one per stroke, in order
   link::LinkHealth surgeon_link;
   link::LinkHealth patient_link;
   std::uint64_t records{};  ///< written to both session files

@@ -8,15 +8,15 @@ namespace palp {
 
 template <std::size_t N>
 struct SmallSystem {
-  std::array<std::array<double, N>, N> matrix{};  ///< right of the diagonal nothing is read
-  std::array<double, N> right{};
+  std::array<std::array<double, N>, N> matrix{};  ///< [user's]; right of its diagonal unread
+  std::array<double, N> right{};                  ///< [user's]
 };
 
 template <std::size_t N>
 struct SmallSolution {
-  std::array<double, N> x{};
-  double explained{};  ///< x . right: what x takes off a sum of squares
-  bool regular{};      ///< false: the equations leave an unknown open; the rest is 0
+  std::array<double, N> x{};  ///< [user's]
+  double explained{};         ///< [user's], x . right: what x takes off a sum of squares
+  bool regular{};             ///< false: the equations leave an unknown open; the rest is 0
 };
 
 /// A pivot this small against its diagonal is rounding, not information.

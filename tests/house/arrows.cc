@@ -11,7 +11,7 @@ namespace palp::house {
 namespace {
 
 /// Rooms, the longer name first where one lies in another.
-constexpr std::array<std::string_view, 20> kRooms{"common/core",
+constexpr std::array<std::string_view, 21> kRooms{"common/core",
                                                   "common/coupling",
                                                   "common/link",
                                                   "common/config",
@@ -27,6 +27,7 @@ constexpr std::array<std::string_view, 20> kRooms{"common/core",
                                                   "surgeon_site",
                                                   "patient_site/devices",
                                                   "patient_site",
+                                                  "judge",
                                                   "lab",
                                                   "review",
                                                   "proto",
@@ -100,11 +101,14 @@ const std::vector<Arrow>& arrows() {
         "common/settings"}},
       {"patient_site/tissue_record.*", {"common/record", "common/config/number.h"}},
       {"patient_site/*", {"depth", "common/coupling", "common/link", "common/record"}},
+      // What is judged of a run, offline: no site sees it, and it sees none.
+      {"judge/*", {}},
       {"lab/main.cc", {"common/config", "common/io/process_time.h", "common/io/parallel.h"}},
       {"lab/*",
        {"surgeon_site",
         "patient_site",
         "depth",
+        "judge",
         "netem",
         "common/coupling",
         "common/link",
@@ -112,7 +116,7 @@ const std::vector<Arrow>& arrows() {
         "common/config",
         "common/settings",
         "common/plot"}},
-      {"review/*", {"common/record", "common/coupling", "depth", "common/config"}},
+      {"review/*", {"common/record", "common/coupling", "judge", "common/config"}},
   };
   return table;
 }

@@ -1,41 +1,19 @@
-#include "lab/metrics.h"
+#include "judge/metrics.h"
 
 #include <cmath>
 #include <functional>
 
 #include <gtest/gtest.h>
 
-#include "lab/phase_finder.h"
-#include "surgeon_site/script_builder.h"
-
 // Goal: the metrics are what their definitions say. Method: hand-made ticks in which the hand is
 // shown exactly `gain` times the true force, so every stiffness error must come out as gain - 1.
 
-namespace palp::lab {
+namespace palp::judge {
 namespace {
 
 double tissue(Site site, double depth) {
   const double stiffness = site == Site::A ? 150 : 300;  // [N/m]
   return stiffness * std::max(0.0, depth);
-}
-
-TEST(PhaseFinderTest, CountsTheTapsOfEachVisit) {
-  surgeon::ScriptBuilder script{300};
-  for (const double site : {surgeon::kSiteA, surgeon::kSiteB, surgeon::kSiteA}) {
-    script.site(site).move(-3e-3, std::chrono::milliseconds{500});
-    script.taps(2, 4e-3, std::chrono::seconds{1}, std::chrono::milliseconds{500});
-  }
-  const surgeon::GestureScript whole = script.build();
-  PhaseFinder phases{whole};
-  std::vector<std::pair<Site, int>> taps;
-  for (const surgeon::Stretch& stretch : whole.stretches()) {
-    if (stretch.kind != surgeon::StretchKind::Tap) continue;
-    const PhaseTag tag = phases.at(stretch.began_at + stretch.duration / 2);
-    taps.emplace_back(tag.site, tag.index);
-  }
-  const std::vector<std::pair<Site, int>> expected{
-      {Site::A, 1}, {Site::A, 2}, {Site::B, 1}, {Site::B, 2}, {Site::A, 1}, {Site::A, 2}};
-  EXPECT_EQ(taps, expected);
 }
 
 struct Builder {
@@ -80,7 +58,7 @@ struct Builder {
 TEST(MetricsTest, ExactRenderingHasNoError) {
   Builder builder;
   builder.palpation();
-  const TrialMetrics metrics = judge(builder.ticks, {});
+  const TrialMetrics metrics = metrics_of(builder.ticks, {});
   EXPECT_FALSE(metrics.unstable);
   for (int site = 0; site < 2; ++site) {
     EXPECT_NEAR(metrics.tap_error[site], 0, 1e-12);
@@ -100,7 +78,7 @@ TEST(MetricsTest, AGainOfTheRenderedForceIsTheStiffnessError) {
   builder.gain_a = 0.7;
   builder.gain_b = 1.2;
   builder.palpation();
-  const TrialMetrics metrics = judge(builder.ticks, {});
+  const TrialMetrics metrics = metrics_of(builder.ticks, {});
   EXPECT_NEAR(metrics.tap_error[0], -0.3, 1e-12);
   EXPECT_NEAR(metrics.tap_error[1], 0.2, 1e-12);
   EXPECT_NEAR(metrics.static_error[0], -0.3, 1e-12);
@@ -119,7 +97,7 @@ TEST(MetricsTest, ASwingOfOneMillimetreInTheSecondHalfOfAHoldIsUnstable) {
         tick.hand += 0.5 * swing * (static_cast<int>(tick.phase.elapsed * 1000) % 2 != 0 ? 1 : -1);
       }
     }
-    EXPECT_EQ(judge(builder.ticks, {}).unstable, swing > 0.001) << swing;
+    EXPECT_EQ(metrics_of(builder.ticks, {}).unstable, swing > 0.001) << swing;
   }
 }
 
@@ -129,7 +107,7 @@ TEST(MetricsTest, TwoTenthsOfASecondAtTheForceCapIsUnstable) {
     builder.palpation();
     for (int k = 0; k < ticks; ++k)
       builder.ticks[static_cast<std::size_t>(10 * k)].hand_force = -8.5;
-    EXPECT_EQ(judge(builder.ticks, {}).unstable, ticks > 200) << ticks;
+    EXPECT_EQ(metrics_of(builder.ticks, {}).unstable, ticks > 200) << ticks;
   }
 }
 
@@ -137,7 +115,7 @@ TEST(MetricsTest, NotANumberIsUnstable) {
   Builder builder;
   builder.palpation();
   builder.ticks[100].hand = NAN;
-  EXPECT_TRUE(judge(builder.ticks, {}).unstable);
+  EXPECT_TRUE(metrics_of(builder.ticks, {}).unstable);
 }
 
 TEST(MetricsTest, TicksOutsideEngagedAndHoldDoNotCount) {
@@ -149,7 +127,7 @@ TEST(MetricsTest, TicksOutsideEngagedAndHoldDoNotCount) {
       tick.hand_force = 1e3;
     }
   }
-  EXPECT_NEAR(judge(builder.ticks, {}).tap_error[0], 0, 1e-12);
+  EXPECT_NEAR(metrics_of(builder.ticks, {}).tap_error[0], 0, 1e-12);
 }
 
 TEST(MetricsTest, FewerThanTwentyOneTicksGiveNoStiffness) {
@@ -157,10 +135,10 @@ TEST(MetricsTest, FewerThanTwentyOneTicksGiveNoStiffness) {
   builder.phase(PhaseKind::Tap, Site::A, 2, 0.02, [](double t) {
     return 0.0015 + 0.1 * t;
   });  // 20 ticks, all in the window
-  EXPECT_TRUE(std::isnan(judge(builder.ticks, {}).tap_error[0]));
+  EXPECT_TRUE(std::isnan(metrics_of(builder.ticks, {}).tap_error[0]));
   builder.phase(PhaseKind::Tap, Site::A, 3, 0.001, [](double) { return 0.0035; });
   builder.ticks.back().hand_velocity = 1;
-  EXPECT_FALSE(std::isnan(judge(builder.ticks, {}).tap_error[0]));
+  EXPECT_FALSE(std::isnan(metrics_of(builder.ticks, {}).tap_error[0]));
 }
 
 TEST(MetricsTest, ForceStepIsOverTenMilliseconds) {
@@ -169,21 +147,21 @@ TEST(MetricsTest, ForceStepIsOverTenMilliseconds) {
   for (std::size_t k = 0; k < builder.ticks.size(); ++k) {
     builder.ticks[k].hand_force = 0.01 * static_cast<double>(k);
   }
-  EXPECT_NEAR(judge(builder.ticks, {}).force_step_10ms, 0.1, 1e-12);
+  EXPECT_NEAR(metrics_of(builder.ticks, {}).force_step_10ms, 0.1, 1e-12);
 }
 
 TEST(MetricsTest, AStepOfAnEventIsNeitherTheHandsMotionNorWhatWasNotFelt) {
   Builder builder;
   builder.phase(PhaseKind::Other, Site::A, 0, 1, [](double t) { return 0.01 * t; });
-  const double swept = judge(builder.ticks, {}).force_step_10ms;
+  const double swept = metrics_of(builder.ticks, {}).force_step_10ms;
   ASSERT_GT(swept, 0);
-  EXPECT_EQ(judge(builder.ticks, {}).force_step_event, 0) << "exact rendering";
+  EXPECT_EQ(metrics_of(builder.ticks, {}).force_step_event, 0) << "exact rendering";
   Builder blind = builder;
   for (TrialTick& tick : blind.ticks) tick.hand_force = 0;
-  EXPECT_EQ(judge(blind.ticks, {}).force_step_event, 0) << "nothing was felt, nothing changed";
+  EXPECT_EQ(metrics_of(blind.ticks, {}).force_step_event, 0) << "nothing was felt, nothing changed";
   for (std::size_t k = 500; k < 1000; ++k) builder.ticks[k].hand_force += 0.3;
-  EXPECT_NEAR(judge(builder.ticks, {}).force_step_event, 0.3, 1e-12);
+  EXPECT_NEAR(metrics_of(builder.ticks, {}).force_step_event, 0.3, 1e-12);
 }
 
 }  // namespace
-}  // namespace palp::lab
+}  // namespace palp::judge

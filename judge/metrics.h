@@ -5,14 +5,13 @@
 #include <optional>
 #include <vector>
 
-#include "common/core/site_state.h"
+#include "judge/site.h"
 
 /// Judges a run from the plant's true states: how stiff the tissue felt, how much energy came out
 /// of the operator's port, what drifted. Pure functions of the recorded ticks.
-namespace palp::lab {
+namespace palp::judge {
 
 enum class PhaseKind : std::uint8_t { Other, FreeAir, Tap, PressHold, LiftHold };
-enum class Site : std::uint8_t { A, B };
 
 /// Where in the script a tick lies.
 struct PhaseTag {
@@ -87,7 +86,8 @@ struct TrialMetrics {
   /// felt - true, so that a hand that leaves or enters the tissue makes no step by itself.
   double force_step_event{};
   /// [N], the same over the whole run, also while the operator waits or aligns: as long as the
-  /// surgeon's process lives and its pedal is down. Not judge()'s: whoever made the ticks knows.
+  /// surgeon's process lives and its pedal is down. Not metrics_of()'s: whoever made the ticks
+  /// knows.
   double force_step_guarded{};
   double force_peak{};                 ///< [N]
   double contact_force_max{};          ///< [N]
@@ -96,6 +96,7 @@ struct TrialMetrics {
   std::vector<TapMetrics> taps;
 };
 
-[[nodiscard]] TrialMetrics judge(const std::vector<TrialTick>& ticks, const MetricsConfig& config);
+[[nodiscard]] TrialMetrics metrics_of(const std::vector<TrialTick>& ticks,
+                                      const MetricsConfig& config);
 
-}  // namespace palp::lab
+}  // namespace palp::judge

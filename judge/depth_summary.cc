@@ -1,4 +1,4 @@
-#include "depth/depth_summary.h"
+#include "judge/depth_summary.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 #include "common/core/median.h"
 
-namespace palp::depth {
+namespace palp::judge {
 namespace {
 
 /// An estimator with error bars adds up the strokes of a place itself.
@@ -51,4 +51,4 @@ DepthEstimate summarise_depths(std::span<const DepthEstimate> strokes) {
   return summary;
 }
 
-}  // namespace palp::depth
+}  // namespace palp::judge

@@ -1,25 +1,25 @@
-#include "review/tissue_table.h"
+#include "judge/tissue_table.h"
 
 #include <gtest/gtest.h>
 
-namespace palp::review {
+namespace palp::judge {
 namespace {
 
 TEST(TissueTableTest, InterpolatesBetweenRowsAndSaysNothingBeyond) {
   const auto table =
       TissueTable::parse("# comment\nsite,d_mm,F_N\nA,0,0\nA,1,0.1\nA,2,0.4\nB,0,0\nB,1,0.5\n");
   ASSERT_TRUE(table) << table.error().text;
-  EXPECT_DOUBLE_EQ(*table->force(Place::A, 1.5e-3), 0.25);
-  EXPECT_DOUBLE_EQ(*table->force(Place::A, 0), 0);
-  EXPECT_DOUBLE_EQ(*table->force(Place::B, 1e-3), 0.5);
-  EXPECT_FALSE(table->force(Place::B, 1.001e-3));
-  EXPECT_FALSE(table->force(Place::A, -1e-6));
+  EXPECT_DOUBLE_EQ(*table->force(Site::A, 1.5e-3), 0.25);
+  EXPECT_DOUBLE_EQ(*table->force(Site::A, 0), 0);
+  EXPECT_DOUBLE_EQ(*table->force(Site::B, 1e-3), 0.5);
+  EXPECT_FALSE(table->force(Site::B, 1.001e-3));
+  EXPECT_FALSE(table->force(Site::A, -1e-6));
 }
 
 TEST(TissueTableTest, AcceptsMoreColumnsAndWindowsLineEnds) {
   const auto table = TissueTable::parse("site,d_mm,F_N,err_N\r\nA,0,0,1\r\nA,1,0.1,1\r\n");
   ASSERT_TRUE(table);
-  EXPECT_DOUBLE_EQ(*table->force(Place::A, 0.5e-3), 0.05);
+  EXPECT_DOUBLE_EQ(*table->force(Site::A, 0.5e-3), 0.05);
 }
 
 TEST(TissueTableTest, RefusesOtherColumnsPlacesAndNumbers) {
@@ -33,8 +33,8 @@ TEST(TissueTableTest, RefusesOtherColumnsPlacesAndNumbers) {
 TEST(TissueTableTest, EmptyTableKnowsNothing) {
   const auto table = TissueTable::parse("");
   ASSERT_TRUE(table);
-  EXPECT_FALSE(table->force(Place::A, 0));
+  EXPECT_FALSE(table->force(Site::A, 0));
 }
 
 }  // namespace
-}  // namespace palp::review
+}  // namespace palp::judge

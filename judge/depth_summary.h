@@ -4,7 +4,7 @@
 
 #include "common/core/stroke.h"
 
-namespace palp::depth {
+namespace palp::judge {
 
 /// What several strokes at one place say together: the verdict of most strokes that make a
 /// statement (Found wins a tie), the median depth of those that found something, the median hash of
@@ -13,4 +13,4 @@ namespace palp::depth {
 /// statement: Invalid, with the last stroke's reason. Pure.
 [[nodiscard]] DepthEstimate summarise_depths(std::span<const DepthEstimate> strokes);
 
-}  // namespace palp::depth
+}  // namespace palp::judge

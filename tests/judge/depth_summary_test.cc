@@ -1,10 +1,10 @@
-#include "depth/depth_summary.h"
+#include "judge/depth_summary.h"
 
 #include <vector>
 
 #include <gtest/gtest.h>
 
-namespace palp::depth {
+namespace palp::judge {
 namespace {
 
 DepthEstimate found(double depth) {
@@ -65,4 +65,4 @@ TEST(DepthSummaryTest, WhatIsExcludedIsKept) {
 }
 
 }  // namespace
-}  // namespace palp::depth
+}  // namespace palp::judge

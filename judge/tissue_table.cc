@@ -1,11 +1,11 @@
-#include "review/tissue_table.h"
+#include "judge/tissue_table.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string>
 
-namespace palp::review {
+namespace palp::judge {
 namespace {
 
 std::string_view trimmed(std::string_view text) {
@@ -68,8 +68,8 @@ Result<TissueTable> TissueTable::parse(std::string_view csv) {
   return table;
 }
 
-std::optional<double> TissueTable::force(Place place, double indentation) const {
-  const auto& rows = rows_[static_cast<std::size_t>(place)];
+std::optional<double> TissueTable::force(Site site, double indentation) const {
+  const auto& rows = rows_[static_cast<std::size_t>(site)];
   const auto above =
       std::lower_bound(rows.begin(), rows.end(), indentation, [](const Row& row, double value) {
         return row.indentation < value;
@@ -85,4 +85,4 @@ std::optional<double> TissueTable::force(Place place, double indentation) const 
   return below.force + share * (above->force - below.force);
 }
 
-}  // namespace palp::review
+}  // namespace palp::judge

@@ -1,4 +1,4 @@
-#include "lab/metrics.h"
+#include "judge/metrics.h"
 
 #include <algorithm>
 #include <array>
@@ -8,19 +8,16 @@
 #include <tuple>
 
 #include "common/core/conventions.h"
-#include "common/core/line_fit.h"
+#include "judge/felt_stiffness.h"
 
-namespace palp::lab {
+namespace palp::judge {
 namespace {
 
 constexpr double kUnstableSwing = 1.0 * kMillimetre;    ///< [m], in the second half of a hold
 constexpr double kUnstableCapTime = 0.2;                ///< [s], at the force cap in total
 constexpr double kUnstablePosition = 60 * kMillimetre;  ///< [m]
 constexpr double kUnstableSpeed = 3.0;                  ///< [m/s]
-constexpr double kSlopeFrom = 1.2 * kMillimetre;        ///< [m], window of the tapped stiffness
-constexpr double kSlopeTo = 3.6 * kMillimetre;          ///< [m]
-constexpr std::size_t kSlopeTicksMin = 21;
-constexpr double kFreeAirTail = 3.0;  ///< [s]
+constexpr double kFreeAirTail = 3.0;                    ///< [s]
 constexpr std::size_t kStepTicks = 10;
 
 /// Runs of ticks that belong to one phase.
@@ -38,27 +35,17 @@ std::vector<std::span<const TrialTick>> split_phases(const std::vector<TrialTick
   return phases;
 }
 
-struct Slopes {
-  LineFit felt;
-  LineFit truth;
-  void add(std::span<const TrialTick> tap) {
-    for (const TrialTick& tick : tap) {
-      if (!tick.counted || tick.hand_velocity <= 0) continue;
-      if (tick.hand <= kSlopeFrom || tick.hand >= kSlopeTo) continue;
-      felt.add(tick.hand, tick.hand_force);
-      truth.add(tick.hand, tick.force_true);
-    }
+void add(FeltStiffness& stiffness, std::span<const TrialTick> tap) {
+  for (const TrialTick& tick : tap) {
+    if (tick.counted)
+      stiffness.add(tick.hand, tick.hand_velocity, tick.hand_force, tick.force_true);
   }
-  [[nodiscard]] bool defined() const { return felt.count() >= kSlopeTicksMin; }
-  [[nodiscard]] double error() const {
-    return defined() ? felt.slope() / truth.slope() - 1 : kUndefined;
-  }
-};
+}
 
-void judge_ratio(const Slopes& a, const Slopes& b, TrialMetrics& metrics) {
-  if (!a.defined() || !b.defined()) return;
-  const double felt = b.felt.slope() / a.felt.slope();
-  metrics.ratio_true = b.truth.slope() / a.truth.slope();
+void judge_ratio(const FeltStiffness& a, const FeltStiffness& b, TrialMetrics& metrics) {
+  if (!a.error() || !b.error()) return;
+  const double felt = *b.felt() / *a.felt();
+  metrics.ratio_true = *b.truth() / *a.truth();
   metrics.ratio_error = felt / metrics.ratio_true - 1;
   metrics.contrast = (felt - 1) / (metrics.ratio_true - 1);
 }
@@ -189,26 +176,26 @@ void judge_blackout(const std::vector<TrialTick>& ticks,
 }
 
 void judge_taps(std::span<const std::span<const TrialTick>> phases, TrialMetrics& metrics) {
-  std::array<Slopes, 2> pooled;
+  std::array<FeltStiffness, 2> pooled;
   for (const auto& phase : phases) {
     const PhaseTag& tag = phase.front().phase;
     if (tag.kind != PhaseKind::Tap) continue;
     const auto site = static_cast<std::size_t>(tag.site);
-    Slopes own;
-    own.add(phase);
+    FeltStiffness own;
+    add(own, phase);
     double deepest = -INFINITY;
     for (const TrialTick& tick : phase) deepest = std::max(deepest, tick.hand);
     metrics.taps.push_back({.site = tag.site,
                             .index = tag.index,
                             .hand_max = deepest,
-                            .stiffness_felt = own.defined() ? own.felt.slope() : kUndefined,
-                            .stiffness_true = own.defined() ? own.truth.slope() : kUndefined});
-    if (tag.index == 1) metrics.tap1_error[site] = own.error();
-    if (tag.index == 2) metrics.tap2_error[site] = own.error();
-    if (tag.index >= 2) pooled[site].add(phase);
+                            .stiffness_felt = own.felt().value_or(kUndefined),
+                            .stiffness_true = own.truth().value_or(kUndefined)});
+    if (tag.index == 1) metrics.tap1_error[site] = own.error().value_or(kUndefined);
+    if (tag.index == 2) metrics.tap2_error[site] = own.error().value_or(kUndefined);
+    if (tag.index >= 2) add(pooled[site], phase);
   }
-  metrics.tap_error[0] = pooled[0].error();
-  metrics.tap_error[1] = pooled[1].error();
+  metrics.tap_error[0] = pooled[0].error().value_or(kUndefined);
+  metrics.tap_error[1] = pooled[1].error().value_or(kUndefined);
   judge_ratio(pooled[0], pooled[1], metrics);
 }
 
@@ -279,7 +266,7 @@ void judge_forces(const std::vector<TrialTick>& ticks,
 
 }  // namespace
 
-TrialMetrics judge(const std::vector<TrialTick>& ticks, const MetricsConfig& config) {
+TrialMetrics metrics_of(const std::vector<TrialTick>& ticks, const MetricsConfig& config) {
   TrialMetrics metrics;
   if (ticks.empty()) return metrics;
   const auto phases = split_phases(ticks);
@@ -294,4 +281,4 @@ TrialMetrics judge(const std::vector<TrialTick>& ticks, const MetricsConfig& con
   return metrics;
 }
 
-}  // namespace palp::lab
+}  // namespace palp::judge
