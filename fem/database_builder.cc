@@ -5,16 +5,13 @@
 
 #include <Eigen/Dense>
 
-#include "common/core/random.h"
-#include "fem/depth_database.h"
 #include "fem/finite_contact.h"
 
 namespace palp::fem {
 namespace {
 
-constexpr double kSqueeze = 0.8;           // of the cover
-constexpr int kSmoothTerms = 5;            // of the polynomial below
-constexpr std::uint64_t kCheckStream = 7;  // of the random numbers
+constexpr double kSqueeze = 0.8;  // of the cover
+constexpr int kSmoothTerms = 5;   // of the polynomial below
 
 std::vector<double> forces(const Mesh& mesh,
                            const Specimen& specimen,
@@ -57,51 +54,6 @@ void smooth(const std::vector<double>& indentations, std::vector<float>& excess)
 }
 
 }  // namespace
-
-Result<void> check_interpolation(DepthTable& table, std::uint32_t count, std::uint64_t seed) {
-  const auto database = DepthDatabase::make(table);
-  if (!database) return tl::unexpected<Error>(database.error());
-  const DepthGrid& grid = table.grid;
-  const DepthDatabase::Curve plain = database->plain();
-  std::uint64_t draw = 0;
-  const auto between = [&](const std::vector<double>& axis) {
-    const double share = random_uniform(seed, kCheckStream, draw++);
-    return axis.front() * std::pow(axis.back() / axis.front(), share);
-  };
-  double sum = 0;
-  double most = 0;
-  std::size_t points = 0;
-  for (std::uint32_t done = 0; done < count;) {
-    const bool ball = random_uniform(seed, kCheckStream, draw++) < 0.5;
-    const DepthDatabase::Query query{
-        .shape = ball ? InclusionShape::Ball : InclusionShape::Cylinder,
-        .depth = between(grid.depths),
-        .radius = between(grid.radii),
-        .ratio = between(grid.ratios)};
-    if (!database->contains(query)) continue;
-    ++done;
-    DepthGrid single = grid;
-    single.depths = {query.depth};
-    single.radii = {query.radius};
-    single.ratios = {query.ratio};
-    const auto solved = solve_cell(single, {query.shape, 0, 0});
-    const DepthDatabase::Curve curve = database->curve(query);
-    const std::vector<float>& excess = solved.at(0).excess;
-    for (std::size_t i = 0; i < excess.size(); ++i) {
-      const double d = grid.indentations[i];
-      if (d > curve.indentation_max) break;
-      const double wanted = 1 + static_cast<double>(excess[i]);
-      const double found = database->force(curve, d) / database->force(plain, d);
-      sum += (found / wanted - 1) * (found / wanted - 1);
-      most = std::max(most, std::abs(found / wanted - 1));
-      ++points;
-    }
-  }
-  table.checked_count = count;
-  table.checked_rms = points > 0 ? std::sqrt(sum / static_cast<double>(points)) : 0;
-  table.checked_max = most;
-  return {};
-}
 
 Specimen specimen_of(
     const DepthGrid& grid, InclusionShape shape, double depth, double radius, double ratio) {

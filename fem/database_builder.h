@@ -30,12 +30,6 @@ struct GridCell {
 /// Force of the plain block at the grid's indentations, on a fine mesh. [N]
 [[nodiscard]] Result<std::vector<double>> solve_plain(const DepthGrid& grid);
 
-/// Solves `count` phantoms drawn between the grid's points and writes into `table` how far its
-/// interpolation is off there, relative to the force. The table must be whole.
-[[nodiscard]] Result<void> check_interpolation(DepthTable& table,
-                                               std::uint32_t count,
-                                               std::uint64_t seed);
-
 /// What the grid's block is with such an inclusion in it.
 [[nodiscard]] Specimen specimen_of(
     const DepthGrid& grid, InclusionShape shape, double depth, double radius, double ratio);

@@ -21,6 +21,7 @@
 #include "common/core/printable.h"
 #include "fem/database_builder.h"
 #include "fem/depth_table.h"
+#include "fem/interpolation_check.h"
 
 namespace palp::fem {
 namespace {

@@ -50,8 +50,8 @@ Result<DepthStudy> study_of(const DepthFlags& flags) {
                    .count = static_cast<std::uint32_t>(flags.count),
                    .repeats = static_cast<std::uint32_t>(flags.repeats),
                    .seed = flags.seed,
-                   .estimator = flags.estimator == "paper" ? estimator::EstimatorKind::Paper
-                                                           : estimator::EstimatorKind::Bayes,
+                   .estimator = flags.estimator == "paper" ? depth::EstimatorKind::Paper
+                                                           : depth::EstimatorKind::Bayes,
                    .taps = static_cast<int>(flags.taps),
                    .reference_taps = static_cast<int>(flags.reference_taps),
                    .round_trip = flags.rtt_ms * 1e-3,

@@ -8,7 +8,7 @@ constexpr double kAirRecorded = 1e-3;  // [m]
 
 }  // namespace
 
-EstimatorWorker::EstimatorWorker(const estimator::DepthEstimatorConfig& config, Parts parts)
+EstimatorWorker::EstimatorWorker(const depth::DepthEstimatorConfig& config, Parts parts)
     : estimator_{config}, parts_{parts} {}
 
 std::size_t EstimatorWorker::drain() {
@@ -28,7 +28,7 @@ void EstimatorWorker::publish(const DepthEstimate& estimate) {
   ++strokes_;
   parts_.depth.put(estimate);
   const bool surface_known = estimate.indentation_max > 0;
-  for (const estimator::StrokeSample& sample : estimator_.stroke()) {
+  for (const depth::StrokeSample& sample : estimator_.stroke()) {
     if (surface_known && sample.position < estimate.surface - kAirRecorded) continue;
     record(sample.measured);
   }

@@ -6,7 +6,7 @@
 #include "common/core/spsc_queue.h"
 #include "common/core/stroke.h"
 #include "common/record/recorder.h"
-#include "patient_site/estimator/depth_estimator.h"
+#include "depth/depth_estimator.h"
 
 namespace palp::patient {
 
@@ -22,7 +22,7 @@ class EstimatorWorker {
     record::Recorder& recorder;
   };
 
-  EstimatorWorker(const estimator::DepthEstimatorConfig& config, Parts parts);
+  EstimatorWorker(const depth::DepthEstimatorConfig& config, Parts parts);
 
   /// Works on what waits in the queue. @returns how many samples there were.
   std::size_t drain();
@@ -37,7 +37,7 @@ class EstimatorWorker {
   void publish(const DepthEstimate& estimate);
   void record(const record::Record& record);
 
-  estimator::DepthEstimator estimator_;
+  depth::DepthEstimator estimator_;
   Parts parts_;
   std::uint64_t strokes_{};
   TimePoint reversal_at_{};

@@ -12,7 +12,7 @@
 
 #include "common/core/check.h"
 #include "common/core/conventions.h"
-#include "fem/depth_database.h"
+#include "depth/depth_database.h"
 #include "patient_site/phantom_tables.h"
 
 namespace palp::patient {
@@ -130,11 +130,11 @@ Result<Phantom> law_phantom(std::string_view spec, const NamedLaw& law) {
 }
 
 /// "ball depth=12 radius=8 ratio=200": words of a phantom from the depth database; lengths in mm.
-Result<fem::DepthDatabase::Query> database_query(std::string_view spec) {
+Result<depth::DepthDatabase::Query> database_query(std::string_view spec) {
   const auto wrong = [&](const std::string& sentence) {
     return fail("phantom '" + std::string{spec} + "': " + sentence);
   };
-  fem::DepthDatabase::Query query{
+  depth::DepthDatabase::Query query{
       .shape = fem::InclusionShape::Ball, .depth = 0, .radius = kPaperRadius, .ratio = kPaperRatio};
   std::istringstream words{std::string{spec}};
   std::string word;
@@ -162,8 +162,8 @@ Result<fem::DepthDatabase::Query> database_query(std::string_view spec) {
   return query;
 }
 
-ForceTable database_table(const fem::DepthDatabase& database,
-                          const fem::DepthDatabase::Curve& curve) {
+ForceTable database_table(const depth::DepthDatabase& database,
+                          const depth::DepthDatabase::Curve& curve) {
   constexpr double kStep = 20e-6;  // [m]; the table's own interpolation is exact to 1e-5 then
   std::vector<ForceRow> rows;
   const int count = static_cast<int>(curve.indentation_max / kStep + 1e-6);
@@ -176,7 +176,7 @@ ForceTable database_table(const fem::DepthDatabase& database,
 Result<Phantom> database_phantom(std::string_view spec) {
   const auto query = database_query(spec);
   if (!query) return tl::unexpected(query.error());
-  const auto database = fem::default_database();
+  const auto database = depth::default_database();
   if (!database) return fail("phantom '" + std::string{spec} + "': " + database.error().text);
   if (const auto ok = database->contains(*query); !ok) {
     return fail("phantom '" + std::string{spec} + "': " + ok.error().text);

@@ -69,20 +69,20 @@ SimulatedPhantomConfig make_simulation(const proto::config::SimulatedPhantom& me
   return simulation;
 }
 
-Result<estimator::DepthEstimatorConfig> make_estimator(const proto::config::Estimator& message,
-                                                       Duration period) {
-  estimator::DepthEstimatorConfig config;
+Result<depth::DepthEstimatorConfig> make_estimator(const proto::config::Estimator& message,
+                                                   Duration period) {
+  depth::DepthEstimatorConfig config;
   if (message.kind() != "bayes" && message.kind() != "paper") {
     return fail("unknown estimator '" + message.kind() + "'; there are: bayes, paper");
   }
   config.kind =
-      message.kind() == "paper" ? estimator::EstimatorKind::Paper : estimator::EstimatorKind::Bayes;
-  estimator::PaperEstimatorConfig& strokes = config.bayes.strokes;
+      message.kind() == "paper" ? depth::EstimatorKind::Paper : depth::EstimatorKind::Bayes;
+  depth::StrokeTrackerConfig& strokes = config.strokes;
   strokes.sensor_cut_off = message.sensor_pole_hz();
   strokes.filter_cut_off = message.filter_hz();
   strokes.period = seconds(period);
   strokes.fit_range = from_milli(message.indentation_max_mm());
-  estimator::DepthPrior& prior = config.bayes.prior;
+  depth::DepthPrior& prior = config.bayes.prior;
   prior.radius_min = from_milli(message.radius_min_mm());
   prior.radius_max = from_milli(message.radius_max_mm());
   prior.ratio_min = message.ratio_min();
@@ -90,7 +90,7 @@ Result<estimator::DepthEstimatorConfig> make_estimator(const proto::config::Esti
   prior.shape =
       message.shape() == "cylinder" ? fem::InclusionShape::Cylinder : fem::InclusionShape::Ball;
   if (!message.database().empty()) {
-    auto database = fem::load_database(message.database());
+    auto database = depth::load_database(message.database());
     if (!database) return fail(database.error().text);
     config.database = std::move(*database);
   }

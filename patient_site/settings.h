@@ -5,7 +5,7 @@
 
 #include "common/core/result.h"
 #include "common/settings/site_settings.h"
-#include "patient_site/estimator/depth_estimator.h"
+#include "depth/depth_estimator.h"
 #include "patient_site/patient_node.h"
 #include "patient_site/simulated_phantom.h"
 
@@ -32,7 +32,7 @@ struct Settings {
   std::string phantom{"paper-10mm"};
   SimulatedPhantomConfig simulation;
   std::string estimator_kind{"bayes"};
-  estimator::DepthEstimatorConfig estimator;
+  depth::DepthEstimatorConfig estimator;
   settings::LoopSettings loop;
   settings::ImpairmentSettings impairment;
   settings::RecordSettings record;

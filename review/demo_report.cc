@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/core/depth_text.h"
 #include "common/core/median.h"
 #include "common/record/notes.h"
 #include "common/record/session_encoder.h"
@@ -92,15 +91,23 @@ Json link_json(const Asked& asked, const SiteData& surgeon, const Json& report, 
   return link;
 }
 
+/// What the depth of a tap and that of all taps have in common.
+Json statement_json(const judge::DepthStatement& depth, bool with_stddev) {
+  Json json;
+  json["verdict"] = to_string(depth.verdict);
+  json["depth_mm"] = millimetres(depth.depth);
+  json["low_mm"] = millimetres(depth.low);
+  json["high_mm"] = millimetres(depth.high);
+  if (with_stddev) json["stddev_mm"] = millimetres(depth.stddev);
+  json["excluded_above_mm"] = millimetres(depth.excluded);
+  json["says"] = depth.says;
+  return json;
+}
+
 Json tap_json(const Tap& tap, const SiteData& patient) {
   const DepthEstimate& estimate = tap.estimate;
-  const bool found = estimate.verdict == DepthVerdict::Found;
-  const bool interval = has_interval(estimate);
-  const auto when = [](bool known, double metres) {
-    return millimetres(known ? std::optional{metres} : std::nullopt);
-  };
   Json json;
-  json["site"] = to_string(tap.place);
+  json["site"] = to_string(tap.site);
   json["index"] = tap.index;
   json["kind"] = to_string(tap.kind);
   json["number"] = estimate.number;
@@ -108,31 +115,23 @@ Json tap_json(const Tap& tap, const SiteData& patient) {
   json["lateral_mm"] = value(estimate.lateral * 1e3);
   json["indentation_max_mm"] = value(estimate.indentation_max * 1e3);
   json["force_max_n"] = value(estimate.force_max);
-  json["stiffness_felt_n_per_m"] = value(tap.stiffness.felt);
-  json["stiffness_true_n_per_m"] = value(tap.stiffness.truth);
+  json["stiffness_felt_n_per_m"] = value(tap.stiffness.felt());
+  json["stiffness_true_n_per_m"] = value(tap.stiffness.truth());
   Json& depth = json["depth"];
-  depth["verdict"] = to_string(estimate.verdict);
-  depth["depth_mm"] = when(found, estimate.depth);
-  depth["low_mm"] = when(interval, estimate.depth_low);
-  depth["high_mm"] = when(interval, estimate.depth_high);
-  depth["stddev_mm"] = when(found && estimate.depth_stddev > 0, estimate.depth_stddev);
-  const bool excludes = estimate.verdict == DepthVerdict::None && estimate.depth_low > 0;
-  depth["excluded_above_mm"] = when(excludes, estimate.depth_low);
-  depth["says"] = depth_text_of(estimate);
+  depth = statement_json(judge::statement_of(estimate), true);
   depth["h_n"] = value(estimate.hash);
   depth["reason"] = to_string(estimate.reason);
   depth["estimator"] = value(patient.entry("estimator"));
   return json;
 }
 
-Json depth_json(const OverallDepth& depth) {
+Json depth_json(const std::optional<judge::DepthStatement>& depth) {
+  if (depth) return statement_json(*depth, false);
   Json json;
-  json["verdict"] = depth.verdict ? Json(to_string(*depth.verdict)) : Json(nullptr);
-  json["depth_mm"] = millimetres(depth.depth);
-  json["low_mm"] = millimetres(depth.low);
-  json["high_mm"] = millimetres(depth.high);
-  json["excluded_above_mm"] = millimetres(depth.excluded);
-  json["says"] = depth.verdict ? Json(depth.says) : Json(nullptr);
+  for (const char* key :
+       {"verdict", "depth_mm", "low_mm", "high_mm", "excluded_above_mm", "says"}) {
+    json[key] = nullptr;
+  }
   return json;
 }
 
@@ -223,7 +222,7 @@ std::string demo_report(const SiteData& surgeon,
   for (const Tap& tap : taps) {
     json["taps"].push_back(tap_json(tap, patient));
   }
-  json["depth"] = depth_json(judge_depth(taps));
+  json["depth"] = depth_json(overall_depth(taps));
   json["sites"]["surgeon"] = site_json(surgeon, surgeon_report, paths.surgeon);
   json["sites"]["patient"] = site_json(patient, patient_report, paths.patient);
   json["transitions"] = transitions_json(surgeon, patient);

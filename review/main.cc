@@ -109,16 +109,16 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
   if (!surgeon || !patient) {
     return exit_status_of(!surgeon ? surgeon.error() : patient.error());
   }
-  std::optional<TissueTable> tissue;
+  std::optional<judge::TissueTable> tissue;
   if (patient->tissue_csv) {
-    auto table = TissueTable::parse(*patient->tissue_csv);
+    auto table = judge::TissueTable::parse(*patient->tissue_csv);
     if (!table) {
       return bad_input(flags.sessions.patient + ": " + table.error().text);
     }
     tissue = std::move(*table);
   }
   const auto taps = match_taps(*surgeon, *patient, tissue ? &*tissue : nullptr);
-  std::cout << tap_table(taps, judge_depth(taps));
+  std::cout << tap_table(taps, overall_depth(taps));
   if (flags.report.empty()) {
     return {};
   }

@@ -8,23 +8,15 @@
 #include "common/core/result.h"
 #include "common/record/mcap_reader.h"
 #include "common/record/recorder.h"
+#include "judge/motion.h"
 
 namespace palp::review {
-
-/// The part of a tick that metrics look at.
-struct Motion {
-  TimePoint at{};
-  double position{};  ///< [m], hand or tip
-  double velocity{};  ///< [m/s]
-  double force{};     ///< [N], surgeon: applied to the hand, patient: contact
-  double lateral{};   ///< [m]
-};
 
 /// What one session file says, in memory.
 struct SiteData {
   link::Role site{};
   TimePoint began_at{};  ///< the earliest sample
-  std::vector<Motion> motion;
+  std::vector<judge::Motion> motion;
   std::vector<record::Transition> transitions;
   std::vector<DepthEstimate> estimates;
   std::vector<Duration> round_trips;  ///< of the link's statuses, where measured

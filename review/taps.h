@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "review/excursions.h"
+#include "judge/depth_statement.h"
+#include "judge/felt_stiffness.h"
+#include "judge/site.h"
+#include "judge/tissue_table.h"
 #include "review/site_data.h"
-#include "review/tissue_table.h"
 
 namespace palp::review {
 
@@ -20,37 +22,24 @@ inline constexpr Duration kTapMax{std::chrono::milliseconds{1500}};  ///< longer
 
 /// One stroke as both sites saw it.
 struct Tap {
-  Place place{};
+  judge::Site site{};
   StrokeKind kind{};
-  int index{};  ///< 1, 2, ... among the strokes of its kind at its place
+  int index{};  ///< 1, 2, ... among the strokes of its kind at its site
   DepthEstimate estimate;
-  Stiffness stiffness;
+  judge::FeltStiffness stiffness;  ///< empty: nobody knows what was felt
 };
 
 /// The strokes of the patient's file with what the surgeon felt in them: a stroke is the last
 /// excursion of the hand that began before its estimate arrived at the surgeon's.
 [[nodiscard]] std::vector<Tap> match_taps(const SiteData& surgeon,
                                           const SiteData& patient,
-                                          const TissueTable* tissue);
+                                          const judge::TissueTable* tissue);
 
-/// All taps over the inclusion together.
-struct OverallDepth {
-  std::optional<DepthVerdict> verdict;  ///< nullopt: no tap there
-  std::optional<double> depth;          ///< [m]
-  std::optional<double> low;            ///< [m]
-  std::optional<double> high;           ///< [m]
-  std::optional<double> excluded;       ///< [m], as DepthEstimate::depth_low of verdict None
-  std::string says;                     ///< for people
-};
-/// By estimator::summarise_depths() of the taps at B.
-[[nodiscard]] OverallDepth judge_depth(const std::vector<Tap>& taps);
-
-/// True if the estimator gave an interval: it does so by low below high.
-[[nodiscard]] inline bool has_interval(const DepthEstimate& estimate) noexcept {
-  return estimate.verdict == DepthVerdict::Found && estimate.depth_low < estimate.depth_high;
-}
+/// What all taps over the inclusion say together; nullopt: there is none.
+[[nodiscard]] std::optional<judge::DepthStatement> overall_depth(const std::vector<Tap>& taps);
 
 /// For people, one line each.
-[[nodiscard]] std::string tap_table(const std::vector<Tap>& taps, const OverallDepth& depth);
+[[nodiscard]] std::string tap_table(const std::vector<Tap>& taps,
+                                    const std::optional<judge::DepthStatement>& depth);
 
 }  // namespace palp::review

@@ -173,42 +173,19 @@ void BreathingEstimator::add(const Guess& guess, const Sample& sample) noexcept 
   row[kSine] = -slope * s;
   row[kRate] = -slope * tau * (guess.sine * c - guess.cosine * s) / kModelDepthScale;
   for (std::size_t i = 0; i < kUnknowns; ++i) {
-    equations_.right[i] += row[i] * left;
-    for (std::size_t j = i; j < kUnknowns; ++j) equations_.normal[i][j] += row[i] * row[j];
+    equations_.system.right[i] += row[i] * left;
+    for (std::size_t j = 0; j <= i; ++j) equations_.system.matrix[i][j] += row[i] * row[j];
   }
 }
 
-/// The equations over the unknowns that are open; the others stay.
+/// The step over the unknowns that are open, damped; none if the equations leave one of them so.
 std::array<double, BreathingEstimator::kUnknowns> BreathingEstimator::solved(
     const std::array<bool, kUnknowns>& open) const noexcept {
-  std::array<std::size_t, kUnknowns> map{};
-  std::size_t count = 0;
+  SmallSystem<kUnknowns> damped = equations_.system;
   for (std::size_t i = 0; i < kUnknowns; ++i) {
-    if (open[i]) map[count++] = i;
+    damped.matrix[i][i] = damped.matrix[i][i] * (1 + kDamped) + kFloor;
   }
-  std::array<std::array<double, kUnknowns>, kUnknowns> m{};
-  std::array<double, kUnknowns> y{};
-  for (std::size_t r = 0; r < count; ++r) {
-    y[r] = equations_.right[map[r]];
-    for (std::size_t k = 0; k < count; ++k) {
-      m[r][k] = equations_.normal[std::min(map[r], map[k])][std::max(map[r], map[k])];
-    }
-    m[r][r] = m[r][r] * (1 + kDamped) + kFloor;
-  }
-  for (std::size_t r = 0; r < count; ++r) {
-    for (std::size_t below = r + 1; below < count; ++below) {
-      const double factor = m[below][r] / m[r][r];
-      for (std::size_t k = r; k < count; ++k) m[below][k] -= factor * m[r][k];
-      y[below] -= factor * y[r];
-    }
-  }
-  for (std::size_t r = count; r-- > 0;) {
-    for (std::size_t k = r + 1; k < count; ++k) y[r] -= m[r][k] * y[k];
-    y[r] /= m[r][r];
-  }
-  std::array<double, kUnknowns> by{};
-  for (std::size_t r = 0; r < count; ++r) by[map[r]] = y[r];
-  return by;
+  return solve(damped, open).x;
 }
 
 void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
@@ -221,8 +198,8 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
   const auto expect = [&](std::size_t unknown, double value, double expected, double spread) {
     const double off = (value - expected) / spread;
     guess.cost += off * off;
-    e.normal[unknown][unknown] += kVariance / (spread * spread);
-    e.right[unknown] -= kVariance * off / spread;
+    e.system.matrix[unknown][unknown] += kVariance / (spread * spread);
+    e.system.right[unknown] -= kVariance * off / spread;
   };
   for (std::size_t j = 0; j < kShapes; ++j) {
     expect(j, guess.here.shape[j], kShapeExpected[j], kShapeSpread[j]);
@@ -238,7 +215,7 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
   // What is 0 and would become negative, and what a surface at rest has not, stays out.
   std::array<bool, kUnknowns> open{};
   for (std::size_t i = 0; i < (swings ? kUnknowns : kCosine); ++i) {
-    open[i] = i >= kShapes || guess.here.shape[i] > 0 || e.right[i] > 0;
+    open[i] = i >= kShapes || guess.here.shape[i] > 0 || e.system.right[i] > 0;
   }
   const std::array<double, kUnknowns> by = solved(open);
   // No farther than the equations hold.

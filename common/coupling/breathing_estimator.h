@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "common/core/small_solver.h"
+
 namespace palp::coupling {
 
 /// A displacement that goes on as a sine: now, a quarter later, and how fast.
@@ -68,11 +70,10 @@ class BreathingEstimator {
     double cost{};    ///< [-]
   };
   struct Equations {
-    std::array<std::array<double, kUnknowns>, kUnknowns> normal{};  ///< [N^2], by unknowns
-    std::array<double, kUnknowns> right{};                          ///< [N^2], by unknowns
-    double square{};                                                ///< [N^2]
-    double time{};                                                  ///< [s], sum
-    double count{};                                                 ///< [-]
+    SmallSystem<kUnknowns> system;  ///< [N^2], by unknowns
+    double square{};                ///< [N^2]
+    double time{};                  ///< [s], sum
+    double count{};                 ///< [-]
   };
 
   void fit_some() noexcept;

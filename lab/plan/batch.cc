@@ -83,7 +83,7 @@ Spread spread_of(const std::vector<CaseResult>& results, std::size_t metric) {
   const auto at = [&](double p) {
     const auto n = static_cast<double>(results.size());
     const auto rank = static_cast<std::size_t>(std::min(n - 1, std::floor(p * n)));
-    return rank < values.size() ? values[rank] : kUndefined;
+    return rank < values.size() ? values[rank] : judge::kUndefined;
   };
   spread.p50 = at(0.5);
   spread.p95 = at(0.95);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/core/result.h"
+#include "judge/metrics.h"
 #include "lab/plan/plan.h"
-#include "lab/run/metrics.h"
 
 /// Runs the cases of a plan, each by itself, and sums them up. What comes out depends on the plan
 /// alone: not on the number of threads, nor on how it was cut into shards.
@@ -37,9 +37,9 @@ using Progress = std::function<void(std::size_t done, std::size_t count)>;
 
 /// Of the absolute values: element min(n - 1, floor(p n)) of n sorted ones, undefined ones last.
 struct Spread {
-  double p50{kUndefined};  ///< [as the metric]
-  double p95{kUndefined};  ///< [as the metric]
-  double max{kUndefined};  ///< [as the metric], of the defined ones
+  double p50{judge::kUndefined};  ///< [as the metric]
+  double p95{judge::kUndefined};  ///< [as the metric]
+  double max{judge::kUndefined};  ///< [as the metric], of the defined ones
   std::uint64_t undefined{};
 };
 [[nodiscard]] Spread spread_of(const std::vector<CaseResult>& results, std::size_t metric);

@@ -8,6 +8,7 @@
 
 #include "common/core/filters.h"
 #include "common/core/random.h"
+#include "common/core/small_solver.h"
 
 namespace palp::lab {
 namespace {
@@ -15,25 +16,9 @@ namespace {
 // depth, radius, log ratio, stiffness, rate factor, surface above the inclusion, surface beside it
 constexpr std::size_t kUnknowns = 7;
 using Vector = std::array<double, kUnknowns>;
-using Matrix = std::array<Vector, kUnknowns>;
+using System = SmallSystem<kUnknowns>;
 
 constexpr double kExact = 1e-6;  // of a value known exactly, relative
-
-/// Solves m x = v for a symmetric positive matrix by elimination.
-Vector solve(Matrix m, Vector v) {
-  for (std::size_t i = 0; i < kUnknowns; ++i) {
-    for (std::size_t j = i + 1; j < kUnknowns; ++j) {
-      const double factor = m[j][i] / m[i][i];
-      for (std::size_t k = i; k < kUnknowns; ++k) m[j][k] -= factor * m[i][k];
-      v[j] -= factor * v[i];
-    }
-  }
-  for (std::size_t i = kUnknowns; i-- > 0;) {
-    for (std::size_t k = i + 1; k < kUnknowns; ++k) v[i] -= m[i][k] * v[k];
-    v[i] /= m[i][i];
-  }
-  return v;
-}
 
 /// Information of a uniform prior as a Gaussian of the same variance.
 double uniform_information(double low, double high, double value) {
@@ -44,12 +29,12 @@ double uniform_information(double low, double high, double value) {
 /// The curves at the truth and round it.
 class Curves {
  public:
-  Curves(const fem::DepthDatabase& database, const fem::DepthDatabase::Query& truth)
+  Curves(const depth::DepthDatabase& database, const depth::DepthDatabase::Query& truth)
       : database_{database}, plain_{database.plain()}, here_{database.curve(truth)} {
     const std::array<double, 3> off{0.01 * truth.depth, 0.01 * truth.radius, 0.02};
     for (std::size_t i = 0; i < 3; ++i) {
       const auto shifted = [&](double by) {
-        fem::DepthDatabase::Query query = truth;
+        depth::DepthDatabase::Query query = truth;
         if (i == 0) query.depth += by;
         if (i == 1) query.radius += by;
         if (i == 2) query.ratio *= std::exp(by);
@@ -71,23 +56,23 @@ class Curves {
   }
 
  private:
-  [[nodiscard]] double slope(const fem::DepthDatabase::Curve& curve, double d) const {
+  [[nodiscard]] double slope(const depth::DepthDatabase::Curve& curve, double d) const {
     constexpr double kStep = 1e-6;  // [m]
     const double low = std::max(0.0, d - kStep);
     return (database_.force(curve, d + kStep) - database_.force(curve, low)) / (d + kStep - low);
   }
 
-  const fem::DepthDatabase& database_;
-  fem::DepthDatabase::Curve plain_;
-  fem::DepthDatabase::Curve here_;
-  std::array<fem::DepthDatabase::Curve, 3> low_;
-  std::array<fem::DepthDatabase::Curve, 3> high_;
+  const depth::DepthDatabase& database_;
+  depth::DepthDatabase::Curve plain_;
+  depth::DepthDatabase::Curve here_;
+  std::array<depth::DepthDatabase::Curve, 3> low_;
+  std::array<depth::DepthDatabase::Curve, 3> high_;
   std::array<double, 3> step_{};
 };
 
-void add(Matrix& to, const Vector& x, double weight) {
+void add(System& to, const Vector& x, double weight) {
   for (std::size_t i = 0; i < kUnknowns; ++i) {
-    for (std::size_t j = 0; j < kUnknowns; ++j) to[i][j] += weight * x[i] * x[j];
+    for (std::size_t j = 0; j <= i; ++j) to.matrix[i][j] += weight * x[i] * x[j];
   }
 }
 
@@ -99,9 +84,7 @@ struct Response {
   Vector along_plain{};  ///< of the force without
 };
 
-Response respond(const Curves& curves,
-                 const estimator::StiffnessPrior& stiffness,
-                 const TipState& at) {
+Response respond(const Curves& curves, const depth::StiffnessPrior& stiffness, const TipState& at) {
   Response out{};
   const double d = at.indentation;
   if (!(d > 0)) return out;
@@ -191,16 +174,15 @@ double sample_information(double force, double noise, double quantum) {
   return sum;
 }
 
-DepthBound depth_bound(const fem::DepthDatabase& database,
-                       const fem::DepthDatabase::Query& truth,
-                       const estimator::DepthPrior& prior,
-                       const estimator::StiffnessPrior& stiffness,
+DepthBound depth_bound(const depth::DepthDatabase& database,
+                       const depth::DepthDatabase::Query& truth,
+                       const depth::DepthPrior& prior,
+                       const depth::StiffnessPrior& stiffness,
                        const ForceSensing& sensing,
                        std::span<const TipState> motion) {
   const Curves curves{database, truth};
-  Matrix information{};
-  Matrix plain_information{};
-  Vector signal_right{};
+  System information{.matrix = {}, .right = {1}};
+  System plain_information;
   double signal_squares = 0;
   Pole pole{sensing};
   for (const TipState& at : motion) {
@@ -212,11 +194,11 @@ DepthBound depth_bound(const fem::DepthDatabase& database,
     add(plain_information, sensed.along_plain, weight);
     const double off = sensed.force - sensed.plain;
     for (std::size_t i = 0; i < kUnknowns; ++i) {
-      signal_right[i] += weight * sensed.along_plain[i] * off;
+      plain_information.right[i] += weight * sensed.along_plain[i] * off;
     }
     signal_squares += weight * off * off;
   }
-  constexpr double kSurface = 1 / (estimator::kSurfaceSpread * estimator::kSurfaceSpread);
+  constexpr double kSurface = 1 / (depth::kSurfaceSpread * depth::kSurfaceSpread);
   const Vector known{uniform_information(prior.depth_min, prior.depth_max, truth.depth),
                      uniform_information(prior.radius_min, prior.radius_max, truth.radius),
                      uniform_information(std::log(prior.ratio_min), std::log(prior.ratio_max), 1),
@@ -225,13 +207,12 @@ DepthBound depth_bound(const fem::DepthDatabase& database,
                      kSurface,
                      kSurface};
   for (std::size_t i = 0; i < kUnknowns; ++i) {
-    information[i][i] += known[i];
-    plain_information[i][i] += known[i];
+    information.matrix[i][i] += known[i];
+    plain_information.matrix[i][i] += known[i];
   }
   DepthBound bound;
-  bound.depth_stddev = std::sqrt(std::max(0.0, solve(information, {1})[0]));
-  const Vector explained = solve(plain_information, signal_right);
-  for (std::size_t i = 0; i < kUnknowns; ++i) signal_squares -= explained[i] * signal_right[i];
+  bound.depth_stddev = std::sqrt(std::max(0.0, solve(information).x[0]));
+  signal_squares -= solve(plain_information).explained;
   bound.signal = std::sqrt(std::max(0.0, signal_squares));
   return bound;
 }

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "fem/depth_database.h"
-#include "patient_site/estimator/depth_posterior.h"
+#include "depth/depth_database.h"
+#include "depth/depth_posterior.h"
 
 namespace palp::lab {
 
@@ -45,10 +45,10 @@ struct DepthBound {
 /// Fisher information of quantised samples about depth, radius, ratio, stiffness, rate factor and
 /// both surfaces, from derivatives of the database's curves, which pass the transducer's pole as
 /// the force does. `stiffness.scale` and `.rate_factor` are the true ones.
-[[nodiscard]] DepthBound depth_bound(const fem::DepthDatabase& database,
-                                     const fem::DepthDatabase::Query& truth,
-                                     const estimator::DepthPrior& prior,
-                                     const estimator::StiffnessPrior& stiffness,
+[[nodiscard]] DepthBound depth_bound(const depth::DepthDatabase& database,
+                                     const depth::DepthDatabase::Query& truth,
+                                     const depth::DepthPrior& prior,
+                                     const depth::StiffnessPrior& stiffness,
                                      const ForceSensing& sensing,
                                      std::span<const TipState> motion);
 

@@ -6,7 +6,7 @@
 
 #include "common/core/conventions.h"
 #include "common/core/random.h"
-#include "fem/depth_database.h"
+#include "depth/depth_database.h"
 #include "lab/plan/scenario_file.h"
 #include "lab/run/run.h"
 #include "patient_site/settings.h"
@@ -52,7 +52,7 @@ CasePlan plan_of(const DepthStudy& study, std::uint32_t index) {
 }
 
 struct Truth {
-  fem::DepthDatabase::Query query;
+  depth::DepthDatabase::Query query;
   double scale{1};     ///< [-]
   double tap_time{1};  ///< [s]
   double reach{4e-3};  ///< [m], aimed at
@@ -60,7 +60,7 @@ struct Truth {
 
 /// Depth 4 to 25 mm, radius 3 to 15 mm, ratio 3 to 900, stiffness +-10 %, hands of all speeds.
 /// Wide: all that the database has, stiffness +-20 %.
-Truth draw(const DepthStudy& study, const CasePlan& plan, const fem::DepthDatabase& database) {
+Truth draw(const DepthStudy& study, const CasePlan& plan, const depth::DepthDatabase& database) {
   Truth truth;
   const std::uint32_t index = plan.drawn;
   truth.tap_time = uniform(study, Draw::Time, index, 0.7, 1.4);
@@ -88,8 +88,8 @@ Truth draw(const DepthStudy& study, const CasePlan& plan, const fem::DepthDataba
   return truth;
 }
 
-patient::ForceTable table_of(const fem::DepthDatabase& database,
-                             const fem::DepthDatabase::Curve& curve,
+patient::ForceTable table_of(const depth::DepthDatabase& database,
+                             const depth::DepthDatabase::Curve& curve,
                              double scale) {
   constexpr double kStep = 20e-6;  // [m]
   std::vector<patient::ForceRow> rows;
@@ -102,7 +102,7 @@ patient::ForceTable table_of(const fem::DepthDatabase& database,
 
 /// Random phantoms are drawn from the prior; of the paper's ball the estimator knows all, or what
 /// it assumes unless told.
-estimator::DepthPrior prior_of(const CasePlan& plan) {
+depth::DepthPrior prior_of(const CasePlan& plan) {
   if (plan.knowledge == Knowledge::Ball) {
     return {.radius_min = kPaperRadius,
             .radius_max = kPaperRadius,
@@ -121,7 +121,7 @@ estimator::DepthPrior prior_of(const CasePlan& plan) {
 /// What the tip did up to `until`, the reversal with which the last answer came.
 std::vector<TipState> motion_of(const RunResult& result, TimePoint until) {
   std::vector<TipState> out;
-  for (const RunTick& tick : result.ticks) {
+  for (const judge::RunTick& tick : result.ticks) {
     if (result.began_at + from_seconds(tick.at) > until) break;
     out.push_back({tick.tip, tick.tip_velocity, tick.tip_lateral >= kStage});
   }
@@ -131,7 +131,7 @@ std::vector<TipState> motion_of(const RunResult& result, TimePoint until) {
 Result<Scenario> scenario_of(const DepthStudy& study,
                              const CasePlan& plan,
                              const Truth& truth,
-                             const fem::DepthDatabase& database) {
+                             const depth::DepthDatabase& database) {
   auto document = load_scenario("standard");
   if (!document) return tl::unexpected(document.error());
   const double grips = uniform(study, Draw::Grip, plan.drawn, 0, 3);
@@ -181,12 +181,12 @@ Result<Scenario> scenario_of(const DepthStudy& study,
 std::uint32_t case_count(const DepthStudy& study) {
   if (study.depths.empty()) return 2 * study.count + study.wide_count;
   // The paper's estimator knows nothing beforehand.
-  const std::uint32_t kinds = study.estimator == estimator::EstimatorKind::Bayes ? 2 : 1;
+  const std::uint32_t kinds = study.estimator == depth::EstimatorKind::Bayes ? 2 : 1;
   return static_cast<std::uint32_t>(study.depths.size()) * study.repeats * kinds;
 }
 
 Result<DepthCase> run_case(const DepthStudy& study, std::uint32_t index) {
-  const auto database = fem::default_database();
+  const auto database = depth::default_database();
   if (!database) return tl::unexpected(database.error());
   const CasePlan plan = plan_of(study, index);
   const Truth truth = draw(study, plan, *database);
@@ -220,7 +220,7 @@ Result<DepthCase> run_case(const DepthStudy& study, std::uint32_t index) {
   out.depth = truth.query.depth;
   out.radius = truth.query.radius;
   out.ratio = truth.query.ratio;
-  const estimator::StiffnessPrior stiffness{.scale = truth.scale};
+  const depth::StiffnessPrior stiffness{.scale = truth.scale};
   const DepthBound bound = depth_bound(
       *database, truth.query, prior_of(plan), stiffness, {}, motion_of(result, answered));
   out.bound = bound.depth_stddev;

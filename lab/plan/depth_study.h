@@ -28,7 +28,7 @@ struct DepthStudy {
   std::uint32_t wide_count{};  ///< and beside them so many from a range wider than the prior's
   std::uint32_t repeats{1};    ///< of each depth
   std::uint64_t seed{1};
-  estimator::EstimatorKind estimator{estimator::EstimatorKind::Bayes};
+  depth::EstimatorKind estimator{depth::EstimatorKind::Bayes};
   int taps{4};
   int reference_taps{4};
   double round_trip{};     ///< [s]

@@ -52,7 +52,7 @@ std::vector<ObserverRow> observe(const std::vector<CaseResult>& results) {
 double worst_loss(const Plan& plan,
                   const std::vector<ObserverRow>& rows,
                   const std::vector<Setting>& labels) {
-  double worst = kUndefined;
+  double worst = judge::kUndefined;
   for (const ObserverRow& row : rows) {
     const bool chosen = std::all_of(labels.begin(), labels.end(), [&](const Setting& wanted) {
       const auto found = std::find(plan.label_names.begin(), plan.label_names.end(), wanted.path);

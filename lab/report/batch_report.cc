@@ -273,7 +273,7 @@ bool parse(const std::string& text, Number& value, int base = 0) {
   std::from_chars_result got{};
   if constexpr (std::is_floating_point_v<Number>) {
     if (text.empty()) {
-      value = kUndefined;
+      value = judge::kUndefined;
       return true;
     }
     got = std::from_chars(text.data(), end, value);

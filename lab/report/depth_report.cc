@@ -238,7 +238,7 @@ std::string depth_table(const DepthStudy& study, const std::vector<DepthCase>& c
   for (const Row& row : rows_of(study, cases)) out += row_text(row);
   const Totals all = totals(cases);
   if (!study.depths.empty()) {
-    if (study.estimator == estimator::EstimatorKind::Bayes) {
+    if (study.estimator == depth::EstimatorKind::Bayes) {
       out += "ball: radius 15 mm and ratio 856 known exactly; range: 3 to 16 mm, 3 to 900\n";
     }
     return out;

@@ -4,16 +4,16 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <optional>
 #include <span>
 
 #include <nlohmann/json.hpp>
 
-#include "common/core/depth_text.h"
 #include "common/core/number_text.h"
+#include "judge/depth_statement.h"
+#include "judge/depth_summary.h"
 #include "lab/run/digest.h"
 #include "lab/run/metric_table.h"
-#include "patient_site/estimator/depth_summary.h"
-#include "patient_site/phantom.h"
 
 namespace palp::lab {
 namespace {
@@ -22,32 +22,28 @@ using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Site site_of(const DepthEstimate& estimate) {
-  return estimate.lateral < patient::Phantom::kSiteBoundary ? Site::A : Site::B;
-}
-
-const char* name_of(Site site) { return site == Site::A ? "A" : "B"; }
-
-std::vector<DepthEstimate> estimates_at(Site site, std::span<const DepthEstimate> all) {
+std::vector<DepthEstimate> estimates_at(judge::Site site, std::span<const DepthEstimate> all) {
   std::vector<DepthEstimate> here;
   for (const DepthEstimate& estimate : all) {
-    if (site_of(estimate) == site) here.push_back(estimate);
+    if (judge::site_at(estimate.lateral) == site) here.push_back(estimate);
   }
   return here;
 }
 
-Json depth_json(const DepthEstimate& estimate, estimator::EstimatorKind kind) {
-  const bool found = estimate.verdict == DepthVerdict::Found;
-  const bool spread = found && estimate.depth_stddev > 0;
+Json millimetres(const std::optional<double>& metres) {
+  return metres ? number(*metres * 1e3) : Json(nullptr);
+}
+
+Json depth_json(const DepthEstimate& estimate, depth::EstimatorKind kind) {
+  const judge::DepthStatement statement = judge::statement_of(estimate);
   Json json;
-  json["verdict"] = to_string(estimate.verdict);
-  json["depth_mm"] = found ? number(estimate.depth * 1e3) : Json(nullptr);
-  json["low_mm"] = spread ? number(estimate.depth_low * 1e3) : Json(nullptr);
-  json["high_mm"] = spread ? number(estimate.depth_high * 1e3) : Json(nullptr);
-  json["stddev_mm"] = spread ? number(estimate.depth_stddev * 1e3) : Json(nullptr);
-  const bool excludes = estimate.verdict == DepthVerdict::None && estimate.depth_low > 0;
-  json["excluded_above_mm"] = excludes ? number(estimate.depth_low * 1e3) : Json(nullptr);
-  json["says"] = depth_text_of(estimate);
+  json["verdict"] = to_string(statement.verdict);
+  json["depth_mm"] = millimetres(statement.depth);
+  json["low_mm"] = millimetres(statement.low);
+  json["high_mm"] = millimetres(statement.high);
+  json["stddev_mm"] = millimetres(statement.stddev);
+  json["excluded_above_mm"] = millimetres(statement.excluded);
+  json["says"] = statement.says;
   json["h_n"] = number(estimate.hash);
   json["reason"] = to_string(estimate.reason);
   json["estimator"] = to_string(kind);
@@ -55,15 +51,15 @@ Json depth_json(const DepthEstimate& estimate, estimator::EstimatorKind kind) {
 }
 
 /// The strokes of a site follow each other as its taps do; presses come behind them.
-Json taps_json(const RunResult& result, estimator::EstimatorKind kind) {
-  const std::array<std::vector<DepthEstimate>, 2> strokes{estimates_at(Site::A, result.depths),
-                                                          estimates_at(Site::B, result.depths)};
+Json taps_json(const RunResult& result, depth::EstimatorKind kind) {
+  const std::array<std::vector<DepthEstimate>, 2> strokes{
+      estimates_at(judge::Site::A, result.depths), estimates_at(judge::Site::B, result.depths)};
   Json taps = Json::array();
-  for (const TapMetrics& tap : result.metrics.taps) {
+  for (const judge::TapMetrics& tap : result.metrics.taps) {
     const auto& here = strokes[static_cast<std::size_t>(tap.site)];
     const auto index = static_cast<std::size_t>(tap.index - 1);
     Json json;
-    json["site"] = name_of(tap.site);
+    json["site"] = to_string(tap.site);
     json["index"] = tap.index;
     const bool known = index < here.size();
     json["indentation_max_mm"] = known ? number(here[index].indentation_max * 1e3) : Json(nullptr);
@@ -76,7 +72,7 @@ Json taps_json(const RunResult& result, estimator::EstimatorKind kind) {
   return taps;
 }
 
-Json metrics_json(const RunMetrics& m) {
+Json metrics_json(const judge::RunMetrics& m) {
   Json json;
   json["unstable"] = m.unstable;
   json["unstable_reason"] = m.unstable_reason;
@@ -107,9 +103,9 @@ std::string measured(double value, int decimals, const char* unit) {
   return std::isfinite(value) ? number_text("", value, decimals, unit) : "-";
 }
 
-std::string tap_text(const TapMetrics& tap) {
+std::string tap_text(const judge::TapMetrics& tap) {
   std::string text;
-  append(text, "tap %s%-2d    ", name_of(tap.site), tap.index);
+  append(text, "tap %s%-2d    ", to_string(tap.site), tap.index);
   if (!std::isfinite(tap.stiffness_felt)) return text + "no contact\n";
   append(text,
          "felt %6.1f N/m, true %6.1f N/m (%s), hand to %.2f mm\n",
@@ -141,7 +137,7 @@ std::string run_report(const Scenario& scenario,
   json["records"] = result.records;
   json.update(metrics_json(result.metrics));
   json["taps"] = taps_json(result, scenario.estimator.kind);
-  json["depth"] = depth_json(estimator::summarise_depths(estimates_at(Site::B, result.depths)),
+  json["depth"] = depth_json(judge::summarise_depths(estimates_at(judge::Site::B, result.depths)),
                              scenario.estimator.kind);
   // A file's name need not be UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -157,12 +153,12 @@ std::string run_summary(const Scenario& scenario,
          static_cast<unsigned long long>(scenario.seed),
          scenario.coupling.name.c_str(),
          scenario.phantom.name.c_str());
-  const RunMetrics& m = result.metrics;
-  for (const TapMetrics& tap : m.taps) text += tap_text(tap);
+  const judge::RunMetrics& m = result.metrics;
+  for (const judge::TapMetrics& tap : m.taps) text += tap_text(tap);
   for (const DepthEstimate& estimate : result.depths) {
     append(text,
            "stroke %s    h %.4f N, %s",
-           name_of(site_of(estimate)),
+           to_string(judge::site_at(estimate.lateral)),
            estimate.hash,
            std::string{to_string(estimate.verdict)}.c_str());
     if (estimate.verdict == DepthVerdict::Found) append(text, " at %.1f mm", estimate.depth * 1e3);
@@ -193,11 +189,11 @@ std::string trace_csv(const RunResult& result) {
       "t_s,site,phase,index,hand_mm,tip_mm,force_felt_n,force_true_n,contact_force_n,energy_mj,"
       "counted,hand_speed_m_per_s,surface_mm\n";
   constexpr std::array kKinds{"other", "air", "tap", "press", "lift"};
-  for (const RunTick& tick : result.ticks) {
+  for (const judge::RunTick& tick : result.ticks) {
     append(text,
            "%.4f,%s,%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%.9g,%.9g\n",
            tick.at,
-           name_of(tick.phase.site),
+           to_string(tick.phase.site),
            kKinds[static_cast<std::size_t>(tick.phase.kind)],
            tick.phase.index,
            tick.hand * 1e3,

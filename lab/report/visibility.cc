@@ -16,7 +16,7 @@ using config::ExitStatus;
 constexpr double kSeen = 5;  // standard deviations
 
 /// The largest ball at `depth` that the database holds, or 0.
-double largest(const fem::DepthDatabase& database, double depth, double ratio) {
+double largest(const depth::DepthDatabase& database, double depth, double ratio) {
   const std::vector<double>& radii = database.grid().radii;
   constexpr int kSteps = 130;
   for (int i = 0; i < kSteps; ++i) {
@@ -26,13 +26,13 @@ double largest(const fem::DepthDatabase& database, double depth, double ratio) {
   return 0;
 }
 
-double smallest_seen(const fem::DepthDatabase& database,
+double smallest_seen(const depth::DepthDatabase& database,
                      const TapPlan& plan,
                      double depth,
                      double ratio) {
   const std::vector<TipState> motion = motion_of(plan);
   const auto seen = [&](double radius) {
-    const fem::DepthDatabase::Query query{.depth = depth, .radius = radius, .ratio = ratio};
+    const depth::DepthDatabase::Query query{.depth = depth, .radius = radius, .ratio = ratio};
     return depth_bound(database, query, {}, {}, plan.sensing, motion).signal >= kSeen;
   };
   double low = database.grid().radii.front();
@@ -57,7 +57,7 @@ std::string radius_text(const Visibility& all, double radius) {
 
 }  // namespace
 
-Visibility visibility(const fem::DepthDatabase& database, const TapPlan& plan) {
+Visibility visibility(const depth::DepthDatabase& database, const TapPlan& plan) {
   Visibility out;
   out.radius_min = database.grid().radii.front();
   out.ratios = {3, 10, 100, 856};
@@ -98,7 +98,7 @@ void declare_visible(config::CommandLine& line, VisibilityFlags& flags) {
 }
 
 ExitStatus run_visible(const VisibilityFlags& flags) {
-  const auto database = fem::default_database();
+  const auto database = depth::default_database();
   if (!database) return {ExitCode::CannotOpen, "palp-lab: " + database.error().text};
   const TapPlan plan{.taps = static_cast<int>(flags.taps),
                      .reference_taps = static_cast<int>(flags.reference_taps),

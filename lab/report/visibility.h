@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/config/command_line.h"
-#include "fem/depth_database.h"
+#include "depth/depth_database.h"
 #include "lab/plan/depth_bound.h"
 
 namespace palp::lab {
@@ -27,7 +27,7 @@ struct Visibility {
   double radius_min{};  ///< [m], of the database
 };
 
-[[nodiscard]] Visibility visibility(const fem::DepthDatabase& database, const TapPlan& plan);
+[[nodiscard]] Visibility visibility(const depth::DepthDatabase& database, const TapPlan& plan);
 [[nodiscard]] std::string visibility_text(const Visibility& visibility);
 
 void declare_visible(config::CommandLine& line, VisibilityFlags& flags);

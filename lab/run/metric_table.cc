@@ -6,7 +6,7 @@
 namespace palp::lab {
 namespace {
 
-using M = RunMetrics;
+using M = judge::RunMetrics;
 
 constexpr std::array kTable{
     Metric{"tap_a_error", [](const M& m) { return m.tap_error[0]; }},

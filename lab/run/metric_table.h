@@ -5,14 +5,14 @@
 #include <span>
 #include <string_view>
 
-#include "lab/run/metrics.h"
+#include "judge/metrics.h"
 
 namespace palp::lab {
 
 /// One number of a run as reports name it, in the unit at the end of the name.
 struct Metric {
   std::string_view name;
-  double (*value)(const RunMetrics&);
+  double (*value)(const judge::RunMetrics&);
 };
 
 /// All of them, in the order of reports.

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lab/run/metrics.h"
+#include "judge/metrics.h"
 #include "surgeon_site/gesture_script.h"
 
 namespace palp::lab {
@@ -12,13 +12,13 @@ class PhaseFinder {
  public:
   /// The script outlives the finder.
   explicit PhaseFinder(const surgeon::GestureScript& script);
-  [[nodiscard]] PhaseTag at(Duration script_time) noexcept;
+  [[nodiscard]] judge::PhaseTag at(Duration script_time) noexcept;
 
  private:
   struct Entry {
     Duration began_at{};
     Duration ends_at{};
-    PhaseTag tag;
+    judge::PhaseTag tag;
   };
   std::vector<Entry> entries_;
   std::size_t present_{};  ///< where the last answer was found: time mostly goes on by one tick

@@ -124,7 +124,7 @@ class Probe {
                                              seconds(scenario_.link.period));
     if (!hand.performing || !site.alive()) return;
 
-    RunTick tick;
+    judge::RunTick tick;
     tick.at = at;
     tick.phase = phases_.at(hand.script_time);
     tick.counted = status.state == SiteState::Engaged || status.state == SiteState::Hold;
@@ -142,8 +142,8 @@ class Probe {
     tick.energy_net_min = net_min_;
     ticks_.push_back(tick);
   }
-  [[nodiscard]] const std::vector<RunTick>& ticks() const { return ticks_; }
-  [[nodiscard]] std::vector<RunTick> take_ticks() { return std::move(ticks_); }
+  [[nodiscard]] const std::vector<judge::RunTick>& ticks() const { return ticks_; }
+  [[nodiscard]] std::vector<judge::RunTick> take_ticks() { return std::move(ticks_); }
   [[nodiscard]] double work_min() const { return work_min_; }  ///< [J], of the whole run
   [[nodiscard]] double net_min() const { return net_min_; }    ///< [J], of the whole run
   /// [N], in 10 ms, whatever the operator was doing.
@@ -166,7 +166,7 @@ class Probe {
   double net_min_{};           ///< [J]
   std::deque<double> forces_;  ///< [N], newest last
   double step_max_{};          ///< [N]
-  std::vector<RunTick> ticks_;
+  std::vector<judge::RunTick> ticks_;
 };
 
 /// Makes the one fault of a run happen, and ends it.
@@ -289,12 +289,12 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   result.began_at = start;
   result.virtual_span = world.now() - start;
   result.outcome = hand.progress().outcome;
-  MetricsConfig judging{.force_cap = scenario.hand.force_max, .period = seconds(period)};
+  judge::MetricsConfig judging{.force_cap = scenario.hand.force_max, .period = seconds(period)};
   if (dark_from) {
     judging.blackout_from = seconds(*dark_from - start);
     judging.blackout_to = judging.blackout_from + seconds(kBlackout) + kAfterBlackout;
   }
-  result.metrics = judge(probe.ticks(), judging);
+  result.metrics = judge::metrics_of(probe.ticks(), judging);
   result.metrics.force_step_guarded = probe.force_step_max();
   // Energy has no script: what the hand gets while it waits or lets go counts too.
   result.metrics.energy_operator = std::max(0.0, -probe.work_min());

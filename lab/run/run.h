@@ -6,7 +6,7 @@
 #include "common/core/stroke.h"
 #include "common/link/telegram.h"
 #include "common/record/byte_sink.h"
-#include "lab/run/metrics.h"
+#include "judge/metrics.h"
 #include "lab/run/scenario.h"
 #include "surgeon_site/haptic_device.h"
 
@@ -18,8 +18,8 @@ struct RunResult {
   TimePoint began_at{};
   Duration virtual_span{};
   surgeon::ScriptOutcome outcome{};
-  RunMetrics metrics;
-  std::vector<RunTick> ticks;         ///< while the script was performed
+  judge::RunMetrics metrics;
+  std::vector<judge::RunTick> ticks;  ///< while the script was performed
   std::vector<DepthEstimate> depths;  ///< one per stroke, in order
   link::LinkHealth surgeon_link;
   link::LinkHealth patient_link;

@@ -6,9 +6,9 @@
 #include "common/core/time.h"
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
+#include "depth/depth_estimator.h"
 #include "lab/run/fault.h"
 #include "netem/model/impairment.h"
-#include "patient_site/estimator/depth_estimator.h"
 #include "patient_site/patient_node.h"
 #include "patient_site/phantom.h"
 #include "patient_site/simulated_phantom.h"
@@ -30,7 +30,7 @@ struct Scenario {
   patient::PatientConfig patient;
   patient::SimulatedPhantomConfig tissue;
   patient::Phantom phantom;
-  estimator::DepthEstimatorConfig estimator;
+  depth::DepthEstimatorConfig estimator;
   netem::Impairment up;    ///< surgeon to patient
   netem::Impairment down;  ///< patient to surgeon
   Duration duration{};     ///< virtual; 0: until the script is done

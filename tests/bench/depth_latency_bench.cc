@@ -9,9 +9,9 @@
 
 #include <time.h>
 
-#include "patient_site/estimator/depth_estimator.h"
+#include "depth/depth_estimator.h"
 #include "patient_site/phantom.h"
-#include "tests/patient_site/tapping.h"
+#include "tests/depth/tapping.h"
 
 namespace palp::patient {
 namespace {
@@ -32,7 +32,7 @@ std::vector<double> answers_over(const std::string& spec, std::uint64_t seed) {
   }
   const Tapping tapping{
       .taps = 4, .indentation = std::min(4e-3, phantom->depth_max() - 0.1e-3), .rest_time = 0.2};
-  estimator::DepthEstimator estimator{{}};
+  depth::DepthEstimator estimator{{}};
   std::vector<double> out;
   palpate(*phantom, {.seed = seed}, tapping, [&](const ContactSample& sample) {
     const double before = processor_ms();

@@ -65,8 +65,8 @@ TEST(ArrowsTest, WhatTheTableDoesNotNameIsForbidden) {
   EXPECT_FALSE(allowed("surgeon_site/main.cc", "patient_site/stage.h"));
   EXPECT_TRUE(allowed("patient_site/devices/x.cc", "patient_site/stage.h"));
   EXPECT_FALSE(allowed("patient_site/devices/x.cc", "patient_site/patient_node.h"));
-  EXPECT_TRUE(allowed("patient_site/patient_node.h", "patient_site/estimator/estimator.h"));
-  EXPECT_FALSE(allowed("patient_site/estimator/fit.h", "patient_site/stage.h"));
+  EXPECT_TRUE(allowed("patient_site/patient_node.h", "depth/estimator.h"));
+  EXPECT_FALSE(allowed("depth/fit.h", "patient_site/stage.h"));
   EXPECT_TRUE(allowed("lab/run/simulator.h", "surgeon_site/surgeon_node.h"));
   EXPECT_FALSE(allowed("lab/run/simulator.h", "surgeon_site/devices/x.h"));
   EXPECT_FALSE(allowed("lab/run/simulator.h", "common/io/realtime/steady_clock.h"));

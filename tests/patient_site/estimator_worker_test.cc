@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/patient_site/tapping.h"
+#include "tests/depth/tapping.h"
 
 namespace palp::patient {
 namespace {

@@ -66,11 +66,11 @@ std::string text_of(const Settings& settings) {
       .add("force", settings.force)
       .add("phantom", settings.phantom)
       .add("estimator_kind", settings.estimator_kind)
-      .add("estimator.sensor_cut_off", settings.estimator.bayes.strokes.sensor_cut_off)
-      .add("estimator.filter_cut_off", settings.estimator.bayes.strokes.filter_cut_off)
-      .add("estimator.period", settings.estimator.bayes.strokes.period)
-      .add("estimator.force_quantum", settings.estimator.bayes.strokes.force_quantum)
-      .add("estimator.fit_range", settings.estimator.bayes.strokes.fit_range)
+      .add("estimator.sensor_cut_off", settings.estimator.strokes.sensor_cut_off)
+      .add("estimator.filter_cut_off", settings.estimator.strokes.filter_cut_off)
+      .add("estimator.period", settings.estimator.strokes.period)
+      .add("estimator.force_quantum", settings.estimator.strokes.force_quantum)
+      .add("estimator.fit_range", settings.estimator.strokes.fit_range)
       .add("estimator.radius_min", settings.estimator.bayes.prior.radius_min)
       .add("estimator.radius_max", settings.estimator.bayes.prior.radius_max)
       .add("estimator.ratio_min", settings.estimator.bayes.prior.ratio_min)
@@ -123,9 +123,9 @@ TEST(PatientSettingsTest, UnknownDevicesAreErrorsThatListTheKnownOnes) {
 
 TEST(PatientSettingsTest, TheEstimatorSharesTheSensorsPole) {
   const Settings made = settings_with({"estimator.sensor_pole_hz=15", "loop.period_us=500"});
-  EXPECT_EQ(made.estimator.bayes.strokes.sensor_cut_off, 15);
+  EXPECT_EQ(made.estimator.strokes.sensor_cut_off, 15);
   EXPECT_EQ(made.node.sensor_cut_off, 15);
-  EXPECT_EQ(made.estimator.bayes.strokes.period, 0.5e-3);
+  EXPECT_EQ(made.estimator.strokes.period, 0.5e-3);
 }
 
 TEST(PatientSettingsTest, ASensorOfLargeStepsMayRestOnOneForLonger) {

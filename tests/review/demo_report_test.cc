@@ -10,7 +10,7 @@ namespace {
 
 nlohmann::json report(const ProgramReports& reports = {}, const Asked& asked = {}) {
   const auto session = test::load(test::sample_session());
-  const auto tissue = TissueTable::parse(*session.patient.tissue_csv);
+  const auto tissue = judge::TissueTable::parse(*session.patient.tissue_csv);
   const auto taps = match_taps(session.surgeon, session.patient, &*tissue);
   return nlohmann::json::parse(demo_report(
       session.surgeon, session.patient, taps, asked, reports, {"out/s.mcap", "out/p.mcap"}));

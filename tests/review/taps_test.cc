@@ -12,7 +12,7 @@ using test::sample_session;
 
 std::vector<Tap> taps_of(const test::SampleFiles& files) {
   const auto session = load(files);
-  const auto tissue = TissueTable::parse(*session.patient.tissue_csv);
+  const auto tissue = judge::TissueTable::parse(*session.patient.tissue_csv);
   return match_taps(session.surgeon, session.patient, &*tissue);
 }
 
@@ -20,11 +20,11 @@ TEST(TapsTest, EachStrokeGetsItsPlaceIndexAndStiffness) {
   const auto taps = taps_of(sample_session());
   ASSERT_EQ(taps.size(), 6u);
   for (std::size_t k = 0; k < 6; ++k) {
-    EXPECT_EQ(taps[k].place, k < 3 ? Place::A : Place::B);
+    EXPECT_EQ(taps[k].site, k < 3 ? judge::Site::A : judge::Site::B);
     EXPECT_EQ(taps[k].index, static_cast<int>(k % 3) + 1);
     EXPECT_EQ(taps[k].kind, StrokeKind::Tap);
-    EXPECT_NEAR(taps[k].stiffness.felt.value(), k < 3 ? test::kFeltA : test::kFeltB, 1e-6);
-    EXPECT_NEAR(taps[k].stiffness.truth.value(), k < 3 ? 100 : 200, 1e-6);
+    EXPECT_NEAR(taps[k].stiffness.felt().value(), k < 3 ? test::kFeltA : test::kFeltB, 1e-6);
+    EXPECT_NEAR(taps[k].stiffness.truth().value(), k < 3 ? 100 : 200, 1e-6);
   }
 }
 
@@ -32,14 +32,14 @@ TEST(TapsTest, StrokeThatThePatientNeverSawDoesNotShiftTheOthers) {
   // The hand of stroke 1 never became a stroke; make its force one that would be noticed.
   const auto files = sample_session({.unseen_stroke = 1});
   auto session = load(files);
-  for (Motion& motion : session.surgeon.motion) {
+  for (judge::Motion& motion : session.surgeon.motion) {
     if (motion.at >= test::at_ms(1000) && motion.at < test::at_ms(2000)) {
       motion.force = 0;
     }
   }
   const auto taps = match_taps(session.surgeon, session.patient, nullptr);
   ASSERT_EQ(taps.size(), 5u);
-  EXPECT_NEAR(taps[1].stiffness.felt.value(), test::kFeltA, 1e-6);
+  EXPECT_NEAR(taps[1].stiffness.felt().value(), test::kFeltA, 1e-6);
   EXPECT_EQ(taps[1].estimate.number, 3u);
 }
 
@@ -48,7 +48,7 @@ TEST(TapsTest, ManyEstimatesOfOneLongStrokeTakeNoLonger) {
   auto session = load(sample_session());
   session.surgeon.motion.resize(1);
   session.surgeon.motion.resize(300'000, session.surgeon.motion.front());
-  for (Motion& motion : session.surgeon.motion) {
+  for (judge::Motion& motion : session.surgeon.motion) {
     motion.position = test::kSurface + 2e-3;
     motion.velocity = 1;
   }
@@ -61,18 +61,18 @@ TEST(TapsTest, ManyEstimatesOfOneLongStrokeTakeNoLonger) {
 
 TEST(TapsTest, HandAtAnotherPlaceIsNotTheOneOfTheStroke) {
   auto session = load(sample_session());
-  for (Motion& motion : session.surgeon.motion) {
+  for (judge::Motion& motion : session.surgeon.motion) {
     motion.lateral = 0.010;
   }
   const auto taps = match_taps(session.surgeon, session.patient, nullptr);
-  EXPECT_FALSE(taps[0].stiffness.felt) << "A";
-  EXPECT_TRUE(taps[3].stiffness.felt) << "B";
+  EXPECT_FALSE(taps[0].stiffness.felt()) << "A";
+  EXPECT_TRUE(taps[3].stiffness.felt()) << "B";
 }
 
 TEST(TapsTest, WithoutItsReportAStrokeHasNoStiffness) {
   const auto taps = taps_of(sample_session({.reports = false}));
   ASSERT_EQ(taps.size(), 6u);
-  for (const Tap& tap : taps) EXPECT_FALSE(tap.stiffness.felt);
+  for (const Tap& tap : taps) EXPECT_FALSE(tap.stiffness.felt());
 }
 
 TEST(TapsTest, LongStrokeIsAPress) {
@@ -89,7 +89,7 @@ TEST(TapsTest, LongStrokeIsAPress) {
 TEST(TapsTest, AHandThatStaysInTheTissueMakesAPress) {
   auto session = load(sample_session());
   // The first stroke never leaves: the hand stays at the depth of its turning point for 2 s.
-  for (Motion& motion : session.surgeon.motion) {
+  for (judge::Motion& motion : session.surgeon.motion) {
     if (motion.at >= test::at_ms(400) && motion.at < test::at_ms(2400)) {
       motion.position = test::kSurface + 4e-3;
     }
@@ -101,22 +101,22 @@ TEST(TapsTest, AHandThatStaysInTheTissueMakesAPress) {
 TEST(TapsTest, TheTapsOverTheInclusionDecideTogether) {
   auto taps = taps_of(sample_session({.taps_per_place = 4}));
   ASSERT_EQ(taps.size(), 8u);
-  EXPECT_EQ(judge_depth(taps).verdict, DepthVerdict::Found);
-  EXPECT_NEAR(judge_depth(taps).depth.value(), 0.0098 + 1e-4 * 5.5, 1e-12);
-  EXPECT_FALSE(judge_depth(taps).low) << "this estimator gives no interval";
+  EXPECT_EQ(overall_depth(taps)->verdict, DepthVerdict::Found);
+  EXPECT_NEAR(overall_depth(taps)->depth.value(), 0.0098 + 1e-4 * 5.5, 1e-12);
+  EXPECT_FALSE(overall_depth(taps)->low) << "this estimator gives no interval";
   for (std::size_t k = 4; k < 7; ++k) {
     taps[k].estimate.verdict = DepthVerdict::None;
     taps[k].estimate.depth_low = 0;  // nothing is excluded
   }
-  EXPECT_EQ(judge_depth(taps).verdict, DepthVerdict::None);
-  EXPECT_FALSE(judge_depth(taps).depth);
+  EXPECT_EQ(overall_depth(taps)->verdict, DepthVerdict::None);
+  EXPECT_FALSE(overall_depth(taps)->depth);
 }
 
 TEST(TapsTest, WithoutTapsOverTheInclusionThereIsNoVerdict) {
   auto taps = taps_of(sample_session());
   taps.resize(3);
-  EXPECT_FALSE(judge_depth(taps).verdict);
-  EXPECT_NE(tap_table({}, judge_depth({})).find("no stroke"), std::string::npos);
+  EXPECT_FALSE(overall_depth(taps));
+  EXPECT_NE(tap_table({}, overall_depth({})).find("no stroke"), std::string::npos);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ std::vector<CaseResult> empty_cases(const Plan& plan) {
     result.index = one.index;
     result.seed = one.seed;
     result.labels = one.labels;
-    result.values.assign(metric_table().size(), kUndefined);
+    result.values.assign(metric_table().size(), judge::kUndefined);
     results.push_back(std::move(result));
   }
   return results;
@@ -332,7 +332,7 @@ TEST(SpreadTest, CountsUndefinedValuesAsTheWorst) {
     results[i].values.assign(metric_table().size(), static_cast<double>(i));
   }
   EXPECT_EQ(spread_of(results, 0).p95, 19);
-  results[0].values[0] = kUndefined;
+  results[0].values[0] = judge::kUndefined;
   EXPECT_TRUE(std::isnan(spread_of(results, 0).p95));
   EXPECT_EQ(spread_of(results, 0).p50, 11);
   EXPECT_EQ(spread_of(results, 0).undefined, 1U);

@@ -21,9 +21,9 @@ TEST(DepthBoundTest, StepsTakeInformationAndNoStepsNone) {
 }
 
 TEST(DepthBoundTest, MoreTapsAndShallowerInclusionsAreKnownBetter) {
-  const auto database = fem::default_database();
+  const auto database = depth::default_database();
   ASSERT_TRUE(database);
-  estimator::DepthPrior prior;
+  depth::DepthPrior prior;
   prior.radius_min = prior.radius_max = 15e-3;
   prior.ratio_min = prior.ratio_max = 856;
   const auto bound = [&](double depth, int taps) {

@@ -69,7 +69,7 @@ TEST(MetricPlotTest, ALabelThatIsTheSameInAllCasesIsNoAxisIfAnotherIs) {
 }
 
 TEST(MetricPlotTest, NothingToShowIsStillAPicture) {
-  for (const auto& none : {std::vector<CaseResult>{}, {result({"20"}, kUndefined)}}) {
+  for (const auto& none : {std::vector<CaseResult>{}, {result({"20"}, judge::kUndefined)}}) {
     const std::string svg = metric_plot({"rtt_ms"}, none, "tap_a_error", "nothing");
     EXPECT_NE(svg.find("<svg"), std::string::npos);
     EXPECT_NE(svg.find(">nothing<"), std::string::npos);

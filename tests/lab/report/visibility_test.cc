@@ -7,7 +7,7 @@ namespace {
 
 // Deeper inclusions must be larger to be seen, softer ones too; more taps see smaller ones.
 TEST(VisibilityTest, WhatIsSeenShrinksWithDepthAndSoftness) {
-  const auto database = fem::default_database();
+  const auto database = depth::default_database();
   ASSERT_TRUE(database);
   const auto size = [](double radius) { return radius > 0 ? radius : 1; };  // none: very large
   const Visibility few = visibility(*database, {.taps = 1, .reference_taps = 1});

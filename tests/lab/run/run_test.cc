@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "depth/depth_summary.h"
 #include "lab/plan/scenario_file.h"
-#include "patient_site/estimator/depth_summary.h"
 
 // Goal: a whole session in virtual time is a palpation, repeats to the bit, and notices every
 // change. Method: the lab's own scenarios, shortened where the length does not matter.
@@ -49,8 +49,8 @@ TEST(RunTest, APalpationIsPerformedToItsEndAndFindsTheInclusion) {
   for (const DepthEstimate& estimate : result.depths) {
     (estimate.lateral < patient::Phantom::kSiteBoundary ? beside : over).push_back(estimate);
   }
-  EXPECT_EQ(estimator::summarise_depths(beside).verdict, DepthVerdict::None);
-  const DepthEstimate depth = estimator::summarise_depths(over);
+  EXPECT_EQ(depth::summarise_depths(beside).verdict, DepthVerdict::None);
+  const DepthEstimate depth = depth::summarise_depths(over);
   EXPECT_EQ(depth.verdict, DepthVerdict::Found);
   EXPECT_NEAR(depth.depth, 0.010, 0.002);  // the paper itself was off by 2 to 12 %
 }

@@ -1,0 +1,245 @@
+#include "depth/depth_database.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "common/core/conventions.h"
+#include "depth/embedded_database.h"
+
+namespace palp::depth {
+namespace {
+
+constexpr std::size_t kShapes = 2;
+constexpr double kFarExponent = 1.5;  // Hertz, where the table has no rows yet
+
+std::size_t shape_index(fem::InclusionShape shape) {
+  return shape == fem::InclusionShape::Cylinder ? 1 : 0;
+}
+
+/// What a ball of ratio k does to a uniform strain far from it, up to a constant (Eshelby, nu 0.5).
+double ratio_coordinate(double ratio) { return (ratio - 1) / (ratio + 1.5); }
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+Result<void> in_range(const char* name,
+                      double value,
+                      const std::vector<double>& axis,
+                      double unit,
+                      const char* unit_name) {
+  if (value >= axis.front() * (1 - 1e-9) && value <= axis.back() * (1 + 1e-9)) return {};
+  return fail(std::string{name} + " is " + number(value / unit) + unit_name + ", expected " +
+              number(axis.front() / unit) + " to " + number(axis.back() / unit) + unit_name +
+              " (the depth database)");
+}
+
+}  // namespace
+
+Result<DepthDatabase> DepthDatabase::make(const fem::DepthTable& table) {
+  const std::size_t wanted =
+      table.grid.depths.size() * table.grid.radii.size() * table.grid.ratios.size();
+  for (const fem::InclusionShape shape :
+       {fem::InclusionShape::Ball, fem::InclusionShape::Cylinder}) {
+    const auto count = std::count_if(
+        table.members.begin(), table.members.end(), [&](const fem::DepthMember& member) {
+          return member.shape == shape;
+        });
+    // What does not fit into the block is missing, and no more.
+    if (static_cast<double>(count) < 0.8 * static_cast<double>(wanted)) {
+      return fail("the depth database is unfinished: " + std::to_string(count) + " of " +
+                  std::to_string(wanted) + " members of shape " + std::string{to_string(shape)});
+    }
+  }
+  return DepthDatabase{table};
+}
+
+DepthDatabase::DepthDatabase(const fem::DepthTable& table) : grid_{table.grid} {
+  const auto log_of = [](const std::vector<double>& values) {
+    std::vector<double> out;
+    for (const double value : values) out.push_back(std::log(value));
+    return out;
+  };
+  depth_axis_ = log_of(grid_.depths);
+  radius_axis_ = log_of(grid_.radii);
+  indentation_axis_ = log_of(grid_.indentations);
+  log_plain_ = log_of(table.plain);
+  for (const double ratio : grid_.ratios) ratio_axis_.push_back(ratio_coordinate(ratio));
+  const std::size_t members =
+      kShapes * grid_.depths.size() * grid_.radii.size() * grid_.ratios.size();
+  solved_.assign(members, 0);
+  log_excess_.assign(members * indentation_axis_.size(), std::numeric_limits<double>::quiet_NaN());
+  for (const fem::DepthMember& member : table.members) {
+    const std::size_t at =
+        index(shape_index(member.shape), member.depth, member.radius, member.ratio);
+    solved_[at] = member.excess.size();
+    for (std::size_t j = 0; j < member.excess.size(); ++j) {
+      log_excess_[at * indentation_axis_.size() + j] =
+          std::log(static_cast<double>(member.excess[j]));
+    }
+  }
+  for (std::size_t shape = 0; shape < kShapes; ++shape) fill_gaps(shape);
+}
+
+std::size_t DepthDatabase::index(std::size_t shape,
+                                 std::size_t depth,
+                                 std::size_t radius,
+                                 std::size_t ratio) const noexcept {
+  return ((shape * grid_.depths.size() + depth) * grid_.radii.size() + radius) *
+             grid_.ratios.size() +
+         ratio;
+}
+
+/// What could not be solved (no room, or squeezed too far) is extrapolated along the depth from the
+/// two members beside it: a support for the slopes of what was solved, never an answer of its own.
+void DepthDatabase::fill_gaps(std::size_t shape) {
+  const std::size_t depths = grid_.depths.size();
+  const std::size_t rows = indentation_axis_.size();
+  const auto fill = [&](std::size_t radius, std::size_t ratio, std::size_t j) {
+    const auto value = [&](std::size_t i) -> double& {
+      return log_excess_[index(shape, i, radius, ratio) * rows + j];
+    };
+    const auto from_line = [&](std::size_t i, std::size_t a, std::size_t b) {
+      const double t = (depth_axis_[i] - depth_axis_[a]) / (depth_axis_[b] - depth_axis_[a]);
+      value(i) = value(a) + t * (value(b) - value(a));
+    };
+    for (std::size_t i = depths - 2; i-- > 0;) {
+      if (std::isnan(value(i)) && !std::isnan(value(i + 2))) from_line(i, i + 1, i + 2);
+    }
+    for (std::size_t i = 2; i < depths; ++i) {
+      if (std::isnan(value(i))) from_line(i, i - 1, i - 2);
+    }
+  };
+  for (std::size_t radius = 0; radius < grid_.radii.size(); ++radius) {
+    for (std::size_t ratio = 0; ratio < grid_.ratios.size(); ++ratio) {
+      for (std::size_t j = 0; j < rows; ++j) fill(radius, ratio, j);
+    }
+  }
+}
+
+Result<void> DepthDatabase::contains(const Query& query) const {
+  for (const auto& ok :
+       {in_range("the inclusion's depth", query.depth, grid_.depths, kMillimetre, " mm"),
+        in_range("the inclusion's radius", query.radius, grid_.radii, kMillimetre, " mm"),
+        in_range("the stiffness ratio", query.ratio, grid_.ratios, 1, "")}) {
+    if (!ok) return ok;
+  }
+  return fem::check({.block = grid_.block,
+                     .inclusion = {.shape = query.shape,
+                                   .depth = query.depth,
+                                   .radius = query.radius,
+                                   .height = fem::kCylinderHeightOverRadius * query.radius,
+                                   .ratio = query.ratio,
+                                   .poisson = grid_.inclusion_poisson},
+                     .indenter = {.radius = grid_.indenter_radius}});
+}
+
+/// Hermite cubic of the cell that holds x, slopes by the parabola through three nodes, written as
+/// weights of the four nodes round it; at the ends the parabola through the last three.
+DepthDatabase::Stencil DepthDatabase::stencil(const std::vector<double>& axis, double x) noexcept {
+  const std::size_t count = axis.size();
+  Stencil out;
+  if (count < 4) {  // a line
+    const double t = (x - axis[0]) / (axis[1] - axis[0]);
+    out.weight = {1 - t, t, 0, 0};
+    return out;
+  }
+  const auto above = std::upper_bound(axis.begin() + 1, axis.end() - 1, x);
+  const auto cell = static_cast<std::size_t>(above - axis.begin()) - 1;
+  out.first = std::min(cell == 0 ? 0 : cell - 1, count - 4);
+  const double width = axis[cell + 1] - axis[cell];
+  const double t = (x - axis[cell]) / width;
+  const auto add_slope = [&](std::size_t node, double weight) {
+    const std::size_t middle = std::clamp<std::size_t>(node, 1, count - 2);
+    const std::array<double, 3> at{axis[middle - 1], axis[middle], axis[middle + 1]};
+    for (std::size_t i = 0; i < 3; ++i) {  // derivative of Lagrange's polynomials
+      const double a = at[(i + 1) % 3];
+      const double b = at[(i + 2) % 3];
+      out.weight[middle - 1 + i - out.first] +=
+          weight * (2 * axis[node] - a - b) / ((at[i] - a) * (at[i] - b));
+    }
+  };
+  out.weight[cell - out.first] += 1 + t * t * (2 * t - 3);
+  out.weight[cell + 1 - out.first] += t * t * (3 - 2 * t);
+  add_slope(cell, width * t * (1 - t) * (1 - t));
+  add_slope(cell + 1, width * t * t * (t - 1));
+  return out;
+}
+
+DepthDatabase::Curve DepthDatabase::plain() const {
+  return {.log_force = log_plain_, .indentation_max = grid_.indentations.back()};
+}
+
+DepthDatabase::Curve DepthDatabase::curve(const Query& query) const {
+  const std::size_t rows = indentation_axis_.size();
+  const std::size_t shape = shape_index(query.shape);
+  const Stencil depth = stencil(depth_axis_, std::log(query.depth));
+  const Stencil radius = stencil(radius_axis_, std::log(query.radius));
+  const Stencil ratio = stencil(ratio_axis_, ratio_coordinate(query.ratio));
+  Curve out;
+  out.log_force.assign(rows, 0);
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      const std::size_t from = index(shape, depth.first + i, radius.first + j, ratio.first);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const double weight = depth.weight[i] * radius.weight[j] * ratio.weight[k];
+        const double* values = &log_excess_[(from + k) * rows];
+        for (std::size_t row = 0; row < rows; ++row) out.log_force[row] += weight * values[row];
+      }
+    }
+  }
+  for (std::size_t row = 0; row < rows; ++row) {
+    out.log_force[row] = log_plain_[row] + std::log1p(std::exp(out.log_force[row]));
+  }
+  // As far as both depths round the query were solved.
+  const auto above =
+      std::upper_bound(grid_.depths.begin() + 1, grid_.depths.end() - 1, query.depth);
+  const auto cell = static_cast<std::size_t>(above - grid_.depths.begin()) - 1;
+  std::size_t solved = rows;
+  for (const std::size_t step : {std::size_t{0}, std::size_t{1}}) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t here =
+            solved_[index(shape, cell + step, radius.first + j, ratio.first + k)];
+        if (here > 0) solved = std::min(solved, here);
+      }
+    }
+  }
+  out.indentation_max = grid_.indentations[solved - 1];
+  return out;
+}
+
+double DepthDatabase::force(const Curve& curve, double indentation) const noexcept {
+  if (!(indentation > 0)) return 0;
+  const double x = std::log(indentation);
+  if (x < indentation_axis_.front()) {
+    return std::exp(curve.log_force.front() + kFarExponent * (x - indentation_axis_.front()));
+  }
+  const Stencil at = stencil(indentation_axis_, x);
+  double sum = 0;
+  for (std::size_t i = 0; i < 4; ++i) sum += at.weight[i] * curve.log_force[at.first + i];
+  return std::exp(sum);
+}
+
+Result<DepthDatabase> default_database() {
+  const auto table = fem::parse_table(embedded_database());
+  if (!table) return tl::unexpected<Error>(table.error());
+  return DepthDatabase::make(*table);
+}
+
+Result<DepthDatabase> load_database(const std::string& path) {
+  std::ifstream in{path, std::ios::binary};
+  if (!in) return fail("cannot open the depth database " + path);
+  const std::string bytes{std::istreambuf_iterator<char>{in}, {}};
+  const auto table = fem::parse_table(bytes);
+  if (!table) return fail(path + ": " + table.error().text);
+  return DepthDatabase::make(*table);
+}
+
+}  // namespace palp::depth

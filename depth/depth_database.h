@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "fem/depth_table.h"
+
+namespace palp::depth {
+
+/// Forces of phantoms with one inclusion: a table that fem solved, interpolated. Cubic with
+/// continuous slope in log(depth), log(radius), (k - 1)/(k + 1.5) and log(indentation), of the
+/// logarithm of the excess: in these coordinates the curves are nearly straight.
+/// A value, immutable: any thread may read it.
+class DepthDatabase {
+ public:
+  [[nodiscard]] static Result<DepthDatabase> make(const fem::DepthTable& table);
+
+  [[nodiscard]] const fem::DepthGrid& grid() const noexcept { return grid_; }
+
+  struct Query {
+    fem::InclusionShape shape{fem::InclusionShape::Ball};
+    double depth{};   ///< [m]
+    double radius{};  ///< [m]
+    double ratio{};   ///< [-]
+  };
+  /// In range and inside the block; the sentence names field, value and limits.
+  [[nodiscard]] Result<void> contains(const Query& query) const;
+
+  /// One force curve, a value of its own.
+  struct Curve {
+    std::vector<double> log_force;  ///< [-], of the force in N, at the grid's indentations
+    double indentation_max{};       ///< [m]
+  };
+  /// Of a query that contains() accepts; outside it is extrapolated.
+  [[nodiscard]] Curve curve(const Query& query) const;
+  [[nodiscard]] Curve plain() const;
+
+  /// Of the block with the grid's Young's modulus; 0 outside the tissue. [m] -> [N]
+  [[nodiscard]] double force(const Curve& curve, double indentation) const noexcept;
+
+ private:
+  struct Stencil {
+    std::size_t first{};
+    std::array<double, 4> weight{};  ///< [-]
+  };
+  explicit DepthDatabase(const fem::DepthTable& table);
+  void fill_gaps(std::size_t shape);
+  [[nodiscard]] static Stencil stencil(const std::vector<double>& axis, double x) noexcept;
+  [[nodiscard]] std::size_t index(std::size_t shape,
+                                  std::size_t depth,
+                                  std::size_t radius,
+                                  std::size_t ratio) const noexcept;
+
+  fem::DepthGrid grid_;
+  std::vector<double> depth_axis_;        ///< [-], log of m
+  std::vector<double> radius_axis_;       ///< [-], log of m
+  std::vector<double> ratio_axis_;        ///< [-]
+  std::vector<double> indentation_axis_;  ///< [-], log of m
+  std::vector<double> log_plain_;         ///< [-], log of N
+  std::vector<double> log_excess_;        ///< [-], by shape, depth, radius, ratio, indentation
+  std::vector<std::size_t> solved_;       ///< indentations of each member that were solved
+};
+
+/// The database that comes with the program.
+[[nodiscard]] Result<DepthDatabase> default_database();
+/// Another one.
+[[nodiscard]] Result<DepthDatabase> load_database(const std::string& path);
+
+}  // namespace palp::depth

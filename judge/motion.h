@@ -1,0 +1,16 @@
+#pragma once
+
+#include "common/core/time.h"
+
+namespace palp::judge {
+
+/// One tick of a hand or a tip.
+struct Motion {
+  TimePoint at{};
+  double position{};  ///< [m], hand or tip
+  double velocity{};  ///< [m/s]
+  double force{};     ///< [N], surgeon: applied to the hand, patient: contact
+  double lateral{};   ///< [m]
+};
+
+}  // namespace palp::judge
