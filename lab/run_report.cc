@@ -6,8 +6,7 @@
 #include <cstdio>
 #include <span>
 
-#include <nlohmann/json.hpp>
-
+#include "common/config/json.h"
 #include "common/core/depth_text.h"
 #include "common/core/number_text.h"
 #include "lab/digest.h"
@@ -18,7 +17,7 @@
 namespace palp::lab {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using config::Json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -144,7 +143,7 @@ std::string run_report(const Scenario& scenario,
   json["depth"] = depth_json(estimator::summarise_depths(estimates_at(Site::B, result.depths)),
                              scenario.estimator.kind);
   // A file's name need not be UTF-8.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2) + "\n";
 }
 
 std::string run_summary(const Scenario& scenario,
