@@ -9,11 +9,11 @@
 #include <set>
 #include <tuple>
 
-#include <nlohmann/json.hpp>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "common/config/json.h"
 #include "common/config/number.h"
 #include "common/config/report.h"
 #include "common/config/settings_text.h"
@@ -211,9 +211,9 @@ std::size_t wanted_members(const DepthGrid& grid) {
   return cells_of(grid).size() * grid.ratios.size();
 }
 
-nlohmann::ordered_json describe(const DepthTable& table) {
+config::Json describe(const DepthTable& table) {
   const DepthGrid& grid = table.grid;
-  nlohmann::ordered_json out;
+  config::Json out;
   out["schema"] = kSchema;
   out["model"] = table.model;
   out["made_by"] = table.made_by;

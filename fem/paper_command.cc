@@ -7,8 +7,7 @@
 #include <cstdio>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
+#include "common/config/json.h"
 #include "common/config/report.h"
 #include "common/core/conventions.h"
 #include "common/plot/line_plot.h"
@@ -72,8 +71,8 @@ Result<PaperPhantom> solve_phantom(const PaperFlags& flags, double depth_mm) {
   return phantom;
 }
 
-nlohmann::ordered_json numbers(const std::array<double, 4>& values) {
-  nlohmann::ordered_json out;
+config::Json numbers(const std::array<double, 4>& values) {
+  config::Json out;
   for (const double value : values) out.push_back(value);
   return out;
 }
@@ -280,11 +279,11 @@ std::string paper_svg(const PaperStudy& study) {
 }
 
 std::string paper_report(const PaperStudy& study) {
-  nlohmann::ordered_json out;
+  config::Json out;
   out["schema"] = "palp.paper/1";
-  out["phantoms"] = nlohmann::ordered_json::array();
+  out["phantoms"] = config::Json::array();
   for (const PaperPhantom& phantom : study.phantoms) {
-    nlohmann::ordered_json row;
+    config::Json row;
     const double hash = phantom.cubic.hash();
     const TableRow* const paper = published(phantom.depth_mm);
     row["depth_mm"] = phantom.depth_mm;
@@ -300,7 +299,7 @@ std::string paper_report(const PaperStudy& study) {
   out["paper_pole_n"] = kPaperFormula.pole;
   out["refitted"] = {{"numerator", numbers(study.refitted.numerator)},
                      {"pole_n", study.refitted.pole}};
-  out["table"] = nlohmann::ordered_json::array();
+  out["table"] = config::Json::array();
   for (const TableRow& row : kTable) {
     out["table"].push_back(
         {{"depth_mm", row.depth_mm},

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include <nlohmann/json.hpp>
-
+#include "common/config/json.h"
 #include "common/config/report.h"
 
 namespace palp::fem {
@@ -54,13 +53,13 @@ std::string verify_table(const Checks& checks) {
 }
 
 std::string verify_report(const Checks& checks) {
-  nlohmann::ordered_json out;
+  config::Json out;
   out["schema"] = "palp.verify/1";
   out["count"] = checks.size();
   out["missed"] = missed(checks);
-  out["checks"] = nlohmann::ordered_json::array();
+  out["checks"] = config::Json::array();
   for (const Check& check : checks) {
-    nlohmann::ordered_json row;
+    config::Json row;
     row["law"] = check.law;
     row["quantity"] = check.quantity;
     row["found"] = check.found;

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include <nlohmann/json.hpp>
-
+#include "common/config/json.h"
 #include "common/config/report.h"
 #include "common/config/settings_text.h"
 #include "common/coupling/any_coupling.h"
@@ -172,7 +171,7 @@ ExitStatus map(const BatchArguments& arguments, const Machine& machine) {
 
 ExitStatus compare(const BatchArguments& arguments, const Machine& machine) {
   std::string text;
-  nlohmann::ordered_json json;
+  config::Json json;
   json["schema"] = kCompare;
   Run all;
   for (const std::string_view name : coupling::kCouplingNames) {
@@ -184,7 +183,7 @@ ExitStatus compare(const BatchArguments& arguments, const Machine& machine) {
     if (!done) return refusal(done.error());
     text += batch_summary(done->plan, done->results, done->account) + "\n";
     json["couplings"][one.coupling] =
-        nlohmann::ordered_json::parse(batch_report(done->plan, done->results, done->account));
+        config::Json::parse(batch_report(done->plan, done->results, done->account));
     const std::uint64_t before = all.plan.count;
     all.plan = done->plan;
     all.plan.count += before;

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <nlohmann/json.hpp>
-
+#include "common/config/json.h"
 #include "common/core/median.h"
 #include "common/record/notes.h"
 #include "common/record/session_encoder.h"
@@ -12,7 +11,7 @@
 namespace palp::review {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using config::Json;
 
 Json value(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 Json value(const std::optional<double>& number) { return number ? value(*number) : Json(nullptr); }
@@ -24,7 +23,7 @@ Json millimetres(const std::optional<double>& metres) {
 
 /// Null for text that is absent or no JSON object.
 Json parsed(const std::string& text) {
-  Json document = Json::parse(text, nullptr, false);
+  Json document = Json::parse(text);
   return document.is_object() ? document : Json(nullptr);
 }
 
@@ -40,8 +39,8 @@ Json first_known(std::initializer_list<Json> candidates) {
 }
 
 Json whole_number(const std::optional<std::string>& text) {
-  const Json number = text ? Json::parse(*text, nullptr, false) : Json(nullptr);
-  return number.is_number_unsigned() ? number : value(text);
+  const Json number = text ? Json::parse(*text) : Json(nullptr);
+  return number.is_unsigned() ? number : value(text);
 }
 
 Json phantom_json(const SiteData& patient) {
@@ -226,7 +225,7 @@ std::string demo_report(const SiteData& surgeon,
   json["sites"]["surgeon"] = site_json(surgeon, surgeon_report, paths.surgeon);
   json["sites"]["patient"] = site_json(patient, patient_report, paths.patient);
   json["transitions"] = transitions_json(surgeon, patient);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json.dump(2) + '\n';
 }
 
 }  // namespace palp::review

@@ -4,8 +4,7 @@
 #include <cstdio>
 #include <optional>
 
-#include <nlohmann/json.hpp>
-
+#include "common/config/json.h"
 #include "common/config/report.h"
 #include "common/core/host_and_port.h"
 #include "common/io/secure/path_check.h"
@@ -85,9 +84,9 @@ std::string check_text(const std::vector<io::MachineFinding>& findings) {
 }
 
 std::string check_json(const std::vector<io::MachineFinding>& findings) {
-  nlohmann::ordered_json json;
+  config::Json json;
   json["schema"] = "palp.check/1";
-  json["findings"] = nlohmann::ordered_json::array();
+  json["findings"] = config::Json::array();
   for (const io::MachineFinding& one : findings) {
     json["findings"].push_back(
         {{"what", one.what}, {"good", one.good}, {"found", one.found}, {"advice", one.advice}});

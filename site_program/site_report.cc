@@ -2,25 +2,24 @@
 
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
+#include "common/config/json.h"
 #include "common/config/report.h"
 #include "common/io/process/diagnostics.h"
 
 namespace palp::site_program {
 namespace {
 
-using nlohmann::ordered_json;
+using config::Json;
 
 double microseconds(Duration span) { return static_cast<double>(span.count()) * 1e-3; }
 
-ordered_json milliseconds(const std::optional<Duration>& span) {
+Json milliseconds(const std::optional<Duration>& span) {
   if (!span) return nullptr;
   return static_cast<double>(span->count()) * 1e-6;
 }
 
-ordered_json records_json(const RecordAccount& account) {
-  ordered_json json;
+Json records_json(const RecordAccount& account) {
+  Json json;
   for (std::size_t type = 0; type < record::kRecordNames.size(); ++type) {
     json[record::kRecordNames[type]] = account.counts.by_type[type];
   }
@@ -28,7 +27,7 @@ ordered_json records_json(const RecordAccount& account) {
 }
 
 /// On the link and beside it, in one: datagrams that were of no use to this site.
-ordered_json rejected_json(const link::LinkHealth& link, const link::SessionCounters& noise) {
+Json rejected_json(const link::LinkHealth& link, const link::SessionCounters& noise) {
   return {{"malformed", link.malformed + noise.malformed},
           {"foreign", link.foreign + noise.foreign},
           {"replayed", link.replayed},
@@ -37,7 +36,7 @@ ordered_json rejected_json(const link::LinkHealth& link, const link::SessionCoun
 }
 
 /// null where there never was an estimate.
-ordered_json clock_json(const std::optional<link::LinkHealth>& link) {
+Json clock_json(const std::optional<link::LinkHealth>& link) {
   if (!link) return nullptr;
   const link::ClockOffset& clock = *link->peer_clock;
   return {{"offset_ms", milliseconds(clock.offset)},
@@ -64,7 +63,7 @@ std::optional<Duration> RoundTrips::median() const noexcept {
 std::string to_json(const SiteReport& report) {
   const io::LoopStats& loop = report.loop;
   const link::LinkHealth& link = report.link;
-  ordered_json json;
+  Json json;
   json["schema"] = "palp.site/1";
   json["site"] = report.site;
   json["outcome"] = report.exit_status.outcome;
@@ -72,8 +71,7 @@ std::string to_json(const SiteReport& report) {
   json["exit_code"] = config::exit_value(report.exit_status.code);
   json["seed"] = report.seed;
   json["coupling"] = report.coupling;
-  json["session_file"] =
-      report.session_file.empty() ? ordered_json(nullptr) : ordered_json(report.session_file);
+  json["session_file"] = report.session_file.empty() ? Json(nullptr) : Json(report.session_file);
   json["ticks"] = loop.ticks;
   json["missed_ticks"] = loop.missed;
   json["lateness_p50_us"] = microseconds(loop.lateness_p50);
@@ -105,7 +103,7 @@ std::string to_json(const SiteReport& report) {
     json["estimate_latency_p50_ms"] = microseconds(report.estimate_p50) / 1e3;
     json["estimate_latency_max_ms"] = microseconds(report.estimate_max) / 1e3;
   }
-  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json.dump(2) + "\n";
 }
 
 int finish(const SiteReport& report, const std::string& path) {

@@ -6,10 +6,10 @@
 #include <system_error>
 
 #include <fcntl.h>
-#include <nlohmann/json.hpp>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "common/config/json.h"
 #include "common/config/number.h"
 #include "common/core/printable.h"
 
@@ -129,12 +129,12 @@ Result<void> write_whole_file(const std::string& path, std::string_view text) {
 }
 
 std::string failure_report(const std::string& schema, const ExitStatus& exit_status) {
-  nlohmann::ordered_json json;
+  Json json;
   json["schema"] = schema;
   json["outcome"] = exit_status.code == ExitCode::BadInput ? "bad input" : "cannot start";
   json["reason"] = exit_status.text;
   // What people typed need not be UTF-8.
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json.dump(2) + "\n";
 }
 
 std::string json_number(double value) { return std::isfinite(value) ? number_text(value) : "null"; }

@@ -8,8 +8,7 @@
 #include <map>
 #include <span>
 
-#include <nlohmann/json.hpp>
-
+#include "common/config/json.h"
 #include "lab/plan/observer.h"
 #include "lab/run/digest.h"
 #include "lab/run/metric_table.h"
@@ -17,7 +16,7 @@
 namespace palp::lab {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using config::Json;
 
 constexpr std::size_t kWorstMax = 3;  ///< of each metric
 constexpr std::string_view kFixedFirst = "index,seed,digest,virtual_s,outcome,unstable,reason";
@@ -128,7 +127,7 @@ std::string batch_report(const Plan& plan,
   json["wall_s"] = merged ? Json(nullptr) : Json(account.wall);
   json["cases_csv"] = account.cases_csv.empty() ? Json(nullptr) : Json(account.cases_csv);
   // A file's name need not be UTF-8.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2) + "\n";
 }
 
 std::string batch_summary(const Plan& plan,

@@ -3,8 +3,7 @@
 #include <cstdio>
 #include <optional>
 
-#include <nlohmann/json.hpp>
-
+#include "common/config/json.h"
 #include "common/core/conventions.h"
 #include "common/core/median.h"
 #include "lab/plan/depth_study.h"
@@ -12,7 +11,7 @@
 namespace palp::lab {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using config::Json;
 
 constexpr std::size_t kThirds = 3;
 constexpr double kNear = 0.2;  // of the depth: an answer worth having
@@ -228,7 +227,7 @@ std::string depth_report(const DepthStudy& study,
   json["wide_coverage95_open"] = number(share(all.wide.inside_open, all.wide.found));
   json["cases_csv"] = cases_csv.empty() ? Json(nullptr) : Json(cases_csv);
   // A file's name need not be UTF-8.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2) + "\n";
 }
 
 std::string depth_table(const DepthStudy& study, const std::vector<DepthCase>& cases) {

@@ -7,8 +7,7 @@
 #include <optional>
 #include <span>
 
-#include <nlohmann/json.hpp>
-
+#include "common/config/json.h"
 #include "common/core/number_text.h"
 #include "judge/depth_statement.h"
 #include "judge/depth_summary.h"
@@ -18,7 +17,7 @@
 namespace palp::lab {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using config::Json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -140,7 +139,7 @@ std::string run_report(const Scenario& scenario,
   json["depth"] = depth_json(judge::summarise_depths(estimates_at(judge::Site::B, result.depths)),
                              scenario.estimator.kind);
   // A file's name need not be UTF-8.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2) + "\n";
 }
 
 std::string run_summary(const Scenario& scenario,

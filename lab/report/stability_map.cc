@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include <nlohmann/json.hpp>
-
+#include "common/config/json.h"
 #include "common/config/number.h"
 #include "common/plot/svg_text.h"
 
@@ -53,8 +52,10 @@ Map map_of(const std::vector<CaseResult>& results) {
   return map;
 }
 
-nlohmann::ordered_json numbers(const std::vector<std::string>& texts) {
-  auto list = nlohmann::ordered_json::array();
+using config::Json;
+
+Json numbers(const std::vector<std::string>& texts) {
+  auto list = Json::array();
   for (const std::string& text : texts) list.push_back(config::parse_number(text).value_or(0));
   return list;
 }
@@ -69,7 +70,6 @@ const char* colour_of(std::optional<bool> stable) {
 std::string map_report(const Plan& plan,
                        const std::vector<CaseResult>& results,
                        const BatchAccount& account) {
-  using Json = nlohmann::ordered_json;
   const Map map = map_of(results);
   Json json;
   json["schema"] = "palp.map/1";
@@ -93,7 +93,7 @@ std::string map_report(const Plan& plan,
   json["cores"] = merged ? Json(nullptr) : Json(account.cores);
   json["cpu_s"] = merged ? Json(nullptr) : Json(account.cpu);
   json["wall_s"] = merged ? Json(nullptr) : Json(account.wall);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2) + "\n";
 }
 
 std::string map_text(const std::vector<CaseResult>& results) {

@@ -2,8 +2,7 @@
 
 #include <cstdio>
 
-#include <nlohmann/json.hpp>
-
+#include "common/config/json.h"
 #include "common/config/report.h"
 #include "common/core/conventions.h"
 
@@ -106,17 +105,17 @@ ExitStatus run_visible(const VisibilityFlags& flags) {
                      .sensing = {}};
   const Visibility all = visibility(*database, plan);
   if (!flags.report.empty()) {
-    nlohmann::ordered_json out;
+    config::Json out;
     out["schema"] = "palp.visible/1";
     out["taps"] = flags.taps;
     out["reference_taps"] = flags.reference_taps;
     out["indentation_mm"] = flags.indentation_mm;
     out["ratios"] = all.ratios;
-    out["rows"] = nlohmann::ordered_json::array();
+    out["rows"] = config::Json::array();
     for (std::size_t i = 0; i < all.depths.size(); ++i) {
-      nlohmann::ordered_json radii = nlohmann::ordered_json::array();
+      config::Json radii = config::Json::array();
       for (const double radius : all.radii[i]) {
-        radii.push_back(radius > 0 ? nlohmann::ordered_json(radius / kMillimetre) : nullptr);
+        radii.push_back(radius > 0 ? config::Json(radius / kMillimetre) : nullptr);
       }
       out["rows"].push_back({{"depth_mm", all.depths[i] / kMillimetre}, {"radius_mm", radii}});
     }

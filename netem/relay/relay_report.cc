@@ -2,32 +2,32 @@
 
 #include <cstdio>
 
-#include <nlohmann/json.hpp>
+#include "common/config/json.h"
 
 namespace palp::netem {
 namespace {
 
-using nlohmann::ordered_json;
+using config::Json;
 
 double milliseconds(Duration span) { return static_cast<double>(span.count()) * 1e-6; }
 
 /// null while there is nothing to tell.
-ordered_json quantile_ms(const Histogram& histogram, double share) {
+Json quantile_ms(const Histogram& histogram, double share) {
   if (histogram.count() == 0) return nullptr;
   return milliseconds(histogram.quantile(share));
 }
 
-ordered_json quantile_us(const Histogram& histogram, double share) {
+Json quantile_us(const Histogram& histogram, double share) {
   if (histogram.count() == 0) return nullptr;
   return milliseconds(histogram.quantile(share)) * 1e3;
 }
 
-ordered_json mean_ms(const Histogram& histogram) {
+Json mean_ms(const Histogram& histogram) {
   if (histogram.count() == 0) return nullptr;
   return milliseconds(histogram.mean());
 }
 
-ordered_json deviation_ms(const Histogram& histogram) {
+Json deviation_ms(const Histogram& histogram) {
   if (histogram.count() == 0) return nullptr;
   return milliseconds(histogram.deviation());
 }
@@ -36,11 +36,11 @@ std::uint64_t lost_in(const ChannelCounters& counters) {
   return counters.lost + counters.header_hit + counters.blackout + counters.over_limit;
 }
 
-ordered_json direction_report(const Relay& relay, Direction direction, const std::string& asked) {
+Json direction_report(const Relay& relay, Direction direction, const std::string& asked) {
   const Channel& channel = relay.channel(direction);
   const ChannelCounters& counters = channel.counters();
   const RelayTraffic traffic = relay.traffic(direction);
-  ordered_json report;
+  Json report;
   report["asked"] = asked;
   report["sent"] = counters.pushed;
   report["received"] = traffic.forwarded;
@@ -63,8 +63,8 @@ ordered_json direction_report(const Relay& relay, Direction direction, const std
   report["release_error_p50_us"] = quantile_us(traffic.release_error, 0.5);
   report["jitter_p99_p50_ms"] =
       traffic.delay.count() == 0
-          ? ordered_json(nullptr)
-          : ordered_json(milliseconds(traffic.delay.quantile(0.99) - traffic.delay.quantile(0.5)));
+          ? Json(nullptr)
+          : Json(milliseconds(traffic.delay.quantile(0.99) - traffic.delay.quantile(0.5)));
   report["release_error_p99_us"] = quantile_us(traffic.release_error, 0.99);
   report["late_releases"] = traffic.late_releases;
   report["socket_errors"] = traffic.socket_errors;
@@ -93,9 +93,9 @@ std::string direction_summary(const Relay& relay, Direction direction) {
 }  // namespace
 
 std::string relay_report(const Relay& relay, const RelayRun& run) {
-  ordered_json report;
+  Json report;
   report["schema"] = "palp.relay/1";
-  report["preset"] = run.preset.empty() ? ordered_json(nullptr) : ordered_json(run.preset);
+  report["preset"] = run.preset.empty() ? Json(nullptr) : Json(run.preset);
   report["seed"] = run.seed;
   report["listen"] = relay.listening_on().to_string();
   report["forward"] = run.forward.to_string();
@@ -133,13 +133,12 @@ std::string status_line(const RelayStatus& status, TimePoint start) {
 std::string status_json(const RelayStatus& status,
                         TimePoint start,
                         const std::array<std::string, 2>& laws) {
-  ordered_json report;
+  Json report;
   report["at_s"] = seconds(status.at - start);
-  report["client"] =
-      status.client.valid() ? ordered_json(status.client.to_string()) : ordered_json(nullptr);
+  report["client"] = status.client.valid() ? Json(status.client.to_string()) : Json(nullptr);
   for (const std::size_t i : {0U, 1U}) {
     const RelayStatus::Way& way = status.ways[i];
-    ordered_json& part = report[i == 0 ? "up" : "down"];
+    Json& part = report[i == 0 ? "up" : "down"];
     part["sent"] = way.counters.pushed;
     part["received"] = way.forwarded;
     part["lost"] = lost_in(way.counters);
@@ -160,13 +159,10 @@ std::string status_json(const RelayStatus& status,
 }
 
 std::string recording_end_line(const RecordingGaps& gaps) {
-  return ordered_json{{"recording", false}, {"missed", gaps.missed}, {"open", gaps.open}}.dump();
+  return Json{{"recording", false}, {"missed", gaps.missed}, {"open", gaps.open}}.dump();
 }
 
-std::string error_line(const std::string& sentence) {
-  return ordered_json{{"error", sentence}}.dump(
-      -1, ' ', false, ordered_json::error_handler_t::replace);
-}
+std::string error_line(const std::string& sentence) { return Json{{"error", sentence}}.dump(); }
 
 std::string relay_summary(const Relay& relay) {
   return direction_summary(relay, Direction::Up) + direction_summary(relay, Direction::Down);
