@@ -72,7 +72,8 @@ BayesEstimator::Settled& BayesEstimator::settled_at(const TouchedPlace& place) {
   if (settled_.size() <= place.index) settled_.resize(place.index + 1);
   Settled& settled = settled_[place.index];
   if (settled.generation != place.generation) {
-    settled = Settled{.generation = place.generation, .sums = TouchSums{place.surface}, .best = {}};
+    settled =
+        Settled{.generation = place.generation, .sums = NormalEquations{place.surface}, .best = {}};
   }
   return settled;
 }

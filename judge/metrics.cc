@@ -21,8 +21,8 @@ constexpr double kFreeAirTail = 3.0;                    ///< [s]
 constexpr std::size_t kStepTicks = 10;
 
 /// Runs of ticks that belong to one phase.
-std::vector<std::span<const TrialTick>> split_phases(const std::vector<TrialTick>& ticks) {
-  std::vector<std::span<const TrialTick>> phases;
+std::vector<std::span<const RunTick>> split_phases(const std::vector<RunTick>& ticks) {
+  std::vector<std::span<const RunTick>> phases;
   const auto key = [](const PhaseTag& tag) { return std::tuple{tag.kind, tag.site, tag.index}; };
   std::size_t begin = 0;
   for (std::size_t k = 1; k <= ticks.size(); ++k) {
@@ -35,14 +35,14 @@ std::vector<std::span<const TrialTick>> split_phases(const std::vector<TrialTick
   return phases;
 }
 
-void add(FeltStiffness& stiffness, std::span<const TrialTick> tap) {
-  for (const TrialTick& tick : tap) {
+void add(FeltStiffness& stiffness, std::span<const RunTick> tap) {
+  for (const RunTick& tick : tap) {
     if (tick.counted)
       stiffness.add(tick.hand, tick.hand_velocity, tick.hand_force, tick.force_true);
   }
 }
 
-void judge_ratio(const FeltStiffness& a, const FeltStiffness& b, TrialMetrics& metrics) {
+void judge_ratio(const FeltStiffness& a, const FeltStiffness& b, RunMetrics& metrics) {
   if (!a.error() || !b.error()) return;
   const double felt = *b.felt() / *a.felt();
   metrics.ratio_true = *b.truth() / *a.truth();
@@ -57,10 +57,10 @@ struct HoldMeans {
   double truth{kUndefined};     ///< [N]
 };
 
-HoldMeans hold_means(std::span<const TrialTick> hold) {
+HoldMeans hold_means(std::span<const RunTick> hold) {
   HoldMeans means{0, 0, 0};
   double count = 0;
-  for (const TrialTick& tick : hold) {
+  for (const RunTick& tick : hold) {
     if (!tick.counted || tick.phase.elapsed < 0.6 * tick.phase.duration) continue;
     means.position += tick.hand;
     means.felt += tick.hand_force;
@@ -81,10 +81,10 @@ Secants secants(const HoldMeans& shallow, const HoldMeans& deep) {
 }
 
 /// max - min of x_m in the second half of a hold [m].
-double swing(std::span<const TrialTick> hold) {
+double swing(std::span<const RunTick> hold) {
   double low = INFINITY;
   double high = -INFINITY;
-  for (const TrialTick& tick : hold) {
+  for (const RunTick& tick : hold) {
     if (!tick.counted || tick.phase.elapsed < 0.5 * tick.phase.duration) continue;
     low = std::min(low, tick.hand + tick.surface);
     high = std::max(high, tick.hand + tick.surface);
@@ -92,10 +92,10 @@ double swing(std::span<const TrialTick> hold) {
   return high < low ? 0 : high - low;
 }
 
-void judge_stability(const std::vector<TrialTick>& ticks,
-                     std::span<const std::span<const TrialTick>> phases,
+void judge_stability(const std::vector<RunTick>& ticks,
+                     std::span<const std::span<const RunTick>> phases,
                      const MetricsConfig& config,
-                     TrialMetrics& metrics) {
+                     RunMetrics& metrics) {
   for (const auto& phase : phases) {
     const PhaseKind kind = phase.front().phase.kind;
     if (kind != PhaseKind::PressHold && kind != PhaseKind::LiftHold) continue;
@@ -105,7 +105,7 @@ void judge_stability(const std::vector<TrialTick>& ticks,
     }
   }
   double at_cap = 0;
-  for (const TrialTick& tick : ticks) {
+  for (const RunTick& tick : ticks) {
     if (!tick.counted) continue;
     if (std::abs(tick.hand_force) >= config.force_cap * (1 - 1e-9)) at_cap += config.period;
     const bool runaway = !(std::abs(tick.hand) <= kUnstablePosition) ||
@@ -128,10 +128,10 @@ constexpr double kLearningShare = 0.1;                ///< [-]
 constexpr double kLearningTime = 0.05;                ///< [s], of right force
 
 /// How long the force at a new site is wrong.
-double learning_time(const std::vector<TrialTick>& ticks, Site site, double period) {
+double learning_time(const std::vector<RunTick>& ticks, Site site, double period) {
   double began_at = kUndefined;
   double right_for = 0;
-  for (const TrialTick& tick : ticks) {
+  for (const RunTick& tick : ticks) {
     const bool here = tick.phase.site == site && tick.phase.kind != PhaseKind::FreeAir;
     if (!here || !tick.counted) continue;
     if (std::isnan(began_at) && tick.contact_force >= kContactForce) began_at = tick.at;
@@ -144,12 +144,12 @@ double learning_time(const std::vector<TrialTick>& ticks, Site site, double peri
 }
 
 /// rms of felt - true over all ticks of all taps.
-double tap_force_rms(std::span<const std::span<const TrialTick>> phases) {
+double tap_force_rms(std::span<const std::span<const RunTick>> phases) {
   double square = 0;
   double count = 0;
   for (const auto& phase : phases) {
     if (phase.front().phase.kind != PhaseKind::Tap) continue;
-    for (const TrialTick& tick : phase) {
+    for (const RunTick& tick : phase) {
       if (!tick.counted) continue;
       square += (tick.hand_force - tick.force_true) * (tick.hand_force - tick.force_true);
       ++count;
@@ -160,13 +160,13 @@ double tap_force_rms(std::span<const std::span<const TrialTick>> phases) {
 
 constexpr double kInTheAir = -1.5 * kMillimetre;  ///< [m]
 
-void judge_blackout(const std::vector<TrialTick>& ticks,
+void judge_blackout(const std::vector<RunTick>& ticks,
                     const MetricsConfig& config,
-                    TrialMetrics& metrics) {
+                    RunMetrics& metrics) {
   if (config.blackout_to <= config.blackout_from) return;
   metrics.phantom_force = 0;
   metrics.stage_speed_max = 0;
-  for (const TrialTick& tick : ticks) {
+  for (const RunTick& tick : ticks) {
     if (tick.at < config.blackout_from || tick.at > config.blackout_to) continue;
     if (tick.hand < kInTheAir) {
       metrics.phantom_force = std::max(metrics.phantom_force, std::abs(tick.hand_force));
@@ -175,7 +175,7 @@ void judge_blackout(const std::vector<TrialTick>& ticks,
   }
 }
 
-void judge_taps(std::span<const std::span<const TrialTick>> phases, TrialMetrics& metrics) {
+void judge_taps(std::span<const std::span<const RunTick>> phases, RunMetrics& metrics) {
   std::array<FeltStiffness, 2> pooled;
   for (const auto& phase : phases) {
     const PhaseTag& tag = phase.front().phase;
@@ -184,7 +184,7 @@ void judge_taps(std::span<const std::span<const TrialTick>> phases, TrialMetrics
     FeltStiffness own;
     add(own, phase);
     double deepest = -INFINITY;
-    for (const TrialTick& tick : phase) deepest = std::max(deepest, tick.hand);
+    for (const RunTick& tick : phase) deepest = std::max(deepest, tick.hand);
     metrics.taps.push_back({.site = tag.site,
                             .index = tag.index,
                             .hand_max = deepest,
@@ -199,7 +199,7 @@ void judge_taps(std::span<const std::span<const TrialTick>> phases, TrialMetrics
   judge_ratio(pooled[0], pooled[1], metrics);
 }
 
-void judge_holds(std::span<const std::span<const TrialTick>> phases, TrialMetrics& metrics) {
+void judge_holds(std::span<const std::span<const RunTick>> phases, RunMetrics& metrics) {
   std::array<std::array<HoldMeans, 2>, 2> holds;
   for (const auto& phase : phases) {
     const PhaseTag& tag = phase.front().phase;
@@ -210,7 +210,7 @@ void judge_holds(std::span<const std::span<const TrialTick>> phases, TrialMetric
     if (tag.kind == PhaseKind::LiftHold && tag.site == Site::B) {
       double sum = 0;
       double count = 0;
-      for (const TrialTick& tick : phase) {
+      for (const RunTick& tick : phase) {
         if (!tick.counted || tick.phase.elapsed < 0.8 * tick.phase.duration) continue;
         sum += std::abs(tick.tip - tick.hand);
         ++count;
@@ -225,21 +225,21 @@ void judge_holds(std::span<const std::span<const TrialTick>> phases, TrialMetric
   metrics.static_ratio_error = b.felt / a.felt / (b.truth / a.truth) - 1;
 }
 
-void judge_forces(const std::vector<TrialTick>& ticks,
+void judge_forces(const std::vector<RunTick>& ticks,
                   const MetricsConfig& config,
-                  TrialMetrics& metrics) {
+                  RunMetrics& metrics) {
   double square = 0;
   double count = 0;
   double peak = 0;
   for (std::size_t k = 0; k < ticks.size(); ++k) {
-    const TrialTick& tick = ticks[k];
+    const RunTick& tick = ticks[k];
     metrics.force_peak = std::max(metrics.force_peak, std::abs(tick.hand_force));
     metrics.contact_force_max = std::max(metrics.contact_force_max, tick.contact_force);
     // Across a break of the session there is no step.
     const bool whole =
         k >= kStepTicks && tick.at - ticks[k - kStepTicks].at < (kStepTicks + 0.5) * config.period;
     if (whole) {
-      const TrialTick& before = ticks[k - kStepTicks];
+      const RunTick& before = ticks[k - kStepTicks];
       const double step = tick.hand_force - before.hand_force;
       const double unexplained = step - (tick.force_true - before.force_true);
       metrics.force_step_10ms = std::max(metrics.force_step_10ms, std::abs(step));
@@ -266,8 +266,8 @@ void judge_forces(const std::vector<TrialTick>& ticks,
 
 }  // namespace
 
-TrialMetrics metrics_of(const std::vector<TrialTick>& ticks, const MetricsConfig& config) {
-  TrialMetrics metrics;
+RunMetrics metrics_of(const std::vector<RunTick>& ticks, const MetricsConfig& config) {
+  RunMetrics metrics;
   if (ticks.empty()) return metrics;
   const auto phases = split_phases(ticks);
   judge_stability(ticks, phases, config, metrics);

@@ -23,7 +23,7 @@ struct PhaseTag {
 };
 
 /// True states of one 1 kHz tick. Positions are relative to the true surface at rest.
-struct TrialTick {
+struct RunTick {
   double at{};  ///< [s], since the start of the run
   PhaseTag phase;
   bool counted{};                ///< the surgeon's site was Engaged or in Hold
@@ -61,7 +61,7 @@ struct TapMetrics {
 };
 
 /// Errors are rendered/true - 1 [-]; NaN: undefined.
-struct TrialMetrics {
+struct RunMetrics {
   bool unstable{};
   const char* unstable_reason{""};
   double tap_error[2]{kUndefined, kUndefined};     ///< [-], taps 2-4, sites A and B
@@ -96,7 +96,6 @@ struct TrialMetrics {
   std::vector<TapMetrics> taps;
 };
 
-[[nodiscard]] TrialMetrics metrics_of(const std::vector<TrialTick>& ticks,
-                                      const MetricsConfig& config);
+[[nodiscard]] RunMetrics metrics_of(const std::vector<RunTick>& ticks, const MetricsConfig& config);
 
 }  // namespace palp::judge

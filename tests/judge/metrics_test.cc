@@ -17,7 +17,7 @@ double tissue(Site site, double depth) {
 }
 
 struct Builder {
-  std::vector<TrialTick> ticks;
+  std::vector<RunTick> ticks;
   double gain_a{1};
   double gain_b{1};
 
@@ -29,7 +29,7 @@ struct Builder {
     const int count = static_cast<int>(duration * 1000);
     for (int k = 0; k < count; ++k) {
       const double t = k * 1e-3;
-      TrialTick tick;
+      RunTick tick;
       tick.phase = {kind, site, index, t, duration};
       tick.counted = true;
       tick.hand = hand(t);
@@ -58,7 +58,7 @@ struct Builder {
 TEST(MetricsTest, ExactRenderingHasNoError) {
   Builder builder;
   builder.palpation();
-  const TrialMetrics metrics = metrics_of(builder.ticks, {});
+  const RunMetrics metrics = metrics_of(builder.ticks, {});
   EXPECT_FALSE(metrics.unstable);
   for (int site = 0; site < 2; ++site) {
     EXPECT_NEAR(metrics.tap_error[site], 0, 1e-12);
@@ -78,7 +78,7 @@ TEST(MetricsTest, AGainOfTheRenderedForceIsTheStiffnessError) {
   builder.gain_a = 0.7;
   builder.gain_b = 1.2;
   builder.palpation();
-  const TrialMetrics metrics = metrics_of(builder.ticks, {});
+  const RunMetrics metrics = metrics_of(builder.ticks, {});
   EXPECT_NEAR(metrics.tap_error[0], -0.3, 1e-12);
   EXPECT_NEAR(metrics.tap_error[1], 0.2, 1e-12);
   EXPECT_NEAR(metrics.static_error[0], -0.3, 1e-12);
@@ -91,7 +91,7 @@ TEST(MetricsTest, ASwingOfOneMillimetreInTheSecondHalfOfAHoldIsUnstable) {
   for (const double swing : {0.00098, 0.00102}) {
     Builder builder;
     builder.palpation();
-    for (TrialTick& tick : builder.ticks) {
+    for (RunTick& tick : builder.ticks) {
       const bool late = tick.phase.elapsed > 0.5 * tick.phase.duration;
       if (tick.phase.kind == PhaseKind::LiftHold && late) {
         tick.hand += 0.5 * swing * (static_cast<int>(tick.phase.elapsed * 1000) % 2 != 0 ? 1 : -1);
@@ -121,7 +121,7 @@ TEST(MetricsTest, NotANumberIsUnstable) {
 TEST(MetricsTest, TicksOutsideEngagedAndHoldDoNotCount) {
   Builder builder;
   builder.palpation();
-  for (TrialTick& tick : builder.ticks) {
+  for (RunTick& tick : builder.ticks) {
     if (tick.phase.kind == PhaseKind::Tap && tick.phase.index == 3) {
       tick.counted = false;
       tick.hand_force = 1e3;
@@ -157,7 +157,7 @@ TEST(MetricsTest, AStepOfAnEventIsNeitherTheHandsMotionNorWhatWasNotFelt) {
   ASSERT_GT(swept, 0);
   EXPECT_EQ(metrics_of(builder.ticks, {}).force_step_event, 0) << "exact rendering";
   Builder blind = builder;
-  for (TrialTick& tick : blind.ticks) tick.hand_force = 0;
+  for (RunTick& tick : blind.ticks) tick.hand_force = 0;
   EXPECT_EQ(metrics_of(blind.ticks, {}).force_step_event, 0) << "nothing was felt, nothing changed";
   for (std::size_t k = 500; k < 1000; ++k) builder.ticks[k].hand_force += 0.3;
   EXPECT_NEAR(metrics_of(builder.ticks, {}).force_step_event, 0.3, 1e-12);
