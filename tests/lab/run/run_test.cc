@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "depth/depth_summary.h"
+#include "judge/depth_summary.h"
 #include "lab/plan/scenario_file.h"
 
 // Goal: a whole session in virtual time is a palpation, repeats to the bit, and notices every
@@ -49,8 +49,8 @@ TEST(RunTest, APalpationIsPerformedToItsEndAndFindsTheInclusion) {
   for (const DepthEstimate& estimate : result.depths) {
     (estimate.lateral < patient::Phantom::kSiteBoundary ? beside : over).push_back(estimate);
   }
-  EXPECT_EQ(depth::summarise_depths(beside).verdict, DepthVerdict::None);
-  const DepthEstimate depth = depth::summarise_depths(over);
+  EXPECT_EQ(judge::summarise_depths(beside).verdict, DepthVerdict::None);
+  const DepthEstimate depth = judge::summarise_depths(over);
   EXPECT_EQ(depth.verdict, DepthVerdict::Found);
   EXPECT_NEAR(depth.depth, 0.010, 0.002);  // the paper itself was off by 2 to 12 %
 }
