@@ -63,7 +63,7 @@ class Link {
     std::uint64_t number{};
     std::uint32_t epoch{};
     TimePoint at{};
-    PortSample sample;  ///< with wave sums as payload or none
+    PortSample sample;  ///< as later telegrams repeat it
   };
 
   /// How long the newest telegram of a tick, the peer's or ours, was on its way.
@@ -99,9 +99,10 @@ class Link {
     TimePoint newest_arrived_at{};
     SiteReport peer;
     TimePoint first_accepted_at{};
-    std::uint64_t echo_ns{kNothingHeard};  ///< newest
+    std::uint64_t echo_ns{message::kNothingHeard};  ///< newest
     std::uint32_t exchanges{};
     bool synchronised{};
+    std::size_t payload_kind{};  ///< newest that either side sent, but none
   };
 
   struct Opened {
@@ -120,6 +121,7 @@ class Link {
   void accept(const WireTelegram& wire, std::uint64_t number, TimePoint arrived_at) noexcept;
   void note_ways(TimePoint now) noexcept;
   void hand_over(const Incoming& incoming, std::uint32_t epoch) noexcept;
+  void note_payload(const PortSample& sample) noexcept;
   void synchronise(TimePoint now) noexcept;
   [[nodiscard]] std::uint32_t epoch_wanted() const noexcept;
   [[nodiscard]] Duration gap(TimePoint now) const noexcept;
