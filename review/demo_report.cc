@@ -7,6 +7,7 @@
 
 #include "common/core/depth_text.h"
 #include "common/core/median.h"
+#include "common/message/health_counters.h"
 #include "common/record/notes.h"
 #include "common/record/session_encoder.h"
 
@@ -141,12 +142,11 @@ Json rejected_json(const SiteData& site, const Json& report) {
   if (!told.is_null() || !site.last_link) {
     return told;
   }
-  const LinkHealth& health = site.last_link->health;
-  return {{"malformed", health.malformed},
-          {"foreign", health.foreign},
-          {"replayed", health.replayed},
-          {"too_old", health.too_old},
-          {"forged", health.forged}};
+  Json json;
+  for (const auto& [reason, count] : message::refusals_of(site.last_link->health)) {
+    json[std::string{reason}] = count;
+  }
+  return json;
 }
 
 Json site_json(const SiteData& site, const Json& report, const std::string& path) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/core/result.h"
-#include "common/record/mcap_reader.h"
+#include "common/record/session_reader.h"
 #include "common/record/recorder.h"
 
 namespace palp::review {

@@ -6,6 +6,7 @@
 
 #include "common/config/report.h"
 #include "common/io/diagnostics.h"
+#include "common/message/health_counters.h"
 
 namespace palp::site_program {
 namespace {
@@ -29,11 +30,11 @@ ordered_json records_json(const RecordAccount& account) {
 
 /// On the link and beside it, in one: datagrams that were of no use to this site.
 ordered_json rejected_json(const LinkHealth& link, const link::SessionCounters& noise) {
-  return {{"malformed", link.malformed + noise.malformed},
-          {"foreign", link.foreign + noise.foreign},
-          {"replayed", link.replayed},
-          {"too_old", link.too_old},
-          {"forged", link.forged}};
+  ordered_json json;
+  for (const auto& [reason, count] : message::refusals_of(link)) json[std::string{reason}] = count;
+  json["malformed"] = link.malformed + noise.malformed;
+  json["foreign"] = link.foreign + noise.foreign;
+  return json;
 }
 
 /// null where there never was an estimate.
@@ -86,15 +87,7 @@ std::string to_json(const SiteReport& report) {
   json["records"] = records_json(report.records);
   json["tick_views"] = report.records.counts.views;
   json["messages"] = report.records.messages;
-  json["sent"] = link.sent;
-  json["accepted"] = link.accepted;
-  json["late"] = link.late;
-  json["lost"] = link.lost;
-  json["repaired"] = link.repaired;
-  json["reordered"] = link.reordered;
-  json["stale"] = link.stale;
-  json["old_epoch"] = link.old_epoch;
-  json["unsent"] = link.unsent;
+  for (const auto& [name, count] : message::counters_of(link)) json[std::string{name}] = count;
   json["rejected"] = rejected_json(link, report.noise);
   json["round_trip_p50_ms"] = milliseconds(report.round_trips.median());
   json["round_trip_min_ms"] = milliseconds(report.round_trips.least());

@@ -11,7 +11,8 @@ namespace palp::house {
 namespace {
 
 /// Rooms, the longer name first where one lies in another.
-constexpr std::array<std::string_view, 20> kRooms{"common/core",
+constexpr std::array<std::string_view, 21> kRooms{"common/core",
+                                                  "common/message",
                                                   "common/coupling",
                                                   "common/link",
                                                   "common/config",
@@ -41,16 +42,23 @@ struct Arrow {
 const std::vector<Arrow>& arrows() {
   static const std::vector<Arrow> table{
       {"common/core/*", {}},
-      {"common/coupling/*", {}},
-      {"common/link/*", {}},
+      {"common/message/*", {}},
+      {"common/coupling/*", {"common/message"}},
+      {"common/link/*", {"common/message"}},
       {"common/config/*", {}},
       {"common/settings/*", {"common/coupling", "common/link", "common/config"}},
-      {"common/record/*", {"common/link"}},
-      {"common/io/*", {"common/link"}},
+      {"common/record/*", {"common/link", "common/message"}},
+      {"common/io/*", {"common/link", "common/message"}},
       {"common/plot/*", {}},
       // What the two programs of a session do alike: it puts parts together, as their main.cc does.
       {"common/site_program/*",
-       {"common/config", "common/settings", "common/link", "common/record", "common/io", "netem"}},
+       {"common/config",
+        "common/settings",
+        "common/message",
+        "common/link",
+        "common/record",
+        "common/io",
+        "netem"}},
       // The emulator as a program; its library sees nothing but the seam.
       {"netem/relay*", {"common/link/transport.h", "common/io", "common/config"}},
       {"netem/datagram_socket.*", {"common/link/transport.h", "common/io"}},
@@ -73,7 +81,7 @@ const std::vector<Arrow>& arrows() {
       {"surgeon_site/devices/*", {"surgeon_site/haptic_device.h", "common/io"}},
       {"surgeon_site/settings.*",
        {"common/coupling", "common/link", "common/record", "common/config", "common/settings"}},
-      {"surgeon_site/*", {"common/coupling", "common/link", "common/record"}},
+      {"surgeon_site/*", {"common/message", "common/coupling", "common/link", "common/record"}},
       {"patient_site/main.cc",
        {"patient_site/devices",
         "common/site_program",
@@ -87,7 +95,7 @@ const std::vector<Arrow>& arrows() {
         "netem"}},
       {"patient_site/devices/*",
        {"patient_site/stage.h", "patient_site/force_sensor.h", "common/io"}},
-      {"patient_site/estimator/*", {"fem/depth_database.h"}},
+      {"patient_site/estimator/*", {"fem/depth_database.h", "common/message"}},
       {"patient_site/settings.*",
        {"patient_site/estimator",
         "fem/depth_database.h",
@@ -100,6 +108,7 @@ const std::vector<Arrow>& arrows() {
       {"patient_site/*",
        {"patient_site/estimator",
         "fem/depth_database.h",
+        "common/message",
         "common/coupling",
         "common/link",
         "common/record"}},
@@ -110,13 +119,19 @@ const std::vector<Arrow>& arrows() {
         "fem/depth_database.h",
         "patient_site/estimator",
         "netem",
+        "common/message",
         "common/coupling",
         "common/link",
         "common/record",
         "common/config",
         "common/settings",
         "common/plot"}},
-      {"review/*", {"common/record", "common/coupling", "patient_site/estimator", "common/config"}},
+      {"review/*",
+       {"common/message",
+        "common/record",
+        "common/coupling",
+        "patient_site/estimator",
+        "common/config"}},
   };
   return table;
 }
@@ -129,9 +144,8 @@ struct Fence {
 
 /// The files that speak protobuf: schema in, plain structs out.
 const std::vector<std::string_view>& protobuf_files() {
-  static const std::vector<std::string_view> files{"common/link/codec*.cc",
+  static const std::vector<std::string_view> files{"common/link/codec_control.cc",
                                                    "common/config/*.cc",
-                                                   "common/record/*.cc",
                                                    "common/settings/*.cc",
                                                    "surgeon_site/settings*.cc",
                                                    "patient_site/settings*.cc",
