@@ -147,7 +147,7 @@ void Link::send(const Telegram& telegram, TimePoint now) noexcept {
   conversation.history[header.number % kHistory] = {
       true, header.number, epoch, now, message::for_repetition(telegram.port)};
   conversation.epoch_sent = std::max(conversation.epoch_sent, epoch);
-  note_payload(telegram.port);
+  conversation.note_payload(telegram.port);
   ++conversation.next_number;
   ++counters_.sent;
   note_ways(now);
@@ -298,7 +298,7 @@ void Link::accept(const WireTelegram& wire, std::uint64_t number, TimePoint arri
 
   const std::uint32_t wanted_before = epoch_wanted();
   conversation.peer = wire.telegram.site;
-  note_payload(wire.telegram.port);
+  conversation.note_payload(wire.telegram.port);
   if (epoch_wanted() > wanted_before) {  // what came just before belongs to a finished account
     counters_.old_epoch += samples_.size();
     samples_.clear();
@@ -328,11 +328,6 @@ void Link::note_ways(TimePoint now) noexcept {
   if (ways.here) conversation_.offset.add_here(ways.here->way, now, ways.here->arrived_at);
   ways.count = 0;
   ways.here.reset();
-}
-
-void Link::note_payload(const PortSample& sample) noexcept {
-  const std::size_t kind = sample.payload.index();
-  if (kind != 0) conversation_.payload_kind = kind;
 }
 
 /// The newest epoch that either side is known to be in.

@@ -103,6 +103,9 @@ class Link {
     std::uint32_t exchanges{};
     bool synchronised{};
     std::size_t payload_kind{};  ///< newest that either side sent, but none
+    void note_payload(const PortSample& sample) noexcept {
+      if (sample.payload.index() != 0) payload_kind = sample.payload.index();
+    }
   };
 
   struct Opened {
@@ -121,7 +124,6 @@ class Link {
   void accept(const WireTelegram& wire, std::uint64_t number, TimePoint arrived_at) noexcept;
   void note_ways(TimePoint now) noexcept;
   void hand_over(const Incoming& incoming, std::uint32_t epoch) noexcept;
-  void note_payload(const PortSample& sample) noexcept;
   void synchronise(TimePoint now) noexcept;
   [[nodiscard]] std::uint32_t epoch_wanted() const noexcept;
   [[nodiscard]] Duration gap(TimePoint now) const noexcept;
