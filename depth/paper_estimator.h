@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/core/stroke.h"
+#include "common/message/depth.h"
 #include "depth/stroke.h"
 
 namespace palp::depth {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "common/core/stroke.h"
+#include "common/message/depth.h"
 #include "depth/touch.h"
 
 namespace palp::depth {

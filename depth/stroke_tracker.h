@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/core/filters.h"
-#include "common/core/stroke.h"
+#include "common/message/depth.h"
 #include "common/core/time.h"
 #include "depth/stroke.h"
 #include "depth/stroke_cutter.h"

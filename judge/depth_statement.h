@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "common/core/stroke.h"
+#include "common/message/depth.h"
 
 namespace palp::judge {
 

@@ -5,6 +5,7 @@
 
 #include "common/config/json.h"
 #include "common/core/median.h"
+#include "common/message/health_counters.h"
 #include "common/record/notes.h"
 #include "common/record/session_encoder.h"
 
@@ -139,12 +140,11 @@ Json rejected_json(const SiteData& site, const Json& report) {
   if (!told.is_null() || !site.last_link) {
     return told;
   }
-  const link::LinkHealth& health = site.last_link->health;
-  return {{"malformed", health.malformed},
-          {"foreign", health.foreign},
-          {"replayed", health.replayed},
-          {"too_old", health.too_old},
-          {"forged", health.forged}};
+  Json json;
+  for (const auto& [reason, count] : message::refusals_of(site.last_link->health)) {
+    json[std::string{reason}] = count;
+  }
+  return json;
 }
 
 Json site_json(const SiteData& site, const Json& report, const std::string& path) {
@@ -174,11 +174,11 @@ Json transitions_json(const SiteData& surgeon, const SiteData& patient) {
   struct Entry {
     double t{};  ///< [s]
     const SiteData* site{};
-    const record::Transition* transition{};
+    const Transition* transition{};
   };
   std::vector<Entry> entries;
   for (const SiteData* site : {&surgeon, &patient}) {
-    for (const record::Transition& transition : site->transitions) {
+    for (const Transition& transition : site->transitions) {
       entries.push_back({seconds(elapsed(site->began_at, transition.at)), site, &transition});
     }
   }

@@ -5,6 +5,7 @@
 #include "common/config/json.h"
 #include "common/config/report.h"
 #include "common/io/process/diagnostics.h"
+#include "common/message/health_counters.h"
 
 namespace palp::site_program {
 namespace {
@@ -20,25 +21,25 @@ Json milliseconds(const std::optional<Duration>& span) {
 
 Json records_json(const RecordAccount& account) {
   Json json;
-  for (std::size_t type = 0; type < record::kRecordNames.size(); ++type) {
-    json[record::kRecordNames[type]] = account.counts.by_type[type];
+  for (std::size_t type = 0; type < kRecordNames.size(); ++type) {
+    json[kRecordNames[type]] = account.counts.by_type[type];
   }
   return json;
 }
 
 /// On the link and beside it, in one: datagrams that were of no use to this site.
-Json rejected_json(const link::LinkHealth& link, const link::SessionCounters& noise) {
-  return {{"malformed", link.malformed + noise.malformed},
-          {"foreign", link.foreign + noise.foreign},
-          {"replayed", link.replayed},
-          {"too_old", link.too_old},
-          {"forged", link.forged}};
+Json rejected_json(const LinkHealth& link, const link::SessionCounters& noise) {
+  Json json;
+  for (const auto& [reason, count] : message::refusals_of(link)) json[std::string{reason}] = count;
+  json["malformed"] = link.malformed + noise.malformed;
+  json["foreign"] = link.foreign + noise.foreign;
+  return json;
 }
 
 /// null where there never was an estimate.
-Json clock_json(const std::optional<link::LinkHealth>& link) {
+Json clock_json(const std::optional<LinkHealth>& link) {
   if (!link) return nullptr;
-  const link::ClockOffset& clock = *link->peer_clock;
+  const ClockOffset& clock = *link->peer_clock;
   return {{"offset_ms", milliseconds(clock.offset)},
           {"uncertainty_ms", milliseconds(clock.uncertainty)},
           {"skew_ppm", clock.skew * 1e6},
@@ -48,7 +49,7 @@ Json clock_json(const std::optional<link::LinkHealth>& link) {
 
 }  // namespace
 
-void RoundTrips::add(const link::LinkHealth& link) noexcept {
+void RoundTrips::add(const LinkHealth& link) noexcept {
   if (link.peer_clock) clocked_ = link;
   if (link.state != LinkState::Live || link.round_trip <= Duration{0}) return;
   all_.record(link.round_trip);
@@ -62,7 +63,7 @@ std::optional<Duration> RoundTrips::median() const noexcept {
 
 std::string to_json(const SiteReport& report) {
   const io::LoopStats& loop = report.loop;
-  const link::LinkHealth& link = report.link;
+  const LinkHealth& link = report.link;
   Json json;
   json["schema"] = "palp.site/1";
   json["site"] = report.site;
@@ -84,15 +85,7 @@ std::string to_json(const SiteReport& report) {
   json["records"] = records_json(report.records);
   json["tick_views"] = report.records.counts.views;
   json["messages"] = report.records.messages;
-  json["sent"] = link.sent;
-  json["accepted"] = link.accepted;
-  json["late"] = link.late;
-  json["lost"] = link.lost;
-  json["repaired"] = link.repaired;
-  json["reordered"] = link.reordered;
-  json["stale"] = link.stale;
-  json["old_epoch"] = link.old_epoch;
-  json["unsent"] = link.unsent;
+  for (const auto& [name, count] : message::counters_of(link)) json[std::string{name}] = count;
   json["rejected"] = rejected_json(link, report.noise);
   json["round_trip_p50_ms"] = milliseconds(report.round_trips.median());
   json["round_trip_min_ms"] = milliseconds(report.round_trips.least());

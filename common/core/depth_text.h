@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "common/core/depth_verdict.h"
 #include "common/core/number_text.h"
-#include "common/core/stroke.h"
 
 namespace palp {
 

@@ -6,6 +6,7 @@
 #include <openssl/evp.h>
 
 #include "common/core/check.h"
+#include "common/message/limits.h"
 
 namespace palp::link {
 namespace {
@@ -129,7 +130,7 @@ bool AeadProtection::Generation::open(std::uint64_t number,
 /// tag is made: no nonce is used, and that of this number never can be.
 void AeadProtection::Generation::touch() noexcept {
   constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
-  static_assert(kNever > kNumberMax);
+  static_assert(kNever > message::kNumberMax);
   constexpr int kAsItWas = -1;
   constexpr std::array<std::uint8_t, kHeaderSize> kNothing{};
   int done = 0;

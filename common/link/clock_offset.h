@@ -6,22 +6,9 @@
 #include <optional>
 
 #include "common/core/time.h"
+#include "common/message/link_health.h"
 
 namespace palp::link {
-
-/// What the peer's line of time is to ours. Only the sum of the two ways can be measured: where one
-/// takes longer than the other, the offset is wrong by half the difference, at most half the least
-/// round trip. So it is told and logged, and nothing that protects anybody rests on it.
-struct ClockOffset {
-  Duration offset{};       ///< peer's time - ours, at `at`
-  double skew{};           ///< [s/s], the peer's clock gains so much on ours
-  Duration uncertainty{};  ///< of the offset: half the least round trip, what no exchange can see
-  TimePoint at{};
-
-  [[nodiscard]] Duration offset_at(TimePoint now) const noexcept {
-    return offset + from_seconds(skew * seconds(now - at));
-  }
-};
 
 /// Offset and skew of the peer's clock from the four times of each exchange. Queues only lengthen a
 /// way, so the least of each second in each direction is nearly free of them; over the last 32 s a

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/core/check.h"
+#include "common/message/limits.h"
 
 namespace palp::link {
 namespace {
@@ -35,7 +36,7 @@ Unsigned take(std::span<const std::byte> in) noexcept {
 void pack_header(const Header& header, std::span<std::byte, kHeaderSize> out) noexcept {
   PALP_CHECK(header.type <= PacketType::Close, "a packet type of ours");
   PALP_CHECK(header.key <= kKeyMax, "a key id has two bits");
-  PALP_CHECK(header.number <= kNumberMax, "packet numbers never wrap");
+  PALP_CHECK(header.number <= message::kNumberMax, "packet numbers never wrap");
   out[0] = static_cast<std::byte>(kHeaderVersion << 4U | static_cast<unsigned>(header.type));
   out[1] = static_cast<std::byte>(header.key << 6U);
   put(header.length, out.subspan(2, 2));
@@ -56,7 +57,7 @@ std::optional<Header> parse_header(std::span<const std::byte> datagram) noexcept
                       .connection = take<std::uint32_t>(datagram.subspan(4, 4)),
                       .number = take<std::uint64_t>(datagram.subspan(8, 8))};
   if (header.length != datagram.size() - kHeaderSize) return std::nullopt;
-  if (header.number > kNumberMax) return std::nullopt;
+  if (header.number > message::kNumberMax) return std::nullopt;
   return header;
 }
 

@@ -8,10 +8,9 @@
 /// The 16 clear bytes in front of every datagram (proto/WIRE.md). Pure functions.
 namespace palp::link {
 
-inline constexpr std::size_t kHeaderSize = 16;            ///< [bytes]
-inline constexpr std::uint8_t kHeaderVersion = 8;         ///< 1 would look like a DTLS record
-inline constexpr std::uint64_t kNumberMax = 1ULL << 53U;  ///< 285,000 years at 1 kHz
-inline constexpr std::uint8_t kKeyMax = 3;                ///< two bits
+inline constexpr std::size_t kHeaderSize = 16;     ///< [bytes]
+inline constexpr std::uint8_t kHeaderVersion = 8;  ///< 1 would look like a DTLS record
+inline constexpr std::uint8_t kKeyMax = 3;         ///< two bits
 
 enum class PacketType : std::uint8_t { Data, Control, Path, Close };
 

@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "common/core/check.h"
-#include "common/link/warm_up_telegram.h"
+#include "common/message/rehearsed_telegram.h"
+#include "common/message/wire_bytes.h"
 
 namespace palp::link {
 namespace {
@@ -41,12 +42,7 @@ Duration as_duration(std::uint64_t wire_ns) noexcept {
 /// Whole microseconds, rounded: a truncated hold would lengthen every round trip by half of one.
 std::uint32_t hold_us(Duration hold) noexcept {
   const auto rounded = (std::max(hold, Duration{0}) + nanoseconds{500}) / microseconds{1};
-  return static_cast<std::uint32_t>(std::min<Duration::rep>(rounded, kHoldMaxUs));
-}
-
-PortSample for_repetition(const PortSample& sample) noexcept {
-  if (std::holds_alternative<WavePayload>(sample.payload)) return sample;
-  return {sample.position, sample.velocity, sample.force, std::monostate{}};
+  return static_cast<std::uint32_t>(std::min<Duration::rep>(rounded, message::kHoldMaxUs));
 }
 
 }  // namespace
@@ -129,7 +125,8 @@ void Link::send(const Telegram& telegram, TimePoint now) noexcept {
   if (session_id_ == 0) return;
   SessionState& state = session_state_;
   const WireTelegram wire = compose(telegram, now);
-  const std::size_t size = codec_->encode(wire, std::span{plain_}.first<kTelegramSizeMax>());
+  const std::size_t size =
+      codec_->encode(wire, std::span{plain_}.first<message::kTelegramSizeMax>());
   if (size == 0) {  // a node that says what no peer would take
     ++counters_.unsent;
     return;
@@ -148,8 +145,9 @@ void Link::send(const Telegram& telegram, TimePoint now) noexcept {
   // What follows may take its time: the telegram is on its way.
   const std::uint32_t epoch = telegram.site.epoch;
   state.history[header.number % kHistory] = {
-      true, header.number, epoch, now, for_repetition(telegram.port)};
+      true, header.number, epoch, now, message::for_repetition(telegram.port)};
   state.epoch_sent = std::max(state.epoch_sent, epoch);
+  state.note_payload(telegram.port);
   ++state.next_number;
   ++counters_.sent;
   note_ways(now);
@@ -300,6 +298,7 @@ void Link::accept(const WireTelegram& wire, std::uint64_t number, TimePoint arri
 
   const std::uint32_t wanted_before = epoch_wanted();
   state.peer = wire.telegram.site;
+  state.note_payload(wire.telegram.port);
   if (epoch_wanted() > wanted_before) {  // what came just before belongs to a finished account
     counters_.old_epoch += samples_.size();
     samples_.clear();
@@ -307,11 +306,11 @@ void Link::accept(const WireTelegram& wire, std::uint64_t number, TimePoint arri
 
   const Duration sent_at = as_duration(wire.sent_at_ns);
   state.ways.here = {arrived_at - state.began_at - sent_at, sent_at, arrived_at};
-  if (wire.echo_ns == kNothingHeard) return;
+  if (wire.echo_ns == message::kNothingHeard) return;
   const TimePoint echo = state.began_at + as_duration(wire.echo_ns);
   const microseconds hold{wire.hold_us};
   if (!state.clock.add_round_trip(echo, hold, arrived_at)) return;
-  if (state.echo_ns != kNothingHeard && wire.echo_ns <= state.echo_ns) return;
+  if (state.echo_ns != message::kNothingHeard && wire.echo_ns <= state.echo_ns) return;
   state.echo_ns = wire.echo_ns;
   ++state.exchanges;
   WaysTaken& ways = state.ways;
@@ -365,10 +364,11 @@ void Link::warm_up() noexcept {
   transport_->warm_up();
   // What the next one repeats and acknowledges has to come into the caches as well.
   const Sent& last = session_state_.history[(session_state_.next_number + kHistory - 1) % kHistory];
-  Telegram telegram = kWarmUpTelegram;
+  Telegram telegram = message::rehearsed_telegrams()[session_state_.payload_kind];
   telegram.site.epoch = last.epoch;
   const WireTelegram wire = compose(telegram, last.at + config_.period);
-  const std::size_t size = codec_->encode(wire, std::span{plain_}.first<kTelegramSizeMax>());
+  const std::size_t size =
+      codec_->encode(wire, std::span{plain_}.first<message::kTelegramSizeMax>());
   protection_->warm_up(std::span{plain_}.first(size), datagram_);
   (void)codec_->decode(std::span{plain_}.first(size));
 }

@@ -63,7 +63,7 @@ class Link {
     std::uint64_t number{};
     std::uint32_t epoch{};
     TimePoint at{};
-    PortSample sample;  ///< with wave sums as payload or none
+    PortSample sample;  ///< as later telegrams repeat it
   };
 
   /// How long the newest telegram of a tick, the peer's or ours, was on its way.
@@ -99,9 +99,13 @@ class Link {
     TimePoint newest_arrived_at{};
     SiteReport peer;
     TimePoint first_accepted_at{};
-    std::uint64_t echo_ns{kNothingHeard};  ///< newest
+    std::uint64_t echo_ns{message::kNothingHeard};  ///< newest
     std::uint32_t exchanges{};
     bool synchronised{};
+    std::size_t payload_kind{};  ///< newest that either side sent, but none
+    void note_payload(const PortSample& sample) noexcept {
+      if (sample.payload.index() != 0) payload_kind = sample.payload.index();
+    }
   };
 
   struct Opened {

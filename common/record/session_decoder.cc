@@ -1,217 +1,78 @@
 #include "common/record/session_decoder.h"
 
-#include <limits>
-
-#include "proto/session_log.pb.h"
+#include "common/message/log_bytes.h"
+#include "common/message/log_schema.h"
 
 namespace palp::record {
 namespace {
 
-/// Collects whether all enumerations and small integers of a message were in range.
-struct Range {
-  bool ok{true};
-
-  template <class Enum>
-  Enum checked(int value, int count) noexcept {
-    ok = ok && value >= 0 && value < count;
-    return static_cast<Enum>(ok ? value : 0);
-  }
-  SiteState site_state(int value) noexcept { return checked<SiteState>(value, kSiteStateCount); }
-};
+using message::Event;
+using message::EventKind;
+using Answer = SessionDecoder::Answer;
+using Verdict = SessionDecoder::Verdict;
 
 template <class Message>
-CouplingPayload payload_of(const Message& in) {
-  if (in.has_wave()) {
-    return WavePayload{.wave_integral = in.wave().wave_integral_sqrt_w_s(),
-                       .wave_energy = in.wave().wave_energy_j()};
-  }
-  if (in.has_tdpa()) {
-    return TdpaPayload{.energy_in = in.tdpa().energy_in_j()};
-  }
-  if (in.has_model()) {
-    const auto& model = in.model();
-    return ModelPayload{.version = model.version(),
-                        .c = {model.c1_n(), model.c2_n(), model.c3_n(), model.c4_n(), model.c5_n()},
-                        .surface = model.surface_m(),
-                        .depth_max = model.depth_max_m(),
-                        .residual = model.residual_n(),
-                        .swing = model.swing_m(),
-                        .swing_quadrature = model.swing_quadrature_m(),
-                        .swing_rate = model.swing_rad_per_s(),
-                        .relaxing = {model.relaxing_fast(), model.relaxing_slow()}};
-  }
-  return {};
+bool read(std::span<const std::byte> payload, Message& message) noexcept {
+  return message::read_log(payload, message) && message::in_log_range(message);
 }
 
-// The one difference between the sites' ticks: the unit of the command.
-double command_of(const session::SurgeonTick& in) { return in.command_n(); }
-double command_of(const session::PatientTick& in) { return in.command_m(); }
-
+/// A record whose message has its fields.
 template <class Message>
-Record tick_of(const Message& in, TimePoint at, Range& range) {
-  return SiteTick{.at = at,
-                  .state = range.site_state(in.state()),
-                  .epoch = in.epoch(),
-                  .position = in.position_m(),
-                  .velocity = in.velocity_m_per_s(),
-                  .force = in.force_n(),
-                  .lateral = in.lateral_m(),
-                  .command = command_of(in),
-                  .gate_acted = in.gate_acted(),
-                  .round_trip = Duration{in.round_trip_ns()},
-                  .sent = {.position = in.sent_position_m(),
-                           .velocity = in.sent_velocity_m_per_s(),
-                           .force = in.sent_force_n(),
-                           .payload = payload_of(in)}};
+Answer decode_record(std::span<const std::byte> payload, TimePoint at) noexcept {
+  Message record;
+  if (!read(payload, record)) return {.verdict = Verdict::Malformed, .record = {}};
+  if constexpr (requires { record.at; }) record.at = at;
+  return {.verdict = Verdict::Decoded, .record = record};
 }
 
-Record arrived_of(const session::ArrivedSample& in, TimePoint at) {
-  return Arrived{.at = at,
-                 .incoming = {.sample = {.position = in.position_m(),
-                                         .velocity = in.velocity_m_per_s(),
-                                         .force = in.force_n(),
-                                         .payload = payload_of(in)},
-                              .number = in.number(),
-                              .fresh = in.fresh(),
-                              .repaired = in.repaired(),
-                              .sent_at = PeerTimePoint{Duration{in.sent_at_ns()}},
-                              .arrived_at = TimePoint{Duration{in.arrived_at_ns()}}}};
-}
-
-std::optional<link::ClockOffset> peer_clock_of(const session::LinkStatus& in) {
-  if (!in.has_clock_offset_ns()) return std::nullopt;
-  return link::ClockOffset{.offset = Duration{in.clock_offset_ns()},
-                           .skew = in.clock_skew(),
-                           .uncertainty = Duration{in.clock_uncertainty_ns()},
-                           .at = TimePoint{Duration{in.clock_at_ns()}}};
-}
-
-Record link_status_of(const session::LinkStatus& in, TimePoint at, Range& range) {
-  return LinkStatus{.at = at,
-                    .health = {.state = range.checked<LinkState>(in.state(), kLinkStateCount),
-                               .gap = Duration{in.gap_ns()},
-                               .round_trip = Duration{in.round_trip_ns()},
-                               .round_trip_min = Duration{in.round_trip_min_ns()},
-                               .jitter = Duration{in.jitter_ns()},
-                               .peer_clock = peer_clock_of(in),
-                               .delay_out = Duration{in.delay_out_ns()},
-                               .delay_in = Duration{in.delay_in_ns()},
-                               .sent = in.sent(),
-                               .accepted = in.accepted(),
-                               .late = in.late(),
-                               .repaired = in.repaired(),
-                               .lost = in.lost(),
-                               .reordered = in.reordered(),
-                               .stale = in.stale(),
-                               .old_epoch = in.old_epoch(),
-                               .unsent = in.unsent(),
-                               .malformed = in.malformed(),
-                               .foreign = in.foreign(),
-                               .replayed = in.replayed(),
-                               .too_old = in.too_old(),
-                               .forged = in.forged()}};
-}
-
-Record event_of(const session::Event& in, TimePoint at, Range& range) {
-  range.ok = range.ok && in.code() <= std::numeric_limits<std::uint16_t>::max() &&
-             session::Event::Kind_IsValid(in.kind());
-  const auto code = static_cast<std::uint16_t>(in.code());
-  if (in.kind() == session::Event::TRANSITION) {
-    return Transition{.at = at,
-                      .from = range.site_state(in.from()),
-                      .to = range.site_state(in.to()),
-                      .reason = code};
+Answer decode_event(std::span<const std::byte> payload, TimePoint at) noexcept {
+  Event event;
+  bool good = message::read_log(payload, event);
+  if (event.kind == EventKind::Note) event.from = event.to = {};  // a note has none
+  good = good && message::in_log_range(event);
+  if (!good) return {.verdict = Verdict::Malformed, .record = {}};
+  if (event.kind == EventKind::Transition) {
+    return {
+        .verdict = Verdict::Decoded,
+        .record = Transition{.at = at, .from = event.from, .to = event.to, .reason = event.code}};
   }
-  return Note{.at = at, .code = code, .detail = in.detail()};
+  return {.verdict = Verdict::Decoded,
+          .record = Note{.at = at, .code = event.code, .detail = event.detail}};
 }
 
-Record contact_of(const session::ContactSample& in, TimePoint at) {
-  return ContactSample{
-      .at = at, .position = in.position_m(), .force = in.force_n(), .lateral = in.lateral_m()};
+Answer decode_view(std::span<const std::byte> payload, TimePoint /*at*/) noexcept {
+  TickView view;
+  return {.verdict = message::read_log(payload, view) ? Verdict::View : Verdict::Malformed,
+          .record = {}};
 }
 
-Record estimate_of(const session::DepthEstimate& in, Range& range) {
-  return DepthEstimate{.number = in.number(),
-                       .stroke_began_at = TimePoint{Duration{in.stroke_began_at_ns()}},
-                       .stroke_ended_at = TimePoint{Duration{in.stroke_ended_at_ns()}},
-                       .lateral = in.lateral_m(),
-                       .indentation_max = in.indentation_max_m(),
-                       .force_max = in.force_max_n(),
-                       .surface = in.surface_m(),
-                       .verdict = range.checked<DepthVerdict>(in.verdict(), kDepthVerdictCount),
-                       .reason = range.checked<DepthReason>(in.reason(), kDepthReasonCount),
-                       .hash = in.hash_n(),
-                       .depth = in.depth_m(),
-                       .depth_stddev = in.depth_stddev_m(),
-                       .depth_low = in.depth_low_m(),
-                       .depth_high = in.depth_high_m(),
-                       .fit_rms = in.fit_rms_n()};
-}
-
-Record report_of(const session::DepthReport& in, TimePoint at, Range& range) {
-  return DepthArrived{
-      .at = at,
-      .report = {.number = in.number(),
-                 .verdict = range.checked<DepthVerdict>(in.verdict(), kDepthVerdictCount),
-                 .reason = range.checked<DepthReason>(in.reason(), kDepthReasonCount),
-                 .depth = in.depth_m(),
-                 .depth_stddev = in.depth_stddev_m(),
-                 .depth_low = in.depth_low_m(),
-                 .depth_high = in.depth_high_m(),
-                 .hash = in.hash_n()}};
+/// Whether `name` is what either site calls this message.
+template <class Message>
+bool is_named(std::string_view name) noexcept {
+  return name == message::log_name<Message>(false) || name == message::log_name<Message>(true);
 }
 
 }  // namespace
 
-struct SessionDecoder::Messages {
-  session::SurgeonTick surgeon_tick;
-  session::PatientTick patient_tick;
-  session::SurgeonTickView surgeon_view;
-  session::PatientTickView patient_view;
-  session::ArrivedSample arrived;
-  session::LinkStatus link;
-  session::Event event;
-  session::ContactSample contact;
-  session::DepthEstimate estimate;
-  session::DepthReport report;
-};
-
-SessionDecoder::SessionDecoder() : messages_{std::make_unique<Messages>()} {}
-SessionDecoder::~SessionDecoder() = default;
-
-SessionDecoder::Answer SessionDecoder::decode(std::string_view schema,
-                                              std::span<const std::byte> payload,
-                                              TimePoint at) {
-  Messages& from = *messages_;
-  Range range;
-  Answer answer{.verdict = Verdict::Unknown, .record = {}};
-  // Parses `payload` if the schema is that of `message`; then `convert` makes the record.
-  const auto attempt = [&](auto& message, auto convert) {
-    if (answer.verdict != Verdict::Unknown || schema != message.GetDescriptor()->full_name()) {
-      return;
+Answer SessionDecoder::decode(std::string_view schema,
+                              std::span<const std::byte> payload,
+                              TimePoint at) noexcept {
+  std::string_view name = schema;
+  if (name.starts_with(message::kLogPackage)) {
+    name.remove_prefix(message::kLogPackage.size());
+    if (name.starts_with('.')) {
+      name.remove_prefix(1);
+      if (is_named<SiteTick>(name)) return decode_record<SiteTick>(payload, at);
+      if (is_named<Arrived>(name)) return decode_record<Arrived>(payload, at);
+      if (is_named<ContactSample>(name)) return decode_record<ContactSample>(payload, at);
+      if (is_named<LinkStatus>(name)) return decode_record<LinkStatus>(payload, at);
+      if (is_named<Event>(name)) return decode_event(payload, at);
+      if (is_named<DepthEstimate>(name)) return decode_record<DepthEstimate>(payload, at);
+      if (is_named<DepthArrived>(name)) return decode_record<DepthArrived>(payload, at);
+      if (is_named<TickView>(name)) return decode_view(payload, at);
     }
-    answer.verdict = Verdict::Malformed;
-    if (payload.size() <= std::numeric_limits<int>::max() &&
-        message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
-      answer.verdict = convert();
-    }
-  };
-  const auto record = [&](Record value) {
-    answer.record = value;
-    return range.ok ? Verdict::Decoded : Verdict::Malformed;
-  };
-  const auto view = [] { return Verdict::View; };
-  attempt(from.surgeon_tick, [&] { return record(tick_of(from.surgeon_tick, at, range)); });
-  attempt(from.patient_tick, [&] { return record(tick_of(from.patient_tick, at, range)); });
-  attempt(from.arrived, [&] { return record(arrived_of(from.arrived, at)); });
-  attempt(from.contact, [&] { return record(contact_of(from.contact, at)); });
-  attempt(from.link, [&] { return record(link_status_of(from.link, at, range)); });
-  attempt(from.event, [&] { return record(event_of(from.event, at, range)); });
-  attempt(from.estimate, [&] { return record(estimate_of(from.estimate, range)); });
-  attempt(from.report, [&] { return record(report_of(from.report, at, range)); });
-  attempt(from.surgeon_view, view);
-  attempt(from.patient_view, view);
-  return answer;
+  }
+  return {.verdict = Verdict::Unknown, .record = {}};
 }
 
 }  // namespace palp::record

@@ -2,22 +2,16 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string_view>
 
-#include "common/record/recorder.h"
+#include "common/message/record.h"
 
 namespace palp::record {
 
-/// The messages of proto/session_log.proto back to Records. Thread: one.
+/// The messages of proto/session_log.proto back to Records. Thread: any.
 class SessionDecoder {
  public:
-  SessionDecoder();
-  ~SessionDecoder();
-  SessionDecoder(const SessionDecoder&) = delete;
-  SessionDecoder& operator=(const SessionDecoder&) = delete;
-
   enum class Verdict : std::uint8_t {
     Decoded,
     View,       ///< a sound view: derived, so there is no record of it
@@ -28,11 +22,10 @@ class SessionDecoder {
     Verdict verdict{};
     Record record;  ///< if decoded
   };
-  Answer decode(std::string_view schema, std::span<const std::byte> payload, TimePoint at);
-
- private:
-  struct Messages;
-  std::unique_ptr<Messages> messages_;
+  /// `schema`: full name of the message. `at`: the record's own instant.
+  [[nodiscard]] static Answer decode(std::string_view schema,
+                                     std::span<const std::byte> payload,
+                                     TimePoint at) noexcept;
 };
 
 }  // namespace palp::record

@@ -1,17 +1,16 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/link/telegram.h"
+#include "common/message/log_bytes.h"
 #include "common/record/mcap_format.h"
-#include "common/record/recorder.h"
-#include "common/record/tick_view.h"
 
 /// Records to the messages of proto/session_log.proto; one message type per topic.
 namespace palp::record {
@@ -38,25 +37,26 @@ struct Prepared {
   std::size_t size{};  ///< [bytes]
 };
 
-/// Encodes in two steps, so that the bytes can be made where they shall stand. Its messages are
-/// reused: after the first of each kind nothing is allocated. Thread: one.
+/// Encodes in two steps, because a place in the file is asked for by its size. Allocates nothing.
+/// Thread: one.
 class SessionEncoder {
  public:
-  explicit SessionEncoder(link::Role site);
-  ~SessionEncoder();
-  SessionEncoder(const SessionEncoder&) = delete;
-  SessionEncoder& operator=(const SessionEncoder&) = delete;
+  explicit SessionEncoder(link::Role site) noexcept : site_{site} {}
 
   /// nullopt: this site's file has no topic for such a record. `records_dropped` rides on
   /// LinkStatus.
-  std::optional<Prepared> prepare(const Record& record, std::uint64_t records_dropped);
-  Prepared prepare(const TickView& view);
+  std::optional<Prepared> prepare(const Record& record, std::uint64_t records_dropped) noexcept;
+  Prepared prepare(const TickView& view) noexcept;
   /// Writes the message prepared last; `place` has room for its size.
-  void store(std::byte* place) const;
+  void store(std::byte* place) const noexcept;
 
  private:
-  struct Messages;
-  std::unique_ptr<Messages> messages_;
+  template <class Message>
+  Prepared write(Topic topic, TimePoint at, const Message& message) noexcept;
+
+  link::Role site_;
+  std::size_t size_{};
+  std::array<std::byte, message::kLogMessageSizeMax> bytes_{};
 };
 
 }  // namespace palp::record

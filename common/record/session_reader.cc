@@ -59,7 +59,7 @@ std::optional<SessionEntry> SessionReader::decode(const McapMessage& message) {
     return std::nullopt;
   }
   const auto answer =
-      decoder_.decode(message.schema->name, message.payload, instant(message.publish_time));
+      SessionDecoder::decode(message.schema->name, message.payload, instant(message.publish_time));
   using Verdict = SessionDecoder::Verdict;
   if (answer.verdict == Verdict::Decoded) {
     return SessionEntry{.site = surgeon ? link::Role::Surgeon : link::Role::Patient,

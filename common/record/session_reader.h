@@ -61,7 +61,6 @@ class SessionReader {
   void count(const McapMessage& message);
 
   McapReader mcap_;
-  SessionDecoder decoder_;
   std::map<std::string, TopicCount> topics_;
   std::map<std::string, McapMap, std::less<>> metadata_;
   std::map<std::string, std::string_view, std::less<>> attachments_;

@@ -9,12 +9,14 @@
 #include "common/link/codec_wire.h"
 #include "common/link/packet_protection.h"
 #include "common/link/transport.h"
-#include "tests/common/link/bytes_equal.h"
 #include "tests/common/link/protobuf_codec.h"
+#include "tests/common/message/same.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace palp::link {
 namespace {
+
+using message::same;
 
 bool equal(std::span<const std::byte> a, std::span<const std::byte> b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end());
@@ -44,8 +46,10 @@ void limit_laws(const WireTelegram& telegram) {
     return within(sample.position, 10) && within(sample.velocity, 1e3) && within(sample.force, 1e5);
   };
   const DepthReport& depth = telegram.telegram.site.depth;
-  PALP_CHECK(telegram.sent_at_ns <= kSentAtMaxNs && telegram.newest_number <= kNumberMax &&
-                 telegram.hold_us <= kHoldMaxUs && telegram.older_count <= telegram.older.size(),
+  PALP_CHECK(telegram.sent_at_ns <= message::kSentAtMaxNs &&
+                 telegram.newest_number <= message::kNumberMax &&
+                 telegram.hold_us <= message::kHoldMaxUs &&
+                 telegram.older_count <= telegram.older.size(),
              "numbers keep the limits of the wire");
   PALP_CHECK(sound(telegram.telegram.port) && sound(telegram.older[0]) && sound(telegram.older[1]),
              "samples keep the limits of the wire");
@@ -68,16 +72,16 @@ void telegram_laws(std::span<const std::byte> bytes) {
   if (!telegram) return;
   PALP_CHECK(same(*telegram, *expected), "as protobuf reads it");
   limit_laws(*telegram);
-  std::array<std::byte, kTelegramSizeMax> first{};
+  std::array<std::byte, message::kTelegramSizeMax> first{};
   const std::size_t first_size = codec.encode(*telegram, first);
   PALP_CHECK(first_size > 0, "what is well formed encodes");
-  std::array<std::byte, kTelegramSizeMax> by_protobuf{};
+  std::array<std::byte, message::kTelegramSizeMax> by_protobuf{};
   PALP_CHECK(equal(std::span{by_protobuf}.first(reference.encode(*telegram, by_protobuf)),
                    std::span{first}.first(first_size)),
              "as protobuf writes it");
   const auto again = codec.decode(std::span{first}.first(first_size));
   PALP_CHECK(again && same(*telegram, *again), "what was decoded survives the wire exactly");
-  std::array<std::byte, kTelegramSizeMax> second{};
+  std::array<std::byte, message::kTelegramSizeMax> second{};
   const std::size_t second_size = codec.encode(*again, second);
   PALP_CHECK(equal(std::span{first}.first(first_size), std::span{second}.first(second_size)),
              "encoding again gives the same bytes");

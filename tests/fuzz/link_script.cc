@@ -71,7 +71,8 @@ class Witness {
     for (const Incoming& incoming : side_.samples) {
       PALP_CHECK(session_id_ != 0, "without a session nothing is handed over");
       PALP_CHECK(known.insert(incoming.number).second, "a sample is handed over at most once");
-      PALP_CHECK(previous <= incoming.number && incoming.number <= kNumberMax, "sorted by number");
+      PALP_CHECK(previous <= incoming.number && incoming.number <= message::kNumberMax,
+                 "sorted by number");
       PALP_CHECK(!incoming.fresh || first || incoming.number > newest_before, "fresh is newer");
       PALP_CHECK(!(incoming.fresh && incoming.repaired), "a copy is not fresh");
       PALP_CHECK(incoming.arrived_at <= now, "nothing arrives from the future");
@@ -224,14 +225,15 @@ class Play {
     telegram.telegram.site.epoch = input_.take<std::uint8_t>();
     telegram.telegram.site.state = static_cast<SiteState>(input_.below(kSiteStateCount));
     telegram.older_count = static_cast<std::uint8_t>(input_.below(3));
-    Bytes plain(kTelegramSizeMax);
-    plain.resize(WireCodec{}.encode(telegram, std::span<std::byte, kTelegramSizeMax>{plain}));
+    Bytes plain(message::kTelegramSizeMax);
+    plain.resize(
+        WireCodec{}.encode(telegram, std::span<std::byte, message::kTelegramSizeMax>{plain}));
     const auto id = static_cast<std::uint32_t>(2 * session_id_);
     const Header header{.type = PacketType::Data,
                         .key = 0,
                         .length = 0,
                         .connection = up ? id + 1 : id,
-                        .number = std::min(input_.magnitude(), kNumberMax)};
+                        .number = std::min(input_.magnitude(), message::kNumberMax)};
     Bytes bytes(kHeaderSize + plain.size());
     bytes.resize(PlainProtection{}.seal(header, plain, bytes));
     return bytes;

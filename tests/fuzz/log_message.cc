@@ -21,14 +21,13 @@ Bytes encoded(SessionEncoder& encoder, const Record& record) {
 
 void message_laws(link::Role site, const std::string& schema, std::span<const std::byte> payload) {
   const TimePoint at{std::chrono::milliseconds{42}};
-  SessionDecoder decoder;
-  const auto first = decoder.decode(schema, payload, at);
+  const auto first = SessionDecoder::decode(schema, payload, at);
   PALP_CHECK(first.verdict != Verdict::Unknown, "every topic's schema is known");
   if (first.verdict != Verdict::Decoded) return;
   // Bytes are compared, because a record may hold NaN.
   SessionEncoder encoder{site};
   const Bytes bytes = encoded(encoder, first.record);
-  const auto again = decoder.decode(schema, bytes, at);
+  const auto again = SessionDecoder::decode(schema, bytes, at);
   PALP_CHECK(again.verdict == Verdict::Decoded && again.record.index() == first.record.index(),
              "what was decoded can be written and read");
   PALP_CHECK(encoded(encoder, again.record) == bytes, "what was decoded survives the file");

@@ -39,7 +39,7 @@ void write_datagram(const fs::path& path, PacketType type, std::span<const std::
 
 void datagrams(const fs::path& corpus) {
   WireCodec codec;
-  std::array<std::byte, kTelegramSizeMax> content{};
+  std::array<std::byte, message::kTelegramSizeMax> content{};
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const std::size_t size = codec.encode(some_telegram(seed), content);
     write_datagram(corpus / "datagram" / ("telegram-" + std::to_string(seed)),

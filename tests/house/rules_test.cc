@@ -86,7 +86,7 @@ TEST(FencesTest, LibraryIsSeenOnlyBehindItsFence) {
   };
   EXPECT_TRUE(allowed("common/io/net/udp_socket.cc", "<boost/asio.hpp>"));
   EXPECT_FALSE(allowed("common/io/net/udp_socket.h", "<boost/asio.hpp>"));
-  EXPECT_TRUE(allowed("common/link/codec.cc", "\"proto/link.pb.h\""));
+  EXPECT_TRUE(allowed("common/link/codec_control.cc", "\"proto/link.pb.h\""));
   EXPECT_FALSE(allowed("common/link/codec.h", "\"proto/link.pb.h\""));
   EXPECT_FALSE(allowed("common/link/link.cc", "\"proto/link.pb.h\""));
   EXPECT_FALSE(allowed("lab/run/simulator.cc", "<google/protobuf/message.h>"));

@@ -44,7 +44,7 @@ std::uint64_t allocations_of(const auto& work) {
 
 /// Round trips, flipped bits and truncations.
 void exercise(Codec& codec) {
-  std::array<std::byte, kTelegramSizeMax> bytes{};
+  std::array<std::byte, message::kTelegramSizeMax> bytes{};
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     const std::size_t size = codec.encode(some_telegram(seed), bytes);
     (void)codec.decode(std::span{bytes}.first(size));
@@ -56,7 +56,7 @@ void exercise(Codec& codec) {
 }
 
 TEST(AllocationTest, TheCounterSeesTheParserAllocate) {
-  std::array<std::byte, kTelegramSizeMax> bytes{};
+  std::array<std::byte, message::kTelegramSizeMax> bytes{};
   WireCodec codec;
   const std::size_t size = codec.encode(some_telegram(1), bytes);
   EXPECT_GT(allocations_of([&] {

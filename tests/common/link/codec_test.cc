@@ -12,15 +12,17 @@
 
 #include "common/link/codec_wire.h"
 #include "proto/link.pb.h"
-#include "tests/common/link/bytes_equal.h"
 #include "tests/common/link/some_telegram.h"
+#include "tests/common/message/same.h"
 
 namespace palp::link {
 namespace {
 
+using message::same;
+
 std::vector<std::byte> encoded(Codec& codec, const WireTelegram& telegram) {
-  std::vector<std::byte> bytes(kTelegramSizeMax);
-  bytes.resize(codec.encode(telegram, std::span<std::byte, kTelegramSizeMax>{bytes}));
+  std::vector<std::byte> bytes(message::kTelegramSizeMax);
+  bytes.resize(codec.encode(telegram, std::span<std::byte, message::kTelegramSizeMax>{bytes}));
   return bytes;
 }
 
@@ -50,7 +52,7 @@ RC_GTEST_PROP(RawCodecTest, DecodesExactlyWhatWasEncoded, (std::uint64_t seed)) 
 RC_GTEST_PROP(CodecTest, WhatDecodesIsWellFormedWhateverBitsWereFlipped, (std::uint64_t seed)) {
   WireCodec wire_codec;
   RawCodec raw;
-  Draw draw{seed + 1};
+  message::Draw draw{seed + 1};
   for (Codec* codec : std::initializer_list<Codec*>{&wire_codec, &raw}) {
     auto bytes = encoded(*codec, some_telegram(seed));
     const std::uint64_t flips = 1 + draw.below(8);
@@ -177,39 +179,49 @@ TEST(CodecTest, EveryNumberHasItsLimitAndMustBeFinite) {
     return wire.telegram.port.payload.emplace<ModelPayload>();
   };
   const std::vector<Border> borders{
-      {"position", [](auto& w, double x) { w.telegram.port.position = x; }, kLengthMax},
-      {"velocity", [](auto& w, double x) { w.telegram.port.velocity = x; }, kSpeedMax},
-      {"force", [](auto& w, double x) { w.telegram.port.force = x; }, kForceMax},
-      {"lateral", [](auto& w, double x) { w.telegram.site.lateral = x; }, kLengthMax},
-      {"depth", [](auto& w, double x) { w.telegram.site.depth.depth = x; }, kLengthMax},
-      {"stddev", [](auto& w, double x) { w.telegram.site.depth.depth_stddev = x; }, kLengthMax},
-      {"low", [](auto& w, double x) { w.telegram.site.depth.depth_low = x; }, kLengthMax},
-      {"high", [](auto& w, double x) { w.telegram.site.depth.depth_high = x; }, kLengthMax},
-      {"hash", [](auto& w, double x) { w.telegram.site.depth.hash = x; }, kForceMax},
+      {"position", [](auto& w, double x) { w.telegram.port.position = x; }, message::kLengthMax},
+      {"velocity", [](auto& w, double x) { w.telegram.port.velocity = x; }, message::kSpeedMax},
+      {"force", [](auto& w, double x) { w.telegram.port.force = x; }, message::kForceMax},
+      {"lateral", [](auto& w, double x) { w.telegram.site.lateral = x; }, message::kLengthMax},
+      {"depth", [](auto& w, double x) { w.telegram.site.depth.depth = x; }, message::kLengthMax},
+      {"stddev",
+       [](auto& w, double x) { w.telegram.site.depth.depth_stddev = x; },
+       message::kLengthMax},
+      {"low", [](auto& w, double x) { w.telegram.site.depth.depth_low = x; }, message::kLengthMax},
+      {"high",
+       [](auto& w, double x) { w.telegram.site.depth.depth_high = x; },
+       message::kLengthMax},
+      {"hash", [](auto& w, double x) { w.telegram.site.depth.hash = x; }, message::kForceMax},
       {"integral",
        [](auto& w, double x) {
          w.telegram.port.payload = WavePayload{x, 0};
        },
-       kSumMax},
+       message::kSumMax},
       {"energy",
        [](auto& w, double x) {
          w.telegram.port.payload = WavePayload{0, x};
        },
-       kSumMax},
-      {"energy in", [](auto& w, double x) { w.telegram.port.payload = TdpaPayload{x}; }, kSumMax},
-      {"c1", [&](auto& w, double x) { model(w).c[0] = x; }, kForceMax},
-      {"c3", [&](auto& w, double x) { model(w).c[2] = x; }, kForceMax},
-      {"surface", [&](auto& w, double x) { model(w).surface = x; }, kLengthMax},
-      {"depth_max", [&](auto& w, double x) { model(w).depth_max = x; }, kLengthMax},
-      {"residual", [&](auto& w, double x) { model(w).residual = x; }, kForceMax},
-      {"c4", [&](auto& w, double x) { model(w).c[3] = x; }, kForceMax},
-      {"c5", [&](auto& w, double x) { model(w).c[4] = x; }, kForceMax},
-      {"swing", [&](auto& w, double x) { model(w).swing = x; }, kLengthMax},
-      {"quadrature", [&](auto& w, double x) { model(w).swing_quadrature = x; }, kLengthMax},
-      {"swing rate", [&](auto& w, double x) { model(w).swing_rate = x; }, kSpeedMax},
-      {"relaxing fast", [&](auto& w, double x) { model(w).relaxing[0] = x; }, kForceMax},
-      {"relaxing slow", [&](auto& w, double x) { model(w).relaxing[1] = x; }, kForceMax},
-      {"older", [](auto& w, double x) { w.older_count = 1, w.older[0].force = x; }, kForceMax},
+       message::kSumMax},
+      {"energy in",
+       [](auto& w, double x) { w.telegram.port.payload = TdpaPayload{x}; },
+       message::kSumMax},
+      {"c1", [&](auto& w, double x) { model(w).c[0] = x; }, message::kForceMax},
+      {"c3", [&](auto& w, double x) { model(w).c[2] = x; }, message::kForceMax},
+      {"surface", [&](auto& w, double x) { model(w).surface = x; }, message::kLengthMax},
+      {"depth_max", [&](auto& w, double x) { model(w).depth_max = x; }, message::kLengthMax},
+      {"residual", [&](auto& w, double x) { model(w).residual = x; }, message::kForceMax},
+      {"c4", [&](auto& w, double x) { model(w).c[3] = x; }, message::kForceMax},
+      {"c5", [&](auto& w, double x) { model(w).c[4] = x; }, message::kForceMax},
+      {"swing", [&](auto& w, double x) { model(w).swing = x; }, message::kLengthMax},
+      {"quadrature",
+       [&](auto& w, double x) { model(w).swing_quadrature = x; },
+       message::kLengthMax},
+      {"swing rate", [&](auto& w, double x) { model(w).swing_rate = x; }, message::kSpeedMax},
+      {"relaxing fast", [&](auto& w, double x) { model(w).relaxing[0] = x; }, message::kForceMax},
+      {"relaxing slow", [&](auto& w, double x) { model(w).relaxing[1] = x; }, message::kForceMax},
+      {"older",
+       [](auto& w, double x) { w.older_count = 1, w.older[0].force = x; },
+       message::kForceMax},
   };
   WireCodec wire_codec;
   RawCodec raw;
@@ -248,20 +260,20 @@ TEST(WireCodecTest, DecodesNoNumberOutOfRange) {
 TEST(CodecTest, WholeNumbersHaveTheirLimits) {
   WireCodec codec;
   WireTelegram wire;
-  wire.sent_at_ns = kSentAtMaxNs;
+  wire.sent_at_ns = message::kSentAtMaxNs;
   EXPECT_FALSE(encoded(codec, wire).empty());
-  wire.sent_at_ns = kSentAtMaxNs + 1;
+  wire.sent_at_ns = message::kSentAtMaxNs + 1;
   EXPECT_TRUE(encoded(codec, wire).empty());
   wire = {};
-  wire.echo_ns = kSentAtMaxNs + 1;
+  wire.echo_ns = message::kSentAtMaxNs + 1;
   EXPECT_TRUE(encoded(codec, wire).empty());
   wire.echo_ns = 0;
-  wire.hold_us = kHoldMaxUs;
+  wire.hold_us = message::kHoldMaxUs;
   EXPECT_FALSE(encoded(codec, wire).empty());
-  wire.hold_us = kHoldMaxUs + 1;
+  wire.hold_us = message::kHoldMaxUs + 1;
   EXPECT_TRUE(encoded(codec, wire).empty());
   wire.hold_us = 0;
-  wire.newest_number = kNumberMax + 1;
+  wire.newest_number = message::kNumberMax + 1;
   EXPECT_TRUE(encoded(codec, wire).empty());
   wire = {};
   wire.newest_number = 1;  // nothing was heard, so there is no number to name
@@ -274,10 +286,10 @@ TEST(CodecTest, WholeNumbersHaveTheirLimits) {
 TEST(WireCodecTest, TelegramsHaveTheSizesOfTheWirePage) {
   WireCodec codec;
   WireTelegram wire;
-  wire.sent_at_ns = kSentAtMaxNs;
-  wire.echo_ns = kSentAtMaxNs;
-  wire.hold_us = kHoldMaxUs;
-  wire.newest_number = kNumberMax;
+  wire.sent_at_ns = message::kSentAtMaxNs;
+  wire.echo_ns = message::kSentAtMaxNs;
+  wire.hold_us = message::kHoldMaxUs;
+  wire.newest_number = message::kNumberMax;
   wire.before_newest = 1;
   EXPECT_EQ(encoded(codec, wire).size(), 37U + 4U);  // the link part, and two empty parts
 

@@ -11,19 +11,21 @@
 #include <rapidcheck/gtest.h>
 
 #include "proto/link.pb.h"
-#include "tests/common/link/bytes_equal.h"
 #include "tests/common/link/protobuf_codec.h"
 #include "tests/common/link/some_telegram.h"
+#include "tests/common/message/same.h"
 
 namespace palp::link {
 namespace {
+
+using message::same;
 
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using Bytes = std::vector<std::byte>;
 
 Bytes encoded(Codec& codec, const WireTelegram& telegram) {
-  std::array<std::byte, kTelegramSizeMax> room{};
+  std::array<std::byte, message::kTelegramSizeMax> room{};
   const std::size_t size = codec.encode(telegram, room);
   return {room.begin(), room.begin() + static_cast<std::ptrdiff_t>(size)};
 }
@@ -130,7 +132,7 @@ class SchemaDraw {
     }
   }
 
-  Draw draw_;
+  message::Draw draw_;
   std::uint64_t defect_every_;
 };
 
@@ -142,7 +144,7 @@ RC_GTEST_PROP(WireCodecTest, WritesTheBytesOfProtobuf, (std::uint64_t seed)) {
 
 RC_GTEST_PROP(WireCodecTest, ReadsWhatProtobufReadsHoweverItWasSpoiled, (std::uint64_t seed)) {
   WireCodec codec;
-  Draw draw{seed + 1};
+  message::Draw draw{seed + 1};
   Bytes bytes = encoded(codec, some_telegram(seed));
   for (std::uint64_t i = 0; i < 12; ++i) {
     const Outcome outcome = read_by_both(bytes);

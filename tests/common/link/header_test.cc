@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "common/message/limits.h"
+
 namespace palp::link {
 namespace {
 
@@ -26,7 +28,7 @@ RC_GTEST_PROP(HeaderTest, ComesBackAsItWasPacked, ()) {
       .key = *rc::gen::inRange<std::uint8_t>(0, 4),
       .length = *rc::gen::inRange<std::uint16_t>(0, 1400),
       .connection = *rc::gen::arbitrary<std::uint32_t>(),
-      .number = *rc::gen::inRange<std::uint64_t>(0, kNumberMax + 1),
+      .number = *rc::gen::inRange<std::uint64_t>(0, message::kNumberMax + 1),
   };
   const auto parsed = parse_header(packed(header));
   RC_ASSERT(parsed.has_value());
@@ -87,7 +89,7 @@ TEST(HeaderTest, RefusesEveryLengthButTheTrueOne) {
 
 TEST(HeaderTest, RefusesNumbersPastTheLimit) {
   Header header = kSome;
-  header.number = kNumberMax;
+  header.number = message::kNumberMax;
   auto bytes = packed(header);
   EXPECT_TRUE(parse_header(bytes));
   bytes[15] = std::byte{1};

@@ -14,8 +14,9 @@ namespace palp::link {
 class ProtobufCodec final : public Codec {
  public:
   ProtobufCodec();
-  [[nodiscard]] std::size_t encode(const WireTelegram& telegram,
-                                   std::span<std::byte, kTelegramSizeMax> out) noexcept override;
+  [[nodiscard]] std::size_t encode(
+      const WireTelegram& telegram,
+      std::span<std::byte, message::kTelegramSizeMax> out) noexcept override;
   [[nodiscard]] std::optional<WireTelegram> decode(
       std::span<const std::byte> bytes) noexcept override;
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <vector>
 
 #include "common/record/session_writer.h"
+#include "tests/common/message/same.h"
 
 /// Builders and comparisons for the tests of this room.
 namespace palp::record::test {
@@ -25,157 +25,8 @@ inline SiteTick tick(std::int64_t ms) {
           .sent = {.position = 1e-3, .velocity = 0.5, .force = 0.25, .payload = {}}};
 }
 
-/// The bits of a double: NaN equals itself, +0 does not equal -0.
-inline std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
-
-using Fields = std::vector<std::uint64_t>;
-
-inline void add_fields(Fields& out, double value) { out.push_back(bits(value)); }
-template <std::integral T>
-void add_fields(Fields& out, T value) {
-  out.push_back(static_cast<std::uint64_t>(value));
-}
-template <class T>
-requires std::is_enum_v<T>
-void add_fields(Fields& out, T value) { out.push_back(static_cast<std::uint64_t>(value)); }
-inline void add_fields(Fields& out, Duration value) { add_fields(out, value.count()); }
-template <class Line>
-void add_fields(Fields& out, std::chrono::time_point<Line> value) {
-  add_fields(out, value.time_since_epoch().count());
-}
-inline void add_fields(Fields& out, const PortSample& sample);
-template <class... Ts>
-void add_all(Fields& out, const Ts&... values) {
-  (add_fields(out, values), ...);
-}
-
-inline void add_fields(Fields& out, const std::monostate&) { out.push_back(0); }
-inline void add_fields(Fields& out, const WavePayload& wave) {
-  add_all(out, wave.wave_integral, wave.wave_energy);
-}
-inline void add_fields(Fields& out, const TdpaPayload& tdpa) { add_fields(out, tdpa.energy_in); }
-inline void add_fields(Fields& out, const ModelPayload& model) {
-  add_all(out,
-          model.version,
-          model.c[0],
-          model.c[1],
-          model.c[2],
-          model.c[3],
-          model.c[4],
-          model.surface,
-          model.depth_max,
-          model.residual,
-          model.swing,
-          model.swing_quadrature,
-          model.swing_rate,
-          model.relaxing[0],
-          model.relaxing[1]);
-}
-inline void add_fields(Fields& out, const PortSample& sample) {
-  add_all(out, sample.position, sample.velocity, sample.force, sample.payload.index());
-  std::visit([&](const auto& payload) { add_fields(out, payload); }, sample.payload);
-}
-inline void add_fields(Fields& out, const SiteTick& t) {
-  add_all(out,
-          t.at,
-          t.state,
-          t.epoch,
-          t.position,
-          t.velocity,
-          t.force,
-          t.lateral,
-          t.command,
-          t.gate_acted,
-          t.round_trip,
-          t.sent);
-}
-inline void add_fields(Fields& out, const Arrived& a) {
-  add_all(out,
-          a.at,
-          a.incoming.sample,
-          a.incoming.number,
-          a.incoming.fresh,
-          a.incoming.repaired,
-          a.incoming.sent_at,
-          a.incoming.arrived_at);
-}
-inline void add_fields(Fields& out, const LinkStatus& s) {
-  const link::LinkHealth& h = s.health;
-  const link::ClockOffset clock = h.peer_clock.value_or(link::ClockOffset{});
-  add_all(out,
-          s.at,
-          h.state,
-          h.gap,
-          h.round_trip,
-          h.round_trip_min,
-          h.jitter,
-          h.peer_clock.has_value(),
-          clock.offset,
-          clock.skew,
-          clock.uncertainty,
-          clock.at,
-          h.delay_out,
-          h.delay_in,
-          h.sent,
-          h.accepted,
-          h.late,
-          h.repaired,
-          h.lost,
-          h.reordered,
-          h.stale,
-          h.old_epoch,
-          h.unsent,
-          h.malformed,
-          h.foreign,
-          h.replayed,
-          h.too_old,
-          h.forged);
-}
-inline void add_fields(Fields& out, const Note& n) { add_all(out, n.at, n.code, n.detail); }
-inline void add_fields(Fields& out, const Transition& t) {
-  add_all(out, t.at, t.from, t.to, t.reason);
-}
-inline void add_fields(Fields& out, const ContactSample& c) {
-  add_all(out, c.at, c.position, c.force, c.lateral);
-}
-inline void add_fields(Fields& out, const DepthEstimate& e) {
-  add_all(out,
-          e.number,
-          e.stroke_began_at,
-          e.stroke_ended_at,
-          e.lateral,
-          e.indentation_max,
-          e.force_max,
-          e.surface,
-          e.verdict,
-          e.reason,
-          e.hash,
-          e.depth,
-          e.depth_stddev,
-          e.depth_low,
-          e.depth_high,
-          e.fit_rms);
-}
-inline void add_fields(Fields& out, const DepthArrived& d) {
-  const link::DepthReport& r = d.report;
-  add_all(out,
-          d.at,
-          r.number,
-          r.verdict,
-          r.reason,
-          r.depth,
-          r.depth_stddev,
-          r.depth_low,
-          r.depth_high,
-          r.hash);
-}
-
 /// Every field of a record, bit for bit: two records are the same if these are.
-inline Fields fields(const Record& record) {
-  Fields out{record.index()};
-  std::visit([&](const auto& value) { add_fields(out, value); }, record);
-  return out;
-}
+inline message::Words fields(const Record& record) { return message::words_of(record); }
 
 /// A patient's file of `ticks` ticks with notes and one estimate, in chunks of `chunk_ms`.
 inline std::vector<std::byte> small_session(int ticks, int chunk_ms) {

@@ -3,19 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "common/core/time.h"
-
-/// What goes into a depth estimator and what comes out of it.
 namespace palp {
-
-/// One measured point. The position has passed the same 20 Hz pole as the force carries from its
-/// transducer: position and force must share their dynamics, or contact looks like hysteresis.
-struct ContactSample {
-  TimePoint at{};
-  double position{};  ///< [m], tip, behind the co-filter; the surface is the estimator's to find
-  double force{};     ///< [N], as measured
-  double lateral{};   ///< [m]
-};
 
 /// Found: an inclusion at `depth`. None: there is no inclusion in reach. Invalid: no statement.
 enum class DepthVerdict : std::uint8_t { None, Found, Invalid };
@@ -67,26 +55,5 @@ inline constexpr int kDepthReasonCount = 8;
   }
   return "?";
 }
-
-/// The result of one stroke (contact to reversal).
-struct DepthEstimate {
-  std::uint32_t number{};  ///< 1, 2, ... in this session; 0: none yet
-  TimePoint stroke_began_at{};
-  TimePoint stroke_ended_at{};
-  double lateral{};          ///< [m]
-  double indentation_max{};  ///< [m]
-  double force_max{};        ///< [N]
-  double surface{};          ///< [m], as found
-  DepthVerdict verdict{DepthVerdict::Invalid};
-  DepthReason reason{DepthReason::Ok};
-  double hash{};          ///< [N], the paper's h: the cubic (2) at 1 mm
-  double depth{};         ///< [m], top of the inclusion below the undeformed surface
-  double depth_stddev{};  ///< [m]; 0: this estimator gives none
-  /// [m], 95 % interval; equal to depth: this estimator gives none. Verdict None: an inclusion of
-  /// 5 mm radius or more whose top lies above this would have shown; 0: nothing is excluded.
-  double depth_low{};
-  double depth_high{};  ///< [m]
-  double fit_rms{};     ///< [N]
-};
 
 }  // namespace palp

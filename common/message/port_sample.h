@@ -7,6 +7,8 @@
 #include <variant>
 
 #include "common/core/time.h"
+#include "common/message/field.h"
+#include "common/message/limits.h"
 
 /// What the two halves of a coupling tell each other: a common part and one payload per law.
 /// Everything is absolute, never an increment: a lost packet may cost freshness, never state.
@@ -70,4 +72,55 @@ struct Incoming {
   TimePoint arrived_at{};   ///< our line; in real time the kernel's receive stamp
 };
 
+namespace message {
+
+template <std::same_as<WavePayload> S>
+inline constexpr auto fields<S> = list({.wire = "Wave", .log = "WavePayload"},
+                                       field<1, &S::wave_integral>("wave_integral_sqrt_w_s",
+                                                                   limit(kSumMax)),
+                                       field<2, &S::wave_energy>("wave_energy_j", limit(kSumMax)));
+
+template <std::same_as<TdpaPayload> S>
+inline constexpr auto fields<S> = list({.wire = "Tdpa", .log = "TdpaPayload"},
+                                       field<1, &S::energy_in>("energy_in_j", limit(kSumMax)));
+
+template <std::same_as<ModelPayload> S>
+inline constexpr auto fields<S> =
+    list({.wire = "Model", .log = "ModelPayload"},
+         field<1, &S::version>("version"),
+         field<2, &S::c, 0>("c1_n", wire<float>, limit(kForceMax)),
+         field<3, &S::c, 1>("c2_n", wire<float>, limit(kForceMax)),
+         field<4, &S::c, 2>("c3_n", wire<float>, limit(kForceMax)),
+         field<5, &S::c, 3>("c4_n", wire<float>, limit(kForceMax)),
+         field<6, &S::c, 4>("c5_n", wire<float>, limit(kForceMax)),
+         field<7, &S::surface>("surface_m", wire<float>, limit(kLengthMax)),
+         field<8, &S::depth_max>("depth_max_m", wire<float>, limit(kLengthMax)),
+         field<9, &S::residual>("residual_n", wire<float>, limit(kForceMax)),
+         field<10, &S::swing>("swing_m", wire<float>, limit(kLengthMax)),
+         field<11, &S::swing_quadrature>("swing_quadrature_m", wire<float>, limit(kLengthMax)),
+         field<12, &S::swing_rate>("swing_rad_per_s", wire<float>, limit(kSpeedMax)),
+         field<13, &S::relaxing, 0>("relaxing_fast", wire<float>, limit(kForceMax)),
+         field<14, &S::relaxing, 1>("relaxing_slow", wire<float>, limit(kForceMax)));
+
+template <std::same_as<PortSample> S>
+inline constexpr auto fields<S> =
+    list({.wire = "Sample"},
+         field<1, &S::position>("position_m", wire<float>, limit(kLengthMax)),
+         field<2, &S::velocity>("velocity_m_per_s", wire<float>, limit(kSpeedMax)),
+         field<3, &S::force>("force_n", wire<float>, limit(kForceMax)),
+         one_of<&S::payload>("payload",
+                             choice<4, WavePayload>("wave", repeated_later),
+                             choice<5, TdpaPayload>("tdpa"),
+                             choice<6, ModelPayload>("model")));
+
+template <std::same_as<Incoming> S>
+inline constexpr auto fields<S> = list({},
+                                       field<1, &S::number>("number"),
+                                       field<2, &S::fresh>("fresh"),
+                                       field<3, &S::repaired>("repaired"),
+                                       field<4, &S::sent_at>("sent_at_ns"),
+                                       field<5, &S::arrived_at>("arrived_at_ns"),
+                                       spread<5, &S::sample>(""));
+
+}  // namespace message
 }  // namespace palp

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+
+#include "common/core/depth_verdict.h"
+#include "common/core/time.h"
+#include "common/message/enumerators.h"
+#include "common/message/field.h"
+#include "common/message/limits.h"
+
+/// What goes into a depth estimator, what comes out of it, and what of that crosses.
+namespace palp {
+
+/// One measured point. The position has passed the same 20 Hz pole as the force carries from its
+/// transducer: position and force must share their dynamics, or contact looks like hysteresis.
+struct ContactSample {
+  TimePoint at{};
+  double position{};  ///< [m], tip, behind the co-filter; the surface is the estimator's to find
+  double force{};     ///< [N], as measured
+  double lateral{};   ///< [m]
+};
+
+/// The result of one stroke (contact to reversal).
+struct DepthEstimate {
+  std::uint32_t number{};  ///< 1, 2, ... in this session; 0: none yet
+  TimePoint stroke_began_at{};
+  TimePoint stroke_ended_at{};
+  double lateral{};          ///< [m]
+  double indentation_max{};  ///< [m]
+  double force_max{};        ///< [N]
+  double surface{};          ///< [m], as found
+  DepthVerdict verdict{DepthVerdict::Invalid};
+  DepthReason reason{DepthReason::Ok};
+  double hash{};          ///< [N], the paper's h: the cubic (2) at 1 mm
+  double depth{};         ///< [m], top of the inclusion below the undeformed surface
+  double depth_stddev{};  ///< [m]; 0: this estimator gives none
+  /// [m], 95 % interval; equal to depth: this estimator gives none. Verdict None: an inclusion of
+  /// 5 mm radius or more whose top lies above this would have shown; 0: nothing is excluded.
+  double depth_low{};
+  double depth_high{};  ///< [m]
+  double fit_rms{};     ///< [N]
+};
+
+/// The latest result of the depth estimator; repeated in every telegram until replaced.
+struct DepthReport {
+  std::uint32_t number{};  ///< of the estimate, 0: none yet
+  DepthVerdict verdict{};
+  DepthReason reason{};
+  double depth{};         ///< [m], top of the inclusion below the undeformed surface
+  double depth_stddev{};  ///< [m]
+  double depth_low{};     ///< [m]
+  double depth_high{};    ///< [m]
+  double hash{};          ///< [N]
+};
+
+namespace message {
+
+template <std::same_as<ContactSample> S>
+inline constexpr auto fields<S> = list({.log = "ContactSample"},
+                                       aside<&S::at>("at_ns"),
+                                       field<1, &S::position>("position_m"),
+                                       field<2, &S::force>("force_n"),
+                                       field<3, &S::lateral>("lateral_m"));
+
+template <std::same_as<DepthEstimate> S>
+inline constexpr auto fields<S> = list({.log = "DepthEstimate"},
+                                       field<1, &S::number>("number"),
+                                       field<2, &S::stroke_began_at>("stroke_began_at_ns"),
+                                       field<3, &S::stroke_ended_at>("stroke_ended_at_ns"),
+                                       field<4, &S::lateral>("lateral_m"),
+                                       field<5, &S::indentation_max>("indentation_max_m"),
+                                       field<6, &S::force_max>("force_max_n"),
+                                       field<7, &S::surface>("surface_m"),
+                                       field<8, &S::verdict>("verdict"),
+                                       field<9, &S::reason>("reason"),
+                                       field<10, &S::hash>("hash_n"),
+                                       field<11, &S::depth>("depth_m"),
+                                       field<12, &S::depth_stddev>("depth_stddev_m"),
+                                       field<13, &S::depth_low>("depth_low_m"),
+                                       field<14, &S::depth_high>("depth_high_m"),
+                                       field<15, &S::fit_rms>("fit_rms_n"));
+
+/// In the log the hash stands before the depths.
+template <std::same_as<DepthReport> S>
+inline constexpr auto fields<S> = list(
+    {.wire = "Depth"},
+    field<1, &S::number>("number"),
+    field<2, &S::verdict>("verdict"),
+    field<3, &S::reason>("reason"),
+    field<4, &S::depth>("depth_m", wire<float>, limit(kLengthMax), log_number<5>),
+    field<5, &S::depth_stddev>("depth_stddev_m", wire<float>, limit(kLengthMax), log_number<6>),
+    field<6, &S::depth_low>("depth_low_m", wire<float>, limit(kLengthMax), log_number<7>),
+    field<7, &S::depth_high>("depth_high_m", wire<float>, limit(kLengthMax), log_number<8>),
+    field<8, &S::hash>("hash_n", wire<float>, limit(kForceMax), log_number<4>));
+
+}  // namespace message
+}  // namespace palp

@@ -1,0 +1,244 @@
+#include "common/message/log_schema.h"
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+
+#include "common/message/kind.h"
+#include "common/message/text_encoding.h"
+
+namespace palp::message {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+/// Messages of descriptor.proto, as protobuf writes them. Their field numbers are protobuf's own.
+class Builder {
+ public:
+  void number(unsigned field, std::uint64_t value) {
+    varint(wire_tag(field, WireType::Varint));
+    varint(value);
+  }
+  void text(unsigned field, std::string_view value) {
+    part(field, std::as_bytes(std::span{value}));
+  }
+  void part(unsigned field, std::span<const std::byte> value) {
+    varint(wire_tag(field, WireType::Part));
+    varint(value.size());
+    bytes_.insert(bytes_.end(), value.begin(), value.end());
+  }
+  [[nodiscard]] const Bytes& bytes() const noexcept { return bytes_; }
+
+ private:
+  void varint(std::uint64_t value) {
+    std::array<std::byte, kVarintSizeMax> room{};
+    WireWriter writer{room};
+    writer.put_varint(value);
+    bytes_.insert(
+        bytes_.end(), room.begin(), room.begin() + static_cast<std::ptrdiff_t>(writer.size()));
+  }
+  Bytes bytes_;
+};
+
+/// FieldDescriptorProto.Type
+template <class Value>
+constexpr unsigned type_number() noexcept {
+  if constexpr (kIsText<Value>) {
+    return 9;
+  } else if constexpr (Described<Value>) {
+    return 11;
+  } else if constexpr (std::is_enum_v<Value>) {
+    return 14;
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    return 8;
+  } else if constexpr (std::is_floating_point_v<NumberOf<Value>>) {
+    return 1;
+  } else if constexpr (std::is_signed_v<NumberOf<Value>>) {
+    return 3;
+  } else {
+    return sizeof(Value) == sizeof(std::uint64_t) ? 4 : 13;
+  }
+}
+
+struct FieldText {
+  std::string name;
+  unsigned number{};
+  unsigned type{};
+  std::string type_name;  ///< of messages and enums
+  bool optional{};
+  bool of_oneof{};
+};
+
+/// One file in the making: the message and what its fields need, each once.
+class File {
+ public:
+  explicit File(bool of_patient) : of_patient_{of_patient} {}
+
+  template <class Struct>
+  void add_message(std::string_view name) {
+    if (!added_.insert(std::string{name}).second) return;
+    const std::size_t place = messages_.size();
+    messages_.emplace_back();
+    Message message{.name = std::string{name}, .fields = {}, .oneof = {}, .enums = {}};
+    collect<Struct, 0>(message, "");
+    messages_[place] = bytes_of(message);
+  }
+
+  [[nodiscard]] Bytes descriptor_set() const {
+    Builder file;
+    file.text(1, "session_log.proto");
+    file.text(2, kLogPackage);
+    for (const Bytes& message : messages_) file.part(4, message);
+    for (const Bytes& one : enums_) file.part(5, one);
+    file.text(12, "proto3");
+    Builder set;
+    set.part(1, file.bytes());
+    return set.bytes();
+  }
+
+ private:
+  struct Message {
+    std::string name;
+    std::vector<FieldText> fields;
+    std::string oneof;  ///< empty: it has none
+    std::vector<Bytes> enums;
+  };
+
+  static std::string full(std::string_view name) {
+    return "." + std::string{kLogPackage} + "." + std::string{name};
+  }
+
+  template <class Struct, unsigned kBase>
+  void collect(Message& to, std::string_view prefix) {
+    each(fields<Struct>.items,
+         [&](const auto& item) { collect_item<Struct, kBase>(item, to, prefix); });
+  }
+
+  template <class Struct, unsigned kBase, class Item>
+  void collect_item(const Item& item, Message& to, std::string_view prefix) {
+    using Value = ValueOf<Item, Struct>;
+    if constexpr (requires { item.choices; }) {
+      to.oneof = item.name;
+      each(item.choices, [&]<class Choice>(const Choice& choice) {
+        const std::string_view type = fields<typename Choice::Type>.names.log;
+        add_message<typename Choice::Type>(type);
+        to.fields.push_back({.name = std::string{choice.name},
+                             .number = kBase + Choice::kNumber,
+                             .type = 11,
+                             .type_name = full(type),
+                             .optional = false,
+                             .of_oneof = true});
+      });
+    } else if constexpr (kIsOptional<Value>) {
+      collect<typename Value::value_type, kBase + Item::kBase>(to, item.prefix);
+    } else if constexpr (requires { item.prefix; }) {
+      collect<Value, kBase + Item::kBase>(to, item.prefix);
+    } else if constexpr (requires { Item::kNumber; }) {
+      add_field<Value, kBase>(item, to, prefix);
+    }
+  }
+
+  template <class Value, unsigned kBase, class Item>
+  void add_field(const Item& item, Message& to, std::string_view prefix) {
+    FieldText field;
+    field.name = prefix;
+    field.name += of_patient_ ? item.name.patient : item.name.surgeon;
+    field.number = kBase + number_in<Form::Log, Item>();
+    field.type = type_number<Value>();
+    field.optional = std::is_base_of_v<Always, Item>;
+    if constexpr (Described<Value>) {
+      field.type_name = full(fields<Value>.names.log);
+      add_message<Value>(fields<Value>.names.log);
+    } else if constexpr (std::is_enum_v<Value>) {
+      constexpr auto kEnum = enumerators<Value>;
+      const std::string within{kEnum.within.empty() ? "" : std::string{kEnum.within} + "."};
+      field.type_name = full(within + std::string{kEnum.name});
+      if (added_.insert(within + std::string{kEnum.name}).second) {
+        (within.empty() ? enums_ : to.enums).push_back(enum_bytes(kEnum));
+      }
+    }
+    to.fields.push_back(std::move(field));
+  }
+
+  static Bytes enum_bytes(const auto& of) {
+    Builder out;
+    out.text(1, of.name);
+    for (std::size_t i = 0; i < of.values.size(); ++i) {
+      Builder value;
+      value.text(1, of.values[i]);
+      value.number(2, i);
+      out.part(2, value.bytes());
+    }
+    return out.bytes();
+  }
+
+  /// A field that is `optional` lies in a oneof of its own, behind those of the schema.
+  static Bytes bytes_of(Message& message) {
+    std::ranges::sort(message.fields, {}, &FieldText::number);
+    std::vector<std::string> oneofs;
+    if (!message.oneof.empty()) oneofs.push_back(message.oneof);
+    Builder out;
+    out.text(1, message.name);
+    for (const FieldText& field : message.fields) {
+      Builder one;
+      one.text(1, field.name);
+      one.number(3, field.number);
+      one.number(4, 1);  // LABEL_OPTIONAL
+      one.number(5, field.type);
+      if (!field.type_name.empty()) one.text(6, field.type_name);
+      if (field.of_oneof) one.number(9, 0);
+      if (field.optional) {
+        one.number(9, oneofs.size());
+        oneofs.push_back("_" + field.name);
+        one.number(17, 1);
+      }
+      out.part(2, one.bytes());
+    }
+    for (const Bytes& one : message.enums) out.part(4, one);
+    for (const std::string& name : oneofs) {
+      Builder one;
+      one.text(1, name);
+      out.part(8, one.bytes());
+    }
+    return out.bytes();
+  }
+
+  bool of_patient_;
+  std::set<std::string> added_;
+  std::vector<Bytes> messages_;
+  std::vector<Bytes> enums_;
+};
+
+}  // namespace
+
+template <class Message>
+std::string_view log_name(bool of_patient) noexcept {
+  constexpr Names kNames = fields<Message>.names;
+  return of_patient && !kNames.log_patient.empty() ? kNames.log_patient : kNames.log;
+}
+
+template <class Message>
+LogSchema log_schema(bool of_patient) {
+  const std::string_view name = log_name<Message>(of_patient);
+  File file{of_patient};
+  file.add_message<Message>(name);
+  return {.name = std::string{kLogPackage} + "." + std::string{name},
+          .descriptors = file.descriptor_set()};
+}
+
+/// Makes both of one message.
+template <class Message>
+struct SchemaOf {
+  static constexpr auto kName = &log_name<Message>;
+  static constexpr auto kSchema = &log_schema<Message>;
+};
+template struct SchemaOf<SiteTick>;
+template struct SchemaOf<TickView>;
+template struct SchemaOf<Arrived>;
+template struct SchemaOf<LinkStatus>;
+template struct SchemaOf<Event>;
+template struct SchemaOf<ContactSample>;
+template struct SchemaOf<DepthEstimate>;
+template struct SchemaOf<DepthArrived>;
+
+}  // namespace palp::message

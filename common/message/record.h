@@ -1,0 +1,152 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+
+#include "common/core/site_state.h"
+#include "common/core/time.h"
+#include "common/message/depth.h"
+#include "common/message/enumerators.h"
+#include "common/message/field.h"
+#include "common/message/link_health.h"
+#include "common/message/port_sample.h"
+
+/// What a site writes down: typed and complete.
+namespace palp {
+
+/// One tick of a node: what the law was given, what it said, what the gate let through.
+struct SiteTick {
+  TimePoint at{};
+  SiteState state{};
+  std::uint32_t epoch{};
+  double position{};      ///< [m], as given to the law
+  double velocity{};      ///< [m/s]
+  double force{};         ///< [N]; surgeon: as applied last tick, patient: contact force measured
+  double lateral{};       ///< [m]
+  double command{};       ///< [N] to the hand or [m] to the stage, behind the gate
+  bool gate_acted{};      ///< the gate changed what the law asked for
+  Duration round_trip{};  ///< as given to the law
+  PortSample sent;        ///< to the peer
+};
+
+/// Each sample that arrived: a replay needs them all.
+struct Arrived {
+  TimePoint at{};
+  Incoming incoming;
+};
+
+/// State of the link, 10 times a second.
+struct LinkStatus {
+  TimePoint at{};
+  LinkHealth health;
+  std::uint64_t records_dropped{};  ///< by the full queue, so far; the session's writer says it
+};
+
+/// A numbered event; its text stands in notes.h.
+struct Note {
+  TimePoint at{};
+  std::uint16_t code{};
+  double detail{};  ///< [by code], as notes.h says
+};
+
+/// A change of the site's state.
+struct Transition {
+  TimePoint at{};
+  SiteState from{};
+  SiteState to{};
+  std::uint16_t reason{};  ///< notes.h
+};
+
+/// The depth as it arrived at the surgeon's.
+struct DepthArrived {
+  TimePoint at{};
+  DepthReport report;
+};
+
+using Record = std::variant<SiteTick,
+                            Arrived,
+                            LinkStatus,
+                            Note,
+                            Transition,
+                            ContactSample,
+                            DepthEstimate,
+                            DepthArrived>;
+static_assert(std::is_trivially_copyable_v<Record>, "crosses threads by copy");
+
+/// Their names in summaries and reports, in the same order.
+inline constexpr std::array<const char*, std::variant_size_v<Record>> kRecordNames{
+    "tick", "arrived", "link", "note", "transition", "contact", "depth_estimate", "depth_arrived"};
+
+namespace message {
+
+/// Notes and changes of state as the log has them, on one topic.
+enum class EventKind : std::uint8_t { Note, Transition };
+struct Event {
+  TimePoint at{};
+  EventKind kind{};
+  std::uint16_t code{};   ///< of the note, or of the reason
+  std::string_view text;  ///< the same for people
+  double detail{};        ///< [by code], of notes
+  SiteState from{};       ///< of transitions, as the next
+  SiteState to{};
+};
+
+template <std::same_as<SiteTick> S>
+inline constexpr auto fields<S> = list({.log = "SurgeonTick", .log_patient = "PatientTick"},
+                                       aside<&S::at>("at_ns"),
+                                       field<1, &S::state>("state"),
+                                       field<2, &S::epoch>("epoch"),
+                                       field<3, &S::position>("position_m"),
+                                       field<4, &S::velocity>("velocity_m_per_s"),
+                                       field<5, &S::force>("force_n"),
+                                       field<6, &S::lateral>("lateral_m"),
+                                       field<7, &S::command>({"command_n", "command_m"}),
+                                       field<8, &S::gate_acted>("gate_acted"),
+                                       field<9, &S::round_trip>("round_trip_ns"),
+                                       spread<9, &S::sent>("sent_"));
+
+template <std::same_as<Arrived> S>
+inline constexpr auto fields<S> = list({.log = "ArrivedSample"},
+                                       aside<&S::at>("at_ns"),
+                                       spread<0, &S::incoming>(""));
+
+template <std::same_as<LinkStatus> S>
+inline constexpr auto fields<S> = list({.log = "LinkStatus"},
+                                       aside<&S::at>("at_ns"),
+                                       spread<0, &S::health>(""),
+                                       field<20, &S::records_dropped>("records_dropped"));
+
+template <std::same_as<Note> S>
+inline constexpr auto fields<S> =
+    list({}, aside<&S::at>("at_ns"), aside<&S::code>("code"), aside<&S::detail>("detail"));
+
+template <std::same_as<Transition> S>
+inline constexpr auto fields<S> = list({},
+                                       aside<&S::at>("at_ns"),
+                                       aside<&S::from>("from"),
+                                       aside<&S::to>("to"),
+                                       aside<&S::reason>("reason"));
+
+template <std::same_as<DepthArrived> S>
+inline constexpr auto fields<S> = list({.log = "DepthReport"},
+                                       aside<&S::at>("at_ns"),
+                                       spread<0, &S::report>(""));
+
+template <std::same_as<EventKind> E>
+inline constexpr auto enumerators<E> = enumeration("Kind", "Event", "NOTE", "TRANSITION");
+
+template <std::same_as<Event> S>
+inline constexpr auto fields<S> = list({.log = "Event"},
+                                       aside<&S::at>("at_ns"),
+                                       field<1, &S::kind>("kind"),
+                                       field<2, &S::code>("code"),
+                                       field<3, &S::text>("text", text_limit<100>),
+                                       field<4, &S::detail>("detail"),
+                                       field<5, &S::from>("from"),
+                                       field<6, &S::to>("to"));
+
+}  // namespace message
+}  // namespace palp

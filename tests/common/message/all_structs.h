@@ -1,0 +1,50 @@
+#pragma once
+
+#include "common/message/log_bytes.h"
+#include "common/message/telegram.h"
+
+/// Every struct that has a list, by what it is for.
+namespace palp::message {
+
+/// Calls visit.operator()<Struct>() for each.
+template <class... Structs>
+void each_type(auto&& visit) {
+  (visit.template operator()<Structs>(), ...);
+}
+
+void each_struct(auto&& visit) {
+  each_type<WavePayload,
+            TdpaPayload,
+            ModelPayload,
+            PortSample,
+            Incoming,
+            SiteReport,
+            DepthReport,
+            WireTelegram,
+            ClockOffset,
+            LinkHealth,
+            SiteTick,
+            Arrived,
+            LinkStatus,
+            Note,
+            Transition,
+            ContactSample,
+            DepthEstimate,
+            DepthArrived,
+            TickView,
+            Event>(visit);
+}
+
+/// Those that are messages of the log.
+void each_log_message(auto&& visit) {
+  each_type<SiteTick,
+            Arrived,
+            LinkStatus,
+            ContactSample,
+            DepthEstimate,
+            DepthArrived,
+            TickView,
+            Event>(visit);
+}
+
+}  // namespace palp::message
