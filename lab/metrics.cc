@@ -26,7 +26,9 @@ constexpr std::size_t kStepTicks = 10;
 /// Runs of ticks that belong to one phase.
 std::vector<std::span<const TrialTick>> split_phases(const std::vector<TrialTick>& ticks) {
   std::vector<std::span<const TrialTick>> phases;
-  const auto key = [](const PhaseTag& tag) { return std::tuple{tag.kind, tag.site, tag.index}; };
+  const auto key = [](const PhaseTag& tag) {
+    return std::tuple{tag.kind, tag.place.x, tag.place.y, tag.index};
+  };
   std::size_t begin = 0;
   for (std::size_t k = 1; k <= ticks.size(); ++k) {
     if (k < ticks.size() && key(ticks[k].phase) == key(ticks[begin].phase)) continue;
@@ -199,10 +201,12 @@ void judge_taps(std::span<const std::span<const TrialTick>> phases, TrialMetrics
     double deepest = -INFINITY;
     for (const TrialTick& tick : phase) deepest = std::max(deepest, tick.hand);
     metrics.taps.push_back({.site = tag.site,
+                            .place = tag.place,
                             .index = tag.index,
                             .hand_max = deepest,
                             .stiffness_felt = own.defined() ? own.felt.slope() : kUndefined,
                             .stiffness_true = own.defined() ? own.truth.slope() : kUndefined});
+    if (tag.site == Site::Other) continue;
     if (tag.index == 1) metrics.tap1_error[site] = own.error();
     if (tag.index == 2) metrics.tap2_error[site] = own.error();
     if (tag.index >= 2) pooled[site].add(phase);
@@ -216,6 +220,7 @@ void judge_holds(std::span<const std::span<const TrialTick>> phases, TrialMetric
   std::array<std::array<HoldMeans, 2>, 2> holds;
   for (const auto& phase : phases) {
     const PhaseTag& tag = phase.front().phase;
+    if (tag.site == Site::Other) continue;
     if (tag.kind == PhaseKind::PressHold && (tag.index == 1 || tag.index == 2)) {
       holds[static_cast<std::size_t>(tag.site)][static_cast<std::size_t>(tag.index - 1)] =
           hold_means(phase);

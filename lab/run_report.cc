@@ -13,7 +13,7 @@
 #include "lab/digest.h"
 #include "lab/metric_table.h"
 #include "patient_site/estimator/depth_summary.h"
-#include "patient_site/phantom.h"
+#include "surgeon_site/script_builder.h"
 
 namespace palp::lab {
 namespace {
@@ -22,16 +22,10 @@ using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Site site_of(const DepthEstimate& estimate) {
-  return estimate.lateral < patient::Phantom::kSiteBoundary ? Site::A : Site::B;
-}
-
-const char* name_of(Site site) { return site == Site::A ? "A" : "B"; }
-
-std::vector<DepthEstimate> estimates_at(Site site, std::span<const DepthEstimate> all) {
+std::vector<DepthEstimate> estimates_at(const Place& place, std::span<const DepthEstimate> all) {
   std::vector<DepthEstimate> here;
   for (const DepthEstimate& estimate : all) {
-    if (site_of(estimate) == site) here.push_back(estimate);
+    if (distance(estimate.place, place) <= kSamePlace) here.push_back(estimate);
   }
   return here;
 }
@@ -56,14 +50,14 @@ Json depth_json(const DepthEstimate& estimate, estimator::EstimatorKind kind) {
 
 /// The strokes of a site follow each other as its taps do; presses come behind them.
 Json taps_json(const TrialResult& result, estimator::EstimatorKind kind) {
-  const std::array<std::vector<DepthEstimate>, 2> strokes{estimates_at(Site::A, result.depths),
-                                                          estimates_at(Site::B, result.depths)};
   Json taps = Json::array();
   for (const TapMetrics& tap : result.metrics.taps) {
-    const auto& here = strokes[static_cast<std::size_t>(tap.site)];
+    const std::vector<DepthEstimate> here = estimates_at(tap.place, result.depths);
     const auto index = static_cast<std::size_t>(tap.index - 1);
     Json json;
-    json["site"] = name_of(tap.site);
+    json["site"] = surgeon::place_name(tap.place);
+    json["x_mm"] = tap.place.x * 1e3;
+    json["y_mm"] = tap.place.y * 1e3;
     json["index"] = tap.index;
     const bool known = index < here.size();
     json["indentation_max_mm"] = known ? number(here[index].indentation_max * 1e3) : Json(nullptr);
@@ -109,7 +103,7 @@ std::string measured(double value, int decimals, const char* unit) {
 
 std::string tap_text(const TapMetrics& tap) {
   std::string text;
-  append(text, "tap %s%-2d    ", name_of(tap.site), tap.index);
+  append(text, "tap %s%-2d    ", surgeon::place_name(tap.place).c_str(), tap.index);
   if (!std::isfinite(tap.stiffness_felt)) return text + "no contact\n";
   append(text,
          "felt %6.1f N/m, true %6.1f N/m (%s), hand to %.2f mm\n",
@@ -141,8 +135,9 @@ std::string run_report(const Scenario& scenario,
   json["records"] = result.records;
   json.update(metrics_json(result.metrics));
   json["taps"] = taps_json(result, scenario.estimator.kind);
-  json["depth"] = depth_json(estimator::summarise_depths(estimates_at(Site::B, result.depths)),
-                             scenario.estimator.kind);
+  json["depth"] =
+      depth_json(estimator::summarise_depths(estimates_at(scenario.phantom.axis, result.depths)),
+                 scenario.estimator.kind);
   // A file's name need not be UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -162,7 +157,7 @@ std::string run_summary(const Scenario& scenario,
   for (const DepthEstimate& estimate : result.depths) {
     append(text,
            "stroke %s    h %.4f N, %s",
-           name_of(site_of(estimate)),
+           surgeon::place_name(estimate.place).c_str(),
            estimate.hash,
            std::string{to_string(estimate.verdict)}.c_str());
     if (estimate.verdict == DepthVerdict::Found) append(text, " at %.1f mm", estimate.depth * 1e3);
@@ -197,7 +192,7 @@ std::string trace_csv(const TrialResult& result) {
     append(text,
            "%.4f,%s,%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%.9g,%.9g\n",
            tick.at,
-           name_of(tick.phase.site),
+           surgeon::place_name(tick.phase.place).c_str(),
            kKinds[static_cast<std::size_t>(tick.phase.kind)],
            tick.phase.index,
            tick.hand * 1e3,

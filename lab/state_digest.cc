@@ -41,7 +41,16 @@ void fold_port(Digest& digest, const PortSample& port) noexcept {
 struct RecordFolder {
   Digest& digest;
   void operator()(const record::SiteTick& t) const noexcept {
-    fold_all(digest, t.at, t.state, t.epoch, t.position, t.velocity, t.force, t.lateral, t.command);
+    fold_all(digest,
+             t.at,
+             t.state,
+             t.epoch,
+             t.position,
+             t.velocity,
+             t.force,
+             t.place.x,
+             t.place.y,
+             t.command);
     fold_all(digest, t.gate_acted, t.round_trip);
     fold_port(digest, t.sent);
   }
@@ -62,7 +71,7 @@ struct RecordFolder {
     fold_all(digest, t.at, t.from, t.to, t.reason);
   }
   void operator()(const ContactSample& c) const noexcept {
-    fold_all(digest, c.at, c.position, c.force, c.lateral);
+    fold_all(digest, c.at, c.position, c.force, c.place.x, c.place.y);
   }
   void operator()(const DepthEstimate& d) const noexcept {
     fold_all(digest, d.number, d.stroke_ended_at, d.verdict, d.reason, d.hash, d.depth, d.surface);

@@ -100,12 +100,13 @@ Json tap_json(const Tap& tap, const SiteData& patient) {
     return millimetres(known ? std::optional{metres} : std::nullopt);
   };
   Json json;
-  json["site"] = to_string(tap.place);
+  json["site"] = name_of(tap.place);
   json["index"] = tap.index;
   json["kind"] = to_string(tap.kind);
   json["number"] = estimate.number;
   json["t_s"] = value(seconds(elapsed(patient.began_at, estimate.stroke_began_at)));
-  json["lateral_mm"] = value(estimate.lateral * 1e3);
+  json["x_mm"] = value(estimate.place.x * 1e3);
+  json["y_mm"] = value(estimate.place.y * 1e3);
   json["indentation_max_mm"] = value(estimate.indentation_max * 1e3);
   json["force_max_n"] = value(estimate.force_max);
   json["stiffness_felt_n_per_m"] = value(tap.stiffness.felt);

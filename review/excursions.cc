@@ -39,7 +39,7 @@ std::optional<Excursion> judge(std::span<const Motion> ticks, double surface) {
     return std::nullopt;
   }
   const auto loading_size = static_cast<std::size_t>(deepest - ticks.begin()) + 1;
-  return Excursion{.place = place_at(deepest->lateral),
+  return Excursion{.place = deepest->place,
                    .began_at = ticks.front().at,
                    .ended_at = ticks.back().at,
                    .loading = ticks.first(loading_size)};

@@ -20,7 +20,7 @@ struct Collector {
                            .position = tick.position,
                            .velocity = tick.velocity,
                            .force = tick.force,
-                           .lateral = tick.lateral});
+                           .place = tick.place});
   }
   void operator()(const record::Arrived&) const {}
   void operator()(const record::LinkStatus& status) const {

@@ -17,7 +17,7 @@ struct Motion {
   double position{};  ///< [m], hand or tip
   double velocity{};  ///< [m/s]
   double force{};     ///< [N], surgeon: applied to the hand, patient: contact
-  double lateral{};   ///< [m]
+  Place place{};
 };
 
 /// What one session file says, in memory.

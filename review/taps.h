@@ -20,7 +20,7 @@ inline constexpr Duration kTapMax{std::chrono::milliseconds{1500}};  ///< longer
 
 /// One stroke as both sites saw it.
 struct Tap {
-  Place place{};
+  Place place;
   StrokeKind kind{};
   int index{};  ///< 1, 2, ... among the strokes of its kind at its place
   DepthEstimate estimate;

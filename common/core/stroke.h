@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "common/core/place.h"
 #include "common/core/time.h"
 
 /// What goes into a depth estimator and what comes out of it.
@@ -14,7 +15,7 @@ struct ContactSample {
   TimePoint at{};
   double position{};  ///< [m], tip, behind the co-filter; the surface is the estimator's to find
   double force{};     ///< [N], as measured
-  double lateral{};   ///< [m]
+  Place place{};
 };
 
 /// Found: an inclusion at `depth`. None: there is no inclusion in reach. Invalid: no statement.
@@ -73,7 +74,7 @@ struct DepthEstimate {
   std::uint32_t number{};  ///< 1, 2, ... in this session; 0: none yet
   TimePoint stroke_began_at{};
   TimePoint stroke_ended_at{};
-  double lateral{};          ///< [m]
+  Place place{};
   double indentation_max{};  ///< [m]
   double force_max{};        ///< [N]
   double surface{};          ///< [m], as found

@@ -70,8 +70,9 @@ bool well_formed(const WireTelegram& telegram) noexcept {
     if (!well_formed_earlier(telegram.older[i])) return false;
   }
   const SiteReport& site = telegram.telegram.site;
-  return static_cast<int>(site.state) < kSiteStateCount && within(site.lateral, kLengthMax) &&
-         well_formed(site.depth) && well_formed(telegram.telegram.port);
+  return static_cast<int>(site.state) < kSiteStateCount && within(site.place.x, kLengthMax) &&
+         within(site.place.y, kLengthMax) && well_formed(site.depth) &&
+         well_formed(telegram.telegram.port);
 }
 
 std::size_t RawCodec::encode(const WireTelegram& telegram,

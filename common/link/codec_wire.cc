@@ -242,11 +242,12 @@ constexpr std::tuple kDepth{whole<1>([](auto& d) -> auto& { return d.number; }),
 
 constexpr std::tuple kSite{enumerator<1>([](auto& s) -> auto& { return s.state; }),
                            whole<2>([](auto& s) -> auto& { return s.epoch; }),
-                           fixed<3, float>([](auto& s) -> auto& { return s.lateral; }),
+                           fixed<3, float>([](auto& s) -> auto& { return s.place.x; }),
                            part<4>(
                                kDepth,
                                [](auto& s) -> auto& { return s.depth; },
-                               [](auto& s) { return s.depth.number != 0; })};
+                               [](auto& s) { return s.depth.number != 0; }),
+                           fixed<5, float>([](auto& s) -> auto& { return s.place.y; })};
 
 constexpr auto kAlways = [](auto&) { return true; };
 

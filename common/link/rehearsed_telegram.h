@@ -9,7 +9,7 @@ namespace palp::link {
 inline const Telegram kRehearsed{
     .site = {.state = SiteState::Engaged,
              .epoch = 1,
-             .lateral = 1,
+             .place = {.x = 1, .y = 1},
              .depth = {.number = 1, .depth = 1, .depth_low = 1, .depth_high = 1}},
     .port = {.position = 1,
              .velocity = 1,

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "common/core/place.h"
 #include "common/core/port_sample.h"
 #include "common/core/site_state.h"
 #include "common/core/stroke.h"
@@ -30,8 +31,8 @@ struct DepthReport {
 struct SiteReport {
   SiteState state{};
   std::uint32_t epoch{};  ///< +1 at every engagement; samples of older epochs are dropped
-  double lateral{};       ///< [m]
-  DepthReport depth;      ///< patient to surgeon only
+  Place place{};
+  DepthReport depth;  ///< patient to surgeon only
 };
 
 /// What a node says. The link adds stamps, acknowledgements and two older samples (WIRE.md).

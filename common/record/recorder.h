@@ -19,10 +19,10 @@ struct SiteTick {
   TimePoint at{};
   SiteState state{};
   std::uint32_t epoch{};
-  double position{};      ///< [m], as given to the law
-  double velocity{};      ///< [m/s]
-  double force{};         ///< [N]; surgeon: as applied last tick, patient: contact force measured
-  double lateral{};       ///< [m]
+  double position{};  ///< [m], as given to the law
+  double velocity{};  ///< [m/s]
+  double force{};     ///< [N]; surgeon: as applied last tick, patient: contact force measured
+  Place place{};
   double command{};       ///< [N] to the hand or [m] to the stage, behind the gate
   bool gate_acted{};      ///< the gate changed what the law asked for
   Duration round_trip{};  ///< as given to the law

@@ -55,7 +55,7 @@ Record tick_of(const Message& in, TimePoint at, Range& range) {
                   .position = in.position_m(),
                   .velocity = in.velocity_m_per_s(),
                   .force = in.force_n(),
-                  .lateral = in.lateral_m(),
+                  .place = {in.x_m(), in.y_m()},
                   .command = command_of(in),
                   .gate_acted = in.gate_acted(),
                   .round_trip = Duration{in.round_trip_ns()},
@@ -127,14 +127,14 @@ Record event_of(const session::Event& in, TimePoint at, Range& range) {
 
 Record contact_of(const session::ContactSample& in, TimePoint at) {
   return ContactSample{
-      .at = at, .position = in.position_m(), .force = in.force_n(), .lateral = in.lateral_m()};
+      .at = at, .position = in.position_m(), .force = in.force_n(), .place = {in.x_m(), in.y_m()}};
 }
 
 Record estimate_of(const session::DepthEstimate& in, Range& range) {
   return DepthEstimate{.number = in.number(),
                        .stroke_began_at = TimePoint{Duration{in.stroke_began_at_ns()}},
                        .stroke_ended_at = TimePoint{Duration{in.stroke_ended_at_ns()}},
-                       .lateral = in.lateral_m(),
+                       .place = {in.x_m(), in.y_m()},
                        .indentation_max = in.indentation_max_m(),
                        .force_max = in.force_max_n(),
                        .surface = in.surface_m(),

@@ -80,7 +80,8 @@ void put_tick(const SiteTick& tick, Message& out) {
   out.set_position_m(tick.position);
   out.set_velocity_m_per_s(tick.velocity);
   out.set_force_n(tick.force);
-  out.set_lateral_m(tick.lateral);
+  out.set_x_m(tick.place.x);
+  out.set_y_m(tick.place.y);
   put_command(tick.command, out);
   out.set_gate_acted(tick.gate_acted);
   out.set_round_trip_ns(tick.round_trip.count());
@@ -105,7 +106,8 @@ void put_view(const TickView& view, Message& out) {
   out.set_force_min_n(view.force.min);
   out.set_force_max_n(view.force.max);
   put_command(view.command, out);
-  out.set_lateral_m(view.newest.lateral);
+  out.set_x_m(view.newest.place.x);
+  out.set_y_m(view.newest.place.y);
   out.set_round_trip_ns(view.newest.round_trip.count());
 }
 
@@ -168,14 +170,16 @@ void put_event(std::uint16_t code, session::Event& out) {
 void put(const ContactSample& sample, session::ContactSample& out) {
   out.set_position_m(sample.position);
   out.set_force_n(sample.force);
-  out.set_lateral_m(sample.lateral);
+  out.set_x_m(sample.place.x);
+  out.set_y_m(sample.place.y);
 }
 
 void put(const DepthEstimate& estimate, session::DepthEstimate& out) {
   out.set_number(estimate.number);
   out.set_stroke_began_at_ns(estimate.stroke_began_at.time_since_epoch().count());
   out.set_stroke_ended_at_ns(estimate.stroke_ended_at.time_since_epoch().count());
-  out.set_lateral_m(estimate.lateral);
+  out.set_x_m(estimate.place.x);
+  out.set_y_m(estimate.place.y);
   out.set_indentation_max_m(estimate.indentation_max);
   out.set_force_max_n(estimate.force_max);
   out.set_surface_m(estimate.surface);

@@ -42,7 +42,7 @@ void BayesEstimator::judge(DepthEstimate& estimate, const PaperEstimator::PlaceD
   Settled& settled = settled_at(place);
   settle(place, input, settled);
   const bool here =
-      reference_ && std::abs(reference_->lateral - place.lateral) <= config_.strokes.place_size;
+      reference_ && distance(reference_->place, place.place) <= config_.strokes.place_size;
   if (reference_ && !here) {
     input.stiffness = reference_->stiffness;
     input.stiffness.scale_stddev =
@@ -52,11 +52,11 @@ void BayesEstimator::judge(DepthEstimate& estimate, const PaperEstimator::PlaceD
   settled.best = posterior_.best;
   const StiffnessPrior& plain = posterior_.plain;
   if (!reference_ || here) {
-    reference_ = Reference{place.lateral, plain};
+    reference_ = Reference{place.place, plain};
   } else {
     const double spread = std::hypot(plain.scale_stddev, reference_->stiffness.scale_stddev);
     if (plain.scale < reference_->stiffness.scale - kSofter * spread) {
-      reference_ = Reference{place.lateral, plain};
+      reference_ = Reference{place.place, plain};
     }
   }
   const bool found =
@@ -72,7 +72,7 @@ void BayesEstimator::judge(DepthEstimate& estimate, const PaperEstimator::PlaceD
 
 BayesEstimator::Settled& BayesEstimator::settled_at(const PaperEstimator::PlaceData& place) {
   for (Settled& one : settled_) {
-    if (one.lateral != place.lateral) continue;
+    if (one.place != place.place) continue;
     if (one.generation != place.generation) {
       one.generation = place.generation;
       one.count = one.weight = 0;
@@ -82,7 +82,7 @@ BayesEstimator::Settled& BayesEstimator::settled_at(const PaperEstimator::PlaceD
     return one;
   }
   if (settled_.size() == kPlacesMax) settled_.erase(settled_.begin());
-  return settled_.emplace_back(Settled{.lateral = place.lateral,
+  return settled_.emplace_back(Settled{.place = place.place,
                                        .generation = place.generation,
                                        .sums = TouchSums{place.surface},
                                        .best = {}});

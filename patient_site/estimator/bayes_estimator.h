@@ -41,7 +41,7 @@ class BayesEstimator {
  private:
   /// Touches of one place that were added up and are not looked at again.
   struct Settled {
-    double lateral{};  ///< [m]
+    Place place{};
     std::uint64_t generation{};
     std::size_t count{};   ///< of the generation's touches, settled or too early for it
     std::size_t weight{};  ///< [touches], in the sums
@@ -54,7 +54,7 @@ class BayesEstimator {
   void settle(const PaperEstimator::PlaceData& place, DepthModel::Input& input, Settled& settled);
 
   struct Reference {
-    double lateral{};  ///< [m]
+    Place place{};
     StiffnessPrior stiffness;
   };
 

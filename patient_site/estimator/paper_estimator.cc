@@ -86,17 +86,17 @@ PaperEstimator::PaperEstimator(const PaperEstimatorConfig& config)
 }
 
 std::optional<DepthEstimate> PaperEstimator::add(const ContactSample& sample) {
-  if (!std::isfinite(sample.position) || !std::isfinite(sample.force) ||
-      !std::isfinite(sample.lateral)) {
+  if (!std::isfinite(sample.position) || !std::isfinite(sample.force) || !is_finite(sample.place)) {
     return std::nullopt;
   }
   const bool follows = previous_ && sample.at > previous_->at &&
                        sample.at - previous_->at <= config_.gap_max &&
-                       std::abs(sample.lateral - previous_->lateral) <= config_.place_size;
+                       distance(sample.place, began_) <= config_.place_size;
   if (!follows) {
     cutter_.reset();
     learning_.reset();
     previous_.reset();
+    began_ = sample.place;
   }
   const StrokeCutter::Event event = cutter_.add(filter(sample));
   previous_ = sample;
@@ -109,7 +109,7 @@ std::optional<PaperEstimator::PlaceData> PaperEstimator::place() const {
   if (!learning_ || !places_[*learning_].law) return std::nullopt;
   const Place& place = places_[*learning_];
   return PlaceData{
-      .lateral = place.lateral,
+      .place = place.place,
       .surface = place.law->surface,
       .rate_factor = place.law->rate_factor,
       .noise = place.contact_count > 0
@@ -150,15 +150,15 @@ PaperEstimator::Measured PaperEstimator::measure() const noexcept {
   return measured;
 }
 
-std::size_t PaperEstimator::find_place(double lateral, double first_contact) {
+std::size_t PaperEstimator::find_place(const palp::Place& place, double first_contact) {
   ++uses_;
   for (std::size_t i = 0; i < places_.size(); ++i) {
-    if (std::abs(places_[i].lateral - lateral) <= config_.place_size) {
+    if (distance(places_[i].place, place) <= config_.place_size) {
       places_[i].used = uses_;
       return i;
     }
   }
-  Place fresh{.lateral = lateral,
+  Place fresh{.place = place,
               .first_contact = first_contact,
               .curve = ContactCurve{first_contact},
               .law = std::nullopt,
@@ -187,7 +187,7 @@ DepthEstimate PaperEstimator::estimate_stroke() {
   estimate.number = ++number_;
   estimate.stroke_ended_at = cutter_.loading().back().measured.at;
   estimate.stroke_began_at = cutter_.loading().front().measured.at;
-  estimate.lateral = previous_->lateral;
+  estimate.place = previous_->place;
   estimate.force_max = measured.force_max;
   estimate.verdict = DepthVerdict::Invalid;
   const auto invalid = [&](DepthReason reason) {
@@ -201,7 +201,7 @@ DepthEstimate PaperEstimator::estimate_stroke() {
   if (measured.saturated) return invalid(DepthReason::ForceSaturated);
   if (measured.noise > config_.noise_max) return invalid(DepthReason::TooNoisy);
   if (measured.in_contact < config_.samples_min) return invalid(DepthReason::StrokeTooFewSamples);
-  const std::size_t index = find_place(previous_->lateral, measured.first_contact);
+  const std::size_t index = find_place(previous_->place, measured.first_contact);
   if (!learn_loading(places_[index], measured, estimate)) return invalid(DepthReason::NoContact);
   learning_ = index;
   if (estimate.indentation_max < config_.indentation_min) {

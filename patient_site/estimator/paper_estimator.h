@@ -25,7 +25,7 @@ struct PaperEstimatorConfig {
   double fit_range{4e-3};          ///< [m], of eq. (2): reproduces the paper's hash values
   double noise_max{0.1};           ///< [N], rms of a sample: five times the transducer's
   std::size_t samples_min{30};     ///< of a stroke, in contact
-  double place_size{1e-3};         ///< [m], of lateral: farther is another place
+  double place_size{kSamePlace};   ///< [m], farther along the surface is another place
   double change_force{0.015};      ///< [N], mean misfit from which the tissue is not the same
   Duration gap_max{std::chrono::milliseconds{20}};  ///< a longer one cuts the stream
   StrokeCutterConfig cutter;
@@ -56,7 +56,7 @@ class PaperEstimator {
   /// What is known of the place of the last estimate, and its last strokes as they were measured.
   /// The last of them ends at its reversal, and grows until it is released.
   struct PlaceData {
-    double lateral{};                ///< [m]
+    palp::Place place;
     double surface{};                ///< [m], as found
     double rate_factor{};            ///< [s/m], as found
     double noise{};                  ///< [N], of one sample
@@ -73,7 +73,7 @@ class PaperEstimator {
  private:
   /// What is known of one place along the surface.
   struct Place {
-    double lateral{};        ///< [m]
+    palp::Place place;
     double first_contact{};  ///< [m]
     ContactCurve curve;
     std::optional<ContactLaw> law;
@@ -106,7 +106,7 @@ class PaperEstimator {
 
   [[nodiscard]] StrokeSample filter(const ContactSample& sample) noexcept;
   [[nodiscard]] Measured measure() const noexcept;
-  [[nodiscard]] std::size_t find_place(double lateral, double first_contact);
+  [[nodiscard]] std::size_t find_place(const palp::Place& place, double first_contact);
   [[nodiscard]] DepthEstimate estimate_stroke();
   [[nodiscard]] Branch branch_curve(const Place& place,
                                     ContactCurve::Branch branch,
@@ -128,6 +128,7 @@ class PaperEstimator {
   double pole_gain_;    ///< [-], of the transducer's pole, per sample
   double filter_gain_;  ///< [-], of the low pass, per sample
   std::optional<ContactSample> previous_;
+  palp::Place began_;  ///< where the samples that follow each other began
   std::vector<Place> places_;
   std::optional<std::size_t> learning_;  ///< place whose unloading branch is still to come
   double noise_{};                       ///< [N], of one sample, of the last stroke

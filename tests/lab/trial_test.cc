@@ -47,7 +47,7 @@ TEST(TrialTest, APalpationIsPerformedToItsEndAndFindsTheInclusion) {
   std::vector<DepthEstimate> beside;
   std::vector<DepthEstimate> over;
   for (const DepthEstimate& estimate : result.depths) {
-    (estimate.lateral < patient::Phantom::kSiteBoundary ? beside : over).push_back(estimate);
+    (site_at(estimate.place) == Site::A ? beside : over).push_back(estimate);
   }
   EXPECT_EQ(estimator::summarise_depths(beside).verdict, DepthVerdict::None);
   const DepthEstimate depth = estimator::summarise_depths(over);

@@ -41,9 +41,9 @@ inline bool same(const PortSample& a, const PortSample& b) {
 inline bool same(const SiteReport& a, const SiteReport& b) {
   const DepthReport& p = a.depth;
   const DepthReport& q = b.depth;
-  return a.state == b.state && a.epoch == b.epoch && same(a.lateral, b.lateral) &&
-         p.number == q.number && p.verdict == q.verdict && p.reason == q.reason &&
-         same(p.depth, q.depth) && same(p.depth_stddev, q.depth_stddev) &&
+  return a.state == b.state && a.epoch == b.epoch && same(a.place.x, b.place.x) &&
+         same(a.place.y, b.place.y) && p.number == q.number && p.verdict == q.verdict &&
+         p.reason == q.reason && same(p.depth, q.depth) && same(p.depth_stddev, q.depth_stddev) &&
          same(p.depth_low, q.depth_low) && same(p.depth_high, q.depth_high) && same(p.hash, q.hash);
 }
 

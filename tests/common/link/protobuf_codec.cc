@@ -49,7 +49,8 @@ void write(const PortSample& sample, wire::Sample& out) {
 void write(const SiteReport& site, wire::Site& out) {
   out.set_state(static_cast<wire::SiteState>(site.state));
   out.set_epoch(site.epoch);
-  out.set_lateral_m(static_cast<float>(site.lateral));
+  out.set_x_m(static_cast<float>(site.place.x));
+  out.set_y_m(static_cast<float>(site.place.y));
   const DepthReport& report = site.depth;
   if (report.number == 0) return;
   wire::Depth& depth = *out.mutable_depth();
@@ -121,7 +122,7 @@ DepthReport read(const wire::Depth& depth) {
 SiteReport read(const wire::Site& site) {
   return {.state = read_enum<SiteState>(site.state()),
           .epoch = site.epoch(),
-          .lateral = double{site.lateral_m()},
+          .place = {double{site.x_m()}, double{site.y_m()}},
           .depth = read(site.depth())};
 }
 

@@ -89,7 +89,7 @@ inline WireTelegram some_telegram(std::uint64_t seed) {
   }
   wire.telegram.site = {.state = static_cast<SiteState>(draw.below(kSiteStateCount)),
                         .epoch = static_cast<std::uint32_t>(draw.bits()),
-                        .lateral = draw.within(kLengthMax),
+                        .place = {draw.within(kLengthMax), draw.within(kLengthMax)},
                         .depth = some_depth(draw)};
   wire.telegram.port = some_sample(draw);
   wire.older_count = static_cast<std::uint8_t>(draw.below(3));
@@ -117,7 +117,8 @@ inline void round_as_on_wire(PortSample& sample) {
 }
 
 inline WireTelegram rounded_as_on_wire(WireTelegram wire) {
-  round_as_on_wire(wire.telegram.site.lateral);
+  round_as_on_wire(wire.telegram.site.place.x);
+  round_as_on_wire(wire.telegram.site.place.y);
   DepthReport& depth = wire.telegram.site.depth;
   round_as_on_wire(depth.depth);
   round_as_on_wire(depth.depth_stddev);

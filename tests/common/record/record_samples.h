@@ -18,7 +18,7 @@ inline SiteTick tick(std::int64_t ms) {
           .position = 1e-3 * static_cast<double>(ms % 7),
           .velocity = -0.02,
           .force = 0.25,
-          .lateral = 0.01,
+          .place = {0.01, -0.02},
           .command = 0.125,
           .gate_acted = ms % 5 == 0,
           .round_trip = Duration{12345678},
@@ -83,7 +83,8 @@ inline void add_fields(Fields& out, const SiteTick& t) {
           t.position,
           t.velocity,
           t.force,
-          t.lateral,
+          t.place.x,
+          t.place.y,
           t.command,
           t.gate_acted,
           t.round_trip,
@@ -136,14 +137,15 @@ inline void add_fields(Fields& out, const Transition& t) {
   add_all(out, t.at, t.from, t.to, t.reason);
 }
 inline void add_fields(Fields& out, const ContactSample& c) {
-  add_all(out, c.at, c.position, c.force, c.lateral);
+  add_all(out, c.at, c.position, c.force, c.place.x, c.place.y);
 }
 inline void add_fields(Fields& out, const DepthEstimate& e) {
   add_all(out,
           e.number,
           e.stroke_began_at,
           e.stroke_ended_at,
-          e.lateral,
+          e.place.x,
+          e.place.y,
           e.indentation_max,
           e.force_max,
           e.surface,

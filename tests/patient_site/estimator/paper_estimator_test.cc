@@ -167,7 +167,7 @@ TEST(PaperEstimatorTest, AStrokeThatGoesBackAndPressesOnIsNotMonotone) {
     const auto estimate = estimator.add({.at = now,
                                          .position = co_filter.step(stage.position),
                                          .force = site.sample(now)->force,
-                                         .lateral = 0});
+                                         .place = {}});
     if (estimate) estimates.push_back(*estimate);
     // To 3 mm, back to 2 mm, on to 4 mm, out.
     const double t = i * 1e-3;
@@ -199,7 +199,7 @@ TEST(PaperEstimatorTest, OtherTissueAtTheSamePlaceStartsAfresh) {
   for (const Phantom* phantom : {&*soft, &*hard}) {
     SimulatedPhantomConfig config = ideal_sensor();
     config.start_position = -3e-3;
-    config.start_lateral = 10e-3;
+    config.start_place = kSiteB;
     SimulatedPhantom site{*phantom, config};
     LowPass co_filter{20, 1e-3};
     co_filter.reset(-3e-3);
@@ -207,7 +207,7 @@ TEST(PaperEstimatorTest, OtherTissueAtTheSamePlaceStartsAfresh) {
       now += std::chrono::milliseconds{1};
       const StageState stage = site.read(now);
       if (const auto estimate = estimator.add(
-              {now, co_filter.step(stage.position), site.sample(now)->force, stage.lateral})) {
+              {now, co_filter.step(stage.position), site.sample(now)->force, stage.place})) {
         hashes.push_back(estimate->hash);
       }
       const double t = std::min((i % 1500) * 1e-3, 1.0);
@@ -224,7 +224,7 @@ TEST(PaperEstimatorTest, AHoldOnTheWayInIsStillOneStroke) {
   ASSERT_TRUE(phantom);
   SimulatedPhantomConfig config = ideal_sensor();
   config.start_position = -3e-3;
-  config.start_lateral = 10e-3;
+  config.start_place = kSiteB;
   SimulatedPhantom site{*phantom, config};
   estimator::PaperEstimator estimator{{}};
   LowPass co_filter{20, 1e-3};
@@ -235,7 +235,7 @@ TEST(PaperEstimatorTest, AHoldOnTheWayInIsStillOneStroke) {
     now += std::chrono::milliseconds{1};
     const StageState stage = site.read(now);
     if (const auto estimate = estimator.add(
-            {now, co_filter.step(stage.position), site.sample(now)->force, stage.lateral})) {
+            {now, co_filter.step(stage.position), site.sample(now)->force, stage.place})) {
       estimates.push_back(*estimate);
     }
     const double t = i * 1e-3;
