@@ -186,13 +186,14 @@ std::string run_summary(const Scenario& scenario,
 std::string trace_csv(const TrialResult& result) {
   std::string text =
       "t_s,site,phase,index,hand_mm,tip_mm,force_felt_n,force_true_n,contact_force_n,energy_mj,"
-      "counted,hand_speed_m_per_s,surface_mm\n";
+      "counted,hand_speed_m_per_s,surface_mm,x_mm,y_mm\n";
+  constexpr std::array kSites{"A", "B", ""};
   constexpr std::array kKinds{"other", "air", "tap", "press", "lift"};
   for (const TrialTick& tick : result.ticks) {
     append(text,
-           "%.4f,%s,%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%.9g,%.9g\n",
+           "%.4f,%s,%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%.9g,%.9g,%.9g,%.9g\n",
            tick.at,
-           surgeon::place_name(tick.phase.place).c_str(),
+           kSites[static_cast<std::size_t>(tick.phase.site)],
            kKinds[static_cast<std::size_t>(tick.phase.kind)],
            tick.phase.index,
            tick.hand * 1e3,
@@ -203,7 +204,9 @@ std::string trace_csv(const TrialResult& result) {
            tick.energy_operator * 1e3,
            tick.counted ? 1 : 0,
            tick.hand_velocity,
-           tick.surface * 1e3);
+           tick.surface * 1e3,
+           tick.tip_place.x * 1e3,
+           tick.tip_place.y * 1e3);
   }
   return text;
 }

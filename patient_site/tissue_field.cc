@@ -105,14 +105,15 @@ std::size_t SurveyField::weigh(const Place& place, std::span<double> weights) co
   for (const PlacedCurve& curve : curves_) {
     const double far = distance(curve.place, place);
     if (far < kSame) return static_cast<std::size_t>(&curve - curves_.data());
-    total += 1 / (far * far);
+    total += 1 / (far * far * far * far);
   }
   for (std::size_t i = 0; i < curves_.size(); ++i) {
     const double x = place.x - curves_[i].place.x;
     const double y = place.y - curves_[i].place.y;
     const double square = x * x + y * y;
-    const double share = 1 / square / total;
-    const double level = 1 / (1 + square / (nodes_[i].nearest * nodes_[i].nearest));
+    const double share = 1 / (square * square) / total;
+    const double far = square / (nodes_[i].nearest * nodes_[i].nearest);
+    const double level = 1 / (1 + far * far);
     weights[i] += share;
     for (const Neighbour& neighbour : nodes_[i].neighbours) {
       const double part = share * level * (x * neighbour.along_x + y * neighbour.along_y);

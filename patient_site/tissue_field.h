@@ -74,10 +74,10 @@ class InclusionField final : public TissueField {
 
 /// A tissue of which curves at several places are known. Between them ln(F + 1 mN) at equal
 /// indentation is interpolated: each place has a plane through its own value, with the slope that
-/// its nearest neighbours say and that levels off within the distance to the nearest, and planes
-/// count by the inverse square of the distance (Shepard 1968, with the planes of Franke and Nielson
-/// 1980). Exactly the curves at their places, with a continuous slope everywhere; far away, a mean
-/// of all.
+/// its nearest neighbours say and that levels off from the distance to the nearest on, and planes
+/// count by the inverse fourth power of the distance (Shepard 1968, with the planes of Franke and
+/// Nielson 1980; by the second power all far places together outweigh the near ones). Exactly the
+/// curves at their places, with a continuous slope everywhere; far away, a mean of all.
 class SurveyField final : public TissueField {
  public:
   /// `curves`: 2 to kPlacesMax, kPlacesApart or more from each other; outlive the field.

@@ -40,7 +40,7 @@ struct Bench {
       contact.try_enqueue(
           {now, co_filter.step(stage.position), site.sample(now)->force, stage.place});
       const double t = std::min(i * 1e-3, 1.0);
-      site.move_to({-3e-3 + 3.5e-3 * (1 - std::cos(2 * std::numbers::pi * t)), 10e-3});
+      site.move_to({-3e-3 + 3.5e-3 * (1 - std::cos(2 * std::numbers::pi * t)), kSiteB});
     }
   }
 };

@@ -175,7 +175,7 @@ TEST(PaperEstimatorTest, AStrokeThatGoesBackAndPressesOnIsNotMonotone) {
                           : t < 0.8 ? 3e-3 - 5e-3 * (t - 0.6)
                           : t < 1.2 ? 2e-3 + 5e-3 * (t - 0.8)
                                     : 4e-3 - 10e-3 * (t - 1.2);
-    site.move_to({std::max(-3e-3, target), 0});
+    site.move_to({std::max(-3e-3, target), {}});
   }
   ASSERT_EQ(estimates.size(), 2U);
   EXPECT_EQ(estimates[1].verdict, DepthVerdict::Invalid);
@@ -211,7 +211,7 @@ TEST(PaperEstimatorTest, OtherTissueAtTheSamePlaceStartsAfresh) {
         hashes.push_back(estimate->hash);
       }
       const double t = std::min((i % 1500) * 1e-3, 1.0);
-      site.move_to({-3e-3 + 3.4e-3 * (1 - std::cos(2 * std::numbers::pi * t)), 10e-3});
+      site.move_to({-3e-3 + 3.4e-3 * (1 - std::cos(2 * std::numbers::pi * t)), kSiteB});
     }
   }
   ASSERT_EQ(hashes.size(), 4U);
@@ -242,7 +242,7 @@ TEST(PaperEstimatorTest, AHoldOnTheWayInIsStillOneStroke) {
     const double target = t < 2.5   ? std::min(-3e-3 + 10e-3 * t, 2e-3)
                           : t < 4.5 ? std::min(2e-3 + 8e-3 * (t - 2.5), 4e-3)
                                     : 4e-3 - 15e-3 * (t - 4.5);
-    site.move_to({target, 10e-3});
+    site.move_to({target, kSiteB});
   }
   ASSERT_EQ(estimates.size(), 1U);
   const double expected = hash_of(phantom->over);
