@@ -55,7 +55,7 @@ TEST(ScriptReaderTest, LastLineNeedsNoNewline) {
 }
 
 TEST(ScriptReaderTest, RefusalsNameLineWordAndWhatWasExpected) {
-  EXPECT_THAT(refusal("hold 1\n\ntap 4"), AllOf(HasSubstr("line 3"), HasSubstr("'tap'")));
+  EXPECT_THAT(refusal("hold 1\n\ntab 4"), AllOf(HasSubstr("line 3"), HasSubstr("'tab'")));
   EXPECT_THAT(refusal("hold"), AllOf(HasSubstr("line 1"), HasSubstr("hold SECONDS")));
   EXPECT_THAT(refusal("hold 1 2"), AllOf(HasSubstr("hold SECONDS"), HasSubstr("2 value")));
   EXPECT_THAT(refusal("taps 4 4 one 0.5"), AllOf(HasSubstr("SECONDS 'one'"), HasSubstr("number")));
