@@ -294,6 +294,18 @@ TEST(MotionGateTest, ADragKeepsTheSurfaceAndTheDepthAllowed) {
   EXPECT_EQ(*gate.surface(), surface);
 }
 
+TEST(MotionGateTest, AfterAnyHaltThePlaneSetsOutFromRest) {
+  for (const SiteState state : {SiteState::Hold, SiteState::Engaged}) {
+    MotionGate gate = gate_at(-10e-3);
+    const MotionRequest on_its_way{SiteState::Engaged, -10e-3, kSiteB, -10e-3, 0};
+    for (int i = 0; i < 60; ++i) (void)gate.pass(on_its_way, kTick);
+    // Not followed in Hold, nor where a force is walked away from.
+    const Place stood = gate.pass({state, -10e-3, kSiteB, -10e-3, 3.5}, kTick).place;
+    const Place next = gate.pass(on_its_way, kTick).place;
+    EXPECT_LE(distance(next, stood), 8e-6 + 1e-12) << to_string(state);
+  }
+}
+
 TEST(MotionGateTest, ARetreatFromForceDoesNotDrag) {
   MotionGate gate = gate_at(2e-3);
   touch(gate, 2e-3, 3.5);

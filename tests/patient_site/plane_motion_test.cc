@@ -60,6 +60,10 @@ TEST(PlaneMotionTest, SaysWhereItsTravelEnds) {
     EXPECT_EQ(motion.follow({10.1e-3, 0}, false, kTick), NoteCode::PlaceBeyondTravel);
   }
   EXPECT_EQ(motion.command(), (Place{10e-3, 0}));
+  for (int i = 0; i < 3000; ++i) {
+    EXPECT_EQ(motion.follow({0, -0.26}, false, kTick), NoteCode::PlaceBeyondTravel);
+  }
+  EXPECT_EQ(motion.command(), (Place{0, -0.25}));
 }
 
 TEST(PlaneMotionTest, WhatCannotDragStaysWhilePressedAndForgivesATremblingHand) {
