@@ -79,7 +79,7 @@ HandState SimulatedHand::read(TimePoint now) noexcept {
     state_.sampled_at = now;
   }
   if (!held_in_plane_) state_.place = person_.intent().place;
-  state_.dead_man_held = person_.pedal_held();
+  state_.pedal_held = person_.pedal_held();
   return state_;
 }
 

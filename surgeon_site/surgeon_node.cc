@@ -92,7 +92,7 @@ SupervisorOutput SurgeonNode::supervise(const HandState& hand,
   const UserCommand& command = commands_.get();
   SupervisorInput in;
   in.now = now_.at;
-  in.pedal_held = hand.dead_man_held;
+  in.pedal_held = hand.pedal_held;
   in.emergency_stop = hand.emergency_stop || command.emergency_stop;
   in.device_faulted = hand.faulted;
   in.local_reset = command.resets != resets_;
@@ -140,7 +140,7 @@ void SurgeonNode::tick(TimePoint now) noexcept {
 
   const bool cut = hand.faulted || hand.emergency_stop || commands_.get().emergency_stop;
   const ForceAnswer answer =
-      gate_.pass({out.force, decision.state, hand.dead_man_held, cut, out.fade_max}, dt);
+      gate_.pass({out.force, decision.state, hand.pedal_held, cut, out.fade_max}, dt);
   parts_.device.apply(answer.force);
   parts_.device.hold_in_plane(config_.hold_in_plane && answer.force >= kPressed);
   parts_.link.send({{decision.state, decision.epoch, hand.place, {}}, out.to_patient}, now);

@@ -141,8 +141,8 @@ void put(const link::LinkHealth& health, std::uint64_t records_dropped, session:
     out.set_clock_uncertainty_ns(0);
     out.set_clock_at_ns(0);
   }
-  out.set_way_there_ns(health.way_there.count());
-  out.set_way_here_ns(health.way_here.count());
+  out.set_delay_out_ns(health.delay_out.count());
+  out.set_delay_in_ns(health.delay_in.count());
   out.set_sent(health.sent);
   out.set_accepted(health.accepted);
   out.set_late(health.late);

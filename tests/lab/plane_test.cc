@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "lab/scenario_file.h"
-#include "lab/trial.h"
+#include "lab/plan/scenario_file.h"
+#include "lab/run/run.h"
 #include "tests/support/surveyed_tissue.h"
 
 /// Goal: a session in the plane, over a tissue that a file gives at several places.
@@ -36,9 +36,9 @@ Scenario plane_scenario(const char* coupling) {
 }
 
 /// The ticks in which the pressed tip travelled along y = 2 mm.
-std::vector<TrialTick> drag_of(const TrialResult& result) {
-  std::vector<TrialTick> drag;
-  for (const TrialTick& tick : result.ticks) {
+std::vector<RunTick> drag_of(const RunResult& result) {
+  std::vector<RunTick> drag;
+  for (const RunTick& tick : result.ticks) {
     if (tick.contact_force > 0.1 && std::abs(tick.tip_place.y - 2e-3) < 1e-6) drag.push_back(tick);
   }
   return drag;
@@ -46,7 +46,7 @@ std::vector<TrialTick> drag_of(const TrialResult& result) {
 
 TEST(PlaneTest, ASessionByCoordinatesEndsInOrder) {
   for (const char* coupling : {"mmt", "tdpa"}) {
-    const TrialResult result = run_trial(plane_scenario(coupling));
+    const RunResult result = simulate(plane_scenario(coupling));
     EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Completed) << coupling;
     EXPECT_FALSE(result.metrics.unstable) << result.metrics.unstable_reason;
     ASSERT_EQ(result.metrics.taps.size(), 4U);
@@ -60,14 +60,14 @@ TEST(PlaneTest, ASessionByCoordinatesEndsInOrder) {
 }
 
 TEST(PlaneTest, ADragFeelsABump) {
-  const std::vector<TrialTick> drag = drag_of(run_trial(plane_scenario("tdpa")));
+  const std::vector<RunTick> drag = drag_of(simulate(plane_scenario("tdpa")));
   ASSERT_GT(drag.size(), 4000U);
   EXPECT_NEAR(drag.back().tip_place.x, 25e-3, 1e-6);
-  const auto strength = [](const TrialTick& tick) {
+  const auto strength = [](const RunTick& tick) {
     return tick.contact_force / (0.06 * std::pow(std::max(0.5, tick.tip * 1e3), 1.5));
   };
   const auto hardest = std::max_element(
-      drag.begin() + 500, drag.end() - 500, [&](const TrialTick& a, const TrialTick& b) {
+      drag.begin() + 500, drag.end() - 500, [&](const RunTick& a, const RunTick& b) {
         return strength(a) < strength(b);
       });
   EXPECT_NEAR(hardest->tip_place.x, 10e-3, 2e-3);
@@ -80,9 +80,9 @@ TEST(PlaneTest, ADragFeelsABump) {
 TEST(PlaneTest, AStageThatCannotDragStaysAndTheSessionGoesOn) {
   Scenario scenario = plane_scenario("mmt");
   scenario.tissue.can_drag = false;
-  const TrialResult result = run_trial(scenario);
+  const RunResult result = simulate(scenario);
   EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Completed);
-  for (const TrialTick& tick : drag_of(result)) {
+  for (const RunTick& tick : drag_of(result)) {
     ASSERT_NEAR(tick.tip_place.x, -5e-3, 1e-6) << "it tore at the tissue";
   }
   EXPECT_NEAR(distance(result.ticks.back().tip_place, kSiteA), 0, 1e-6) << "free again, it follows";
