@@ -107,7 +107,7 @@ void PatientNode::record_decision(const SupervisorOutput& decision, SiteState be
   if (decision.reason != NoteCode::None) {
     now_.reason = decision.reason;
     const auto reason = static_cast<std::uint16_t>(decision.reason);
-    record(record::Transition{now_.at, before, decision.state, reason});
+    record(Transition{now_.at, before, decision.state, reason});
   }
   if (decision.engaged_now) now_.refused = NoteCode::None;
   if (decision.refused != NoteCode::None) {
@@ -166,7 +166,7 @@ void PatientNode::tick(TimePoint now) noexcept {
   now_.link = parts_.link.health(now);
   now_.peer_heard = arrived.peer_heard;
   now_.peer_state = arrived.peer.state;
-  for (const Incoming& incoming : arrived.samples) record(record::Arrived{now, incoming});
+  for (const Incoming& incoming : arrived.samples) record(Arrived{now, incoming});
 
   const SiteState before = now_.state;
   const SupervisorOutput decision = supervise(arrived);
@@ -182,17 +182,17 @@ void PatientNode::tick(TimePoint now) noexcept {
   parts_.link.send({{now_.state, now_.epoch, now_.place, depth_report()}, out.to_surgeon}, now);
 
   if (now_.state == SiteState::Engaged) give_contact_sample();
-  record(record::SiteTick{.at = now,
-                          .state = now_.state,
-                          .epoch = now_.epoch,
-                          .position = in.position,
-                          .velocity = in.velocity,
-                          .force = in.contact_force,
-                          .place = in.place,
-                          .command = answer.position,
-                          .gate_acted = answer.acted,
-                          .round_trip = in.round_trip,
-                          .sent = out.to_surgeon});
+  record(SiteTick{.at = now,
+                  .state = now_.state,
+                  .epoch = now_.epoch,
+                  .position = in.position,
+                  .velocity = in.velocity,
+                  .force = in.contact_force,
+                  .place = in.place,
+                  .command = answer.position,
+                  .gate_acted = answer.acted,
+                  .round_trip = in.round_trip,
+                  .sent = out.to_surgeon});
   record_link();
   status_.put(now_);
 }
@@ -205,7 +205,7 @@ void PatientNode::give_contact_sample() noexcept {
   ++(taken ? now_.contact_samples : now_.contact_samples_lost);
 }
 
-link::DepthReport PatientNode::depth_report() noexcept {
+DepthReport PatientNode::depth_report() noexcept {
   now_.depth = parts_.depth.get();
   return {.number = now_.depth.number,
           .verdict = now_.depth.verdict,
@@ -221,14 +221,14 @@ void PatientNode::record_link() noexcept {
   link_events_.look(now_.link, [this](NoteCode code, double detail) { note(code, detail); });
   if (link_recorded_at_ && now_.at - *link_recorded_at_ < config_.link_status_every) return;
   link_recorded_at_ = now_.at;
-  record(record::LinkStatus{now_.at, now_.link});
+  record(LinkStatus{now_.at, now_.link});
 }
 
 void PatientNode::note(NoteCode code, double detail) noexcept {
-  record(record::Note{now_.at, static_cast<std::uint16_t>(code), detail});
+  record(Note{now_.at, static_cast<std::uint16_t>(code), detail});
 }
 
-void PatientNode::record(const record::Record& record) noexcept {
+void PatientNode::record(const Record& record) noexcept {
   if (parts_.recorder.record(record)) {
     ++now_.records;
   } else {

@@ -6,10 +6,10 @@
 #include "common/core/filters.h"
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
-#include "common/core/stroke.h"
 #include "common/core/time.h"
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
+#include "common/message/depth.h"
 #include "common/record/link_events.h"
 #include "common/record/recorder.h"
 #include "patient_site/device_watch.h"
@@ -74,10 +74,10 @@ class PatientNode {
   [[nodiscard]] coupling::PatientInput law_input(const link::Arrivals& arrived) const noexcept;
   [[nodiscard]] MotionAnswer move(double target, const Place& place, Duration dt) noexcept;
   void give_contact_sample() noexcept;
-  [[nodiscard]] link::DepthReport depth_report() noexcept;
+  [[nodiscard]] DepthReport depth_report() noexcept;
   void record_link() noexcept;
   void note(record::NoteCode code, double detail = 0) noexcept;
-  void record(const record::Record& record) noexcept;
+  void record(const Record& record) noexcept;
 
   PatientConfig config_;
   Parts parts_;

@@ -3,9 +3,9 @@
 #include <cstdint>
 
 #include "common/core/site_state.h"
-#include "common/core/stroke.h"
 #include "common/core/time.h"
 #include "common/link/telegram.h"
+#include "common/message/depth.h"
 #include "common/record/notes.h"
 
 namespace palp::patient {
@@ -19,7 +19,7 @@ struct PatientStatus {
   std::uint32_t epoch{};
   SiteState peer_state{};
   bool peer_heard{};
-  link::LinkHealth link;
+  LinkHealth link;
   double position{};  ///< [m], tip
   double velocity{};  ///< [m/s]
   Place place{};

@@ -75,7 +75,7 @@ void SurgeonNode::forget_peer() noexcept {
 void SurgeonNode::hear(const link::Arrivals& arrived) noexcept {
   now_.peer_heard = arrived.peer_heard;
   now_.peer_state = arrived.peer.state;
-  for (const Incoming& incoming : arrived.samples) record(record::Arrived{now_.at, incoming});
+  for (const Incoming& incoming : arrived.samples) record(Arrived{now_.at, incoming});
   if (const Incoming* last = coupling::newest(arrived.samples)) {
     now_.tip = last->sample.position;
     now_.contact_force = last->sample.force;
@@ -83,7 +83,7 @@ void SurgeonNode::hear(const link::Arrivals& arrived) noexcept {
   }
   if (arrived.peer_heard && arrived.peer.depth.number != now_.depth.number) {
     now_.depth = arrived.peer.depth;
-    if (now_.depth.number != 0) record(record::DepthArrived{now_.at, now_.depth});
+    if (now_.depth.number != 0) record(DepthArrived{now_.at, now_.depth});
   }
 }
 
@@ -146,17 +146,17 @@ void SurgeonNode::tick(TimePoint now) noexcept {
   parts_.link.send({{decision.state, decision.epoch, hand.place, {}}, out.to_patient}, now);
 
   if (answer.note != NoteCode::None) note(answer.note, answer.detail);
-  record(record::SiteTick{.at = now,
-                          .state = decision.state,
-                          .epoch = decision.epoch,
-                          .position = in.position,
-                          .velocity = in.velocity,
-                          .force = in.force_applied,
-                          .place = hand.place,
-                          .command = answer.force,
-                          .gate_acted = answer.acted,
-                          .round_trip = in.round_trip,
-                          .sent = out.to_patient});
+  record(SiteTick{.at = now,
+                  .state = decision.state,
+                  .epoch = decision.epoch,
+                  .position = in.position,
+                  .velocity = in.velocity,
+                  .force = in.force_applied,
+                  .place = hand.place,
+                  .command = answer.force,
+                  .gate_acted = answer.acted,
+                  .round_trip = in.round_trip,
+                  .sent = out.to_patient});
   record_link(now);
   parts_.device.show({decision.state, now_.peer_state, now_.link.state, now_.tip, now_.tip_known});
   record_script();
@@ -175,7 +175,7 @@ void SurgeonNode::record_decision(const SupervisorOutput& decision, SiteState be
   if (decision.reason != NoteCode::None) {
     now_.reason = decision.reason;
     const auto reason = static_cast<std::uint16_t>(decision.reason);
-    record(record::Transition{now_.at, before, decision.state, reason});
+    record(Transition{now_.at, before, decision.state, reason});
   }
   if (decision.refused != NoteCode::None) {
     now_.refused = decision.refused;
@@ -194,14 +194,14 @@ void SurgeonNode::record_link(TimePoint now) noexcept {
   link_events_.look(now_.link, [this](NoteCode code, double detail) { note(code, detail); });
   if (link_recorded_at_ && now - *link_recorded_at_ < config_.link_status_every) return;
   link_recorded_at_ = now;
-  record(record::LinkStatus{now, now_.link});
+  record(LinkStatus{now, now_.link});
 }
 
 void SurgeonNode::note(NoteCode code, double detail) noexcept {
-  record(record::Note{now_.at, static_cast<std::uint16_t>(code), detail});
+  record(Note{now_.at, static_cast<std::uint16_t>(code), detail});
 }
 
-void SurgeonNode::record(const record::Record& record) noexcept {
+void SurgeonNode::record(const Record& record) noexcept {
   if (parts_.recorder.record(record)) {
     ++now_.records;
   } else {

@@ -67,7 +67,7 @@ class SurgeonNode {
   void record_script() noexcept;
   void record_link(TimePoint now) noexcept;
   void note(record::NoteCode code, double detail = 0) noexcept;
-  void record(const record::Record& record) noexcept;
+  void record(const Record& record) noexcept;
 
   SurgeonConfig config_;
   Parts parts_;

@@ -19,7 +19,7 @@ struct SurgeonStatus {
   std::uint32_t epoch{};
   SiteState peer_state{};
   bool peer_heard{};
-  link::LinkHealth link;
+  LinkHealth link;
   double position{};  ///< [m], hand, as given to the law
   Place place{};
   double offset{};  ///< [m], clutch: hand minus tip at the last engagement
@@ -28,7 +28,7 @@ struct SurgeonStatus {
   double force{};          ///< [N], to the hand
   double contact_force{};  ///< [N], as last heard
   bool gate_acted{};
-  link::DepthReport depth;
+  DepthReport depth;
   ScriptProgress script;
   record::NoteCode refused{};  ///< why the last press of the pedal did not engage; None: it did
   std::uint64_t ticks{};

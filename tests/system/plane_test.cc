@@ -51,7 +51,7 @@ TEST(PlaneTest, TheLogOfADragShowsXAndY) {
   double drag_begins = 1;  // [m]
   double drag_ends = -1;   // [m]
   double reached = -1;     // [m], of x at y = 0
-  for (const record::SiteTick& tick : file.ticks) {
+  for (const SiteTick& tick : file.ticks) {
     const bool on_drag = std::abs(tick.place.y - 2e-3) < 1e-6;
     if (std::abs(tick.place.y) < 1e-6) reached = std::max(reached, tick.place.x);
     if (!on_drag || tick.force < 0.2) continue;
