@@ -25,7 +25,7 @@ DepthEstimate BayesEstimator::judge(const Stroke& stroke) {
     estimate.reason = DepthReason::StrokeTooShort;
     return estimate;
   }
-  update(stroke.place);
+  update(stroke.known);
   const bool found =
       posterior_.log_evidence > config_.evidence_min && posterior_.gain > config_.gain_min;
   estimate.verdict = found ? DepthVerdict::Found : DepthVerdict::None;
@@ -47,7 +47,7 @@ void BayesEstimator::update(const TouchedPlace& place) {
                           .expected = {}};
   Settled& settled = settled_at(place);
   settle(place, input, settled);
-  const bool here = reference_ && strokes_.same_place(reference_->lateral, place.lateral);
+  const bool here = reference_ && strokes_.same_place(reference_->place, place.place);
   if (reference_ && !here) {
     input.stiffness = reference_->stiffness;
     input.stiffness.scale_stddev =
@@ -65,7 +65,7 @@ void BayesEstimator::learn_reference(const TouchedPlace& place, bool here) {
     const double spread = std::hypot(plain.scale_stddev, reference_->stiffness.scale_stddev);
     if (!(plain.scale < reference_->stiffness.scale - kSofter * spread)) return;
   }
-  reference_ = Reference{place.lateral, plain};
+  reference_ = Reference{place.place, plain};
 }
 
 BayesEstimator::Settled& BayesEstimator::settled_at(const TouchedPlace& place) {

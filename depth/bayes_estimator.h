@@ -52,7 +52,7 @@ class BayesEstimator {
   void settle(const TouchedPlace& place, DepthModel::Input& input, Settled& settled);
 
   struct Reference {
-    double lateral{};  ///< [m]
+    Place place;
     StiffnessPrior stiffness;
   };
 

@@ -11,8 +11,8 @@ namespace palp::depth {
 
 /// What is known of a place from all strokes there, and the last of them as they were measured.
 struct TouchedPlace {
-  std::size_t index{};             ///< below kPlacesMax; a new place may take an old one's
-  double lateral{};                ///< [m]
+  std::size_t index{};  ///< below kPlacesMax; a new place may take an old one's
+  Place place;
   double surface{};                ///< [m], as found
   double rate_factor{};            ///< [s/m], as found: the force is F (1 + factor * rate)
   double noise{};                  ///< [N], of one sample
@@ -28,7 +28,7 @@ struct Stroke {
   std::uint32_t number{};  ///< 1, 2, ... of this stream
   TimePoint began_at{};
   TimePoint ended_at{};
-  double lateral{};    ///< [m]
+  Place place;
   double force_max{};  ///< [N], behind the low pass
   /// Ok: what follows is known. Else why the stroke says nothing; it never is StrokeTooShort or
   /// HashOutOfRange, which are for an estimator to say.
@@ -36,7 +36,7 @@ struct Stroke {
   double indentation_max{};  ///< [m]
   double hash{};             ///< [N], the paper's h of the place's law
   double fit_rms{};          ///< [N], of this stroke beside that law
-  TouchedPlace place;        ///< valid until the tracker's next sample
+  TouchedPlace known;        ///< of its place; valid until the tracker's next sample
 };
 
 /// What an estimate says whoever judges: the stroke, verdict Invalid, the stroke's reason.
@@ -45,10 +45,10 @@ struct Stroke {
   estimate.number = stroke.number;
   estimate.stroke_began_at = stroke.began_at;
   estimate.stroke_ended_at = stroke.ended_at;
-  estimate.lateral = stroke.lateral;
+  estimate.place = stroke.place;
   estimate.indentation_max = stroke.indentation_max;
   estimate.force_max = stroke.force_max;
-  estimate.surface = stroke.place.surface;
+  estimate.surface = stroke.known.surface;
   estimate.verdict = DepthVerdict::Invalid;
   estimate.reason = stroke.reason;
   estimate.hash = stroke.hash;

@@ -23,8 +23,8 @@ double neighbour_noise(std::span<const StrokeSample> samples) noexcept {
 
 }  // namespace
 
-bool StrokeTrackerConfig::same_place(double lateral, double other) const noexcept {
-  return std::abs(lateral - other) <= place_size;
+bool StrokeTrackerConfig::same_place(const Place& one, const Place& other) const noexcept {
+  return distance(one, other) <= place_size;
 }
 
 StrokeTracker::StrokeTracker(const StrokeTrackerConfig& config)
@@ -44,17 +44,17 @@ StrokeTracker::StrokeTracker(const StrokeTrackerConfig& config)
 }
 
 std::optional<Stroke> StrokeTracker::take(const ContactSample& sample) {
-  if (!std::isfinite(sample.position) || !std::isfinite(sample.force) ||
-      !std::isfinite(sample.lateral)) {
+  if (!std::isfinite(sample.position) || !std::isfinite(sample.force) || !is_finite(sample.place)) {
     return std::nullopt;
   }
   const bool follows = previous_ && sample.at > previous_->at &&
                        sample.at - previous_->at <= config_.gap_max &&
-                       config_.same_place(sample.lateral, previous_->lateral);
+                       config_.same_place(sample.place, began_);
   if (!follows) {
     cutter_.reset();
     learning_.reset();
     previous_.reset();
+    began_ = sample.place;
   }
   const StrokeCutter::Event event = cutter_.add(filter(sample));
   previous_ = sample;
@@ -96,15 +96,15 @@ StrokeTracker::Measured StrokeTracker::measure() const noexcept {
   return measured;
 }
 
-std::size_t StrokeTracker::find_place(double lateral, double first_contact) {
+std::size_t StrokeTracker::find_place(const Place& place, double first_contact) {
   ++uses_;
   for (std::size_t i = 0; i < places_.size(); ++i) {
-    if (config_.same_place(places_[i].lateral(), lateral)) {
+    if (config_.same_place(places_[i].place(), place)) {
       used_[i] = uses_;
       return i;
     }
   }
-  const TrackedPlace fresh{lateral, first_contact, ++generations_};
+  const TrackedPlace fresh{place, first_contact, ++generations_};
   if (places_.size() < kPlacesMax) {
     places_.push_back(fresh);
     used_.push_back(uses_);
@@ -131,14 +131,14 @@ Stroke StrokeTracker::describe_stroke() {
   stroke.number = ++number_;
   stroke.began_at = cutter_.loading().front().measured.at;
   stroke.ended_at = cutter_.loading().back().measured.at;
-  stroke.lateral = previous_->lateral;
+  stroke.place = previous_->place;
   stroke.force_max = measured.force_max;
   stroke.reason = validity(measured);
   if (stroke.reason == DepthReason::StrokeNotMonotone && learning_) {
     places_[*learning_].keep_touch(cutter_, reading_);
   }
   if (stroke.reason != DepthReason::Ok) return stroke;
-  const std::size_t index = find_place(stroke.lateral, measured.first_contact);
+  const std::size_t index = find_place(stroke.place, measured.first_contact);
   TrackedPlace& place = places_[index];
   const std::optional<double> rms =
       place.learn_loading(cutter_, reading_, measured.first_contact, measured.noise, generations_);
@@ -150,7 +150,7 @@ Stroke StrokeTracker::describe_stroke() {
   stroke.indentation_max = measured.position_max - place.law()->surface;
   stroke.hash = hash_of(*place.law());
   stroke.fit_rms = *rms;
-  stroke.place = place.seen(index);
+  stroke.known = place.seen(index);
   return stroke;
 }
 

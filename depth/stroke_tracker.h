@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/core/filters.h"
-#include "common/message/depth.h"
 #include "common/core/time.h"
+#include "common/message/depth.h"
 #include "depth/stroke.h"
 #include "depth/stroke_cutter.h"
 #include "depth/surface.h"
@@ -16,22 +16,22 @@
 namespace palp::depth {
 
 struct StrokeTrackerConfig {
-  double sensor_cut_off{20};    ///< [Hz], the transducer's pole: force and position carry it
-  double filter_cut_off{20};    ///< [Hz], low pass of the paper (section III)
-  double period{1e-3};          ///< [s], of the samples
-  double force_quantum{0.05};   ///< [N], resolution of the transducer (paper II.A); 0: unknown
-  double force_range{49};       ///< [N], of the transducer (5 kgf)
-  double fit_range{4e-3};       ///< [m], of eq. (2): reproduces the paper's hash values
-  double noise_max{0.1};        ///< [N], rms of a sample: five times the transducer's
-  std::size_t samples_min{30};  ///< of a stroke, in contact
-  double place_size{1e-3};      ///< [m], of lateral: farther is another place
-  double change_force{0.015};   ///< [N], mean misfit from which the tissue is not the same
+  double sensor_cut_off{20};      ///< [Hz], the transducer's pole: force and position carry it
+  double filter_cut_off{20};      ///< [Hz], low pass of the paper (section III)
+  double period{1e-3};            ///< [s], of the samples
+  double force_quantum{0.05};     ///< [N], resolution of the transducer (paper II.A); 0: unknown
+  double force_range{49};         ///< [N], of the transducer (5 kgf)
+  double fit_range{4e-3};         ///< [m], of eq. (2): reproduces the paper's hash values
+  double noise_max{0.1};          ///< [N], rms of a sample: five times the transducer's
+  std::size_t samples_min{30};    ///< of a stroke, in contact
+  double place_size{kSamePlace};  ///< [m], farther along the surface is another place
+  double change_force{0.015};     ///< [N], mean misfit from which the tissue is not the same
   Duration gap_max{std::chrono::milliseconds{20}};  ///< a longer one cuts the stream
   StrokeCutterConfig cutter;
   SurfaceConfig surface;
 
   /// Whether two points along the surface [m] are one place.
-  [[nodiscard]] bool same_place(double lateral, double other) const noexcept;
+  [[nodiscard]] bool same_place(const Place& one, const Place& other) const noexcept;
 };
 
 /// Strokes out of contact samples: cuts them, says which are fit to be judged, and learns from each
@@ -68,7 +68,7 @@ class StrokeTracker {
 
   [[nodiscard]] StrokeSample filter(const ContactSample& sample) noexcept;
   [[nodiscard]] Measured measure() const noexcept;
-  [[nodiscard]] std::size_t find_place(double lateral, double first_contact);
+  [[nodiscard]] std::size_t find_place(const Place& place, double first_contact);
   [[nodiscard]] Stroke describe_stroke();
   [[nodiscard]] DepthReason validity(const Measured& measured) const noexcept;
   [[nodiscard]] double hash_of(const ContactLaw& law) const noexcept;
@@ -79,6 +79,7 @@ class StrokeTracker {
   LowPass position_filter_;
   LowPass force_filter_;
   std::optional<ContactSample> previous_;
+  Place began_;  ///< where the samples that follow each other began
   std::vector<TrackedPlace> places_;
   std::vector<std::uint64_t> used_;      ///< by place: the one not used for longest is replaced
   std::optional<std::size_t> learning_;  ///< place whose unloading branch is still to come

@@ -58,15 +58,15 @@ Misfit compare(std::span<const ContactPoint> points, const ContactLaw& law) noex
 
 }  // namespace
 
-TrackedPlace::TrackedPlace(double lateral, double first_contact, std::uint64_t generation)
-    : lateral_{lateral},
+TrackedPlace::TrackedPlace(const Place& place, double first_contact, std::uint64_t generation)
+    : place_{place},
       first_contact_{first_contact},
       curve_{first_contact},
       generation_{generation} {}
 
 TouchedPlace TrackedPlace::seen(std::size_t index) const {
   return {.index = index,
-          .lateral = lateral_,
+          .place = place_,
           .surface = law_->surface,
           .rate_factor = law_->rate_factor,
           .noise = contact_count_ > 0
@@ -78,7 +78,7 @@ TouchedPlace TrackedPlace::seen(std::size_t index) const {
 }
 
 void TrackedPlace::start_afresh(double first_contact, std::uint64_t generation) {
-  *this = TrackedPlace{lateral_, first_contact, generation};
+  *this = TrackedPlace{place_, first_contact, generation};
 }
 
 /// Pass by pass: what the filters did to the force is computed with the law of the pass before.

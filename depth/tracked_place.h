@@ -32,9 +32,9 @@ inline constexpr double kNoiseFloor = 1e-5;  // [N]
 class TrackedPlace {
  public:
   /// `first_contact`: where the force was first felt [m].
-  TrackedPlace(double lateral, double first_contact, std::uint64_t generation);
+  TrackedPlace(const Place& place, double first_contact, std::uint64_t generation);
 
-  [[nodiscard]] double lateral() const noexcept { return lateral_; }  ///< [m]
+  [[nodiscard]] const Place& place() const noexcept { return place_; }
   [[nodiscard]] const std::optional<ContactLaw>& law() const noexcept { return law_; }
   [[nodiscard]] TouchedPlace seen(std::size_t index) const;  ///< once there is a law
 
@@ -70,7 +70,7 @@ class TrackedPlace {
   [[nodiscard]] Touch touch_of(const StrokeCutter& stroke, double force_range) const;
   void start_afresh(double first_contact, std::uint64_t generation);
 
-  double lateral_;        ///< [m]
+  Place place_;
   double first_contact_;  ///< [m]
   ContactCurve curve_;
   std::optional<ContactLaw> law_;

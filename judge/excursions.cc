@@ -16,7 +16,7 @@ std::optional<Excursion> excursion_of(std::span<const Motion> ticks, double surf
     return std::nullopt;
   }
   const auto loading_size = static_cast<std::size_t>(deepest - ticks.begin()) + 1;
-  return Excursion{.site = site_at(deepest->lateral),
+  return Excursion{.place = deepest->place,
                    .began_at = ticks.front().at,
                    .ended_at = ticks.back().at,
                    .loading = ticks.first(loading_size)};
@@ -47,7 +47,7 @@ FeltStiffness stiffness_of(const Excursion& excursion, double surface, const Tis
   for (const Motion& tick : excursion.loading) {
     const double indentation = tick.position - surface;
     const auto truth =
-        tissue == nullptr ? std::nullopt : tissue->force(excursion.site, indentation);
+        tissue == nullptr ? std::nullopt : tissue->force(excursion.place, indentation);
     stiffness.add(indentation, tick.velocity, tick.force, truth);
   }
   return stiffness;

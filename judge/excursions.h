@@ -6,7 +6,6 @@
 
 #include "judge/felt_stiffness.h"
 #include "judge/motion.h"
-#include "judge/site.h"
 #include "judge/tissue_table.h"
 
 /// The surgeon's side of a stroke: the hand goes into the tissue and out again.
@@ -16,7 +15,7 @@ namespace palp::judge {
 inline constexpr double kStrokeDepthMin = 1.5e-3;
 
 struct Excursion {
-  Site site{};
+  Place place;
   TimePoint began_at{};
   TimePoint ended_at{};
   std::span<const Motion> loading;  ///< up to the deepest tick

@@ -23,7 +23,9 @@ constexpr std::size_t kStepTicks = 10;
 /// Runs of ticks that belong to one phase.
 std::vector<std::span<const RunTick>> split_phases(const std::vector<RunTick>& ticks) {
   std::vector<std::span<const RunTick>> phases;
-  const auto key = [](const PhaseTag& tag) { return std::tuple{tag.kind, tag.site, tag.index}; };
+  const auto key = [](const PhaseTag& tag) {
+    return std::tuple{tag.kind, tag.place.x, tag.place.y, tag.index};
+  };
   std::size_t begin = 0;
   for (std::size_t k = 1; k <= ticks.size(); ++k) {
     if (k < ticks.size() && key(ticks[k].phase) == key(ticks[begin].phase)) continue;
@@ -186,10 +188,12 @@ void judge_taps(std::span<const std::span<const RunTick>> phases, RunMetrics& me
     double deepest = -INFINITY;
     for (const RunTick& tick : phase) deepest = std::max(deepest, tick.hand);
     metrics.taps.push_back({.site = tag.site,
+                            .place = tag.place,
                             .index = tag.index,
                             .hand_max = deepest,
                             .stiffness_felt = own.felt().value_or(kUndefined),
                             .stiffness_true = own.truth().value_or(kUndefined)});
+    if (tag.site == Site::Other) continue;
     if (tag.index == 1) metrics.tap1_error[site] = own.error().value_or(kUndefined);
     if (tag.index == 2) metrics.tap2_error[site] = own.error().value_or(kUndefined);
     if (tag.index >= 2) add(pooled[site], phase);
@@ -203,6 +207,7 @@ void judge_holds(std::span<const std::span<const RunTick>> phases, RunMetrics& m
   std::array<std::array<HoldMeans, 2>, 2> holds;
   for (const auto& phase : phases) {
     const PhaseTag& tag = phase.front().phase;
+    if (tag.site == Site::Other) continue;
     if (tag.kind == PhaseKind::PressHold && (tag.index == 1 || tag.index == 2)) {
       holds[static_cast<std::size_t>(tag.site)][static_cast<std::size_t>(tag.index - 1)] =
           hold_means(phase);

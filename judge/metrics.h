@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "judge/site.h"
+#include "common/core/place.h"
 
 /// Judges a run from the plant's true states: how stiff the tissue felt, how much energy came out
 /// of the operator's port, what drifted. Pure functions of the recorded ticks.
@@ -16,10 +16,11 @@ enum class PhaseKind : std::uint8_t { Other, FreeAir, Tap, PressHold, LiftHold }
 /// Where in the script a tick lies.
 struct PhaseTag {
   PhaseKind kind{PhaseKind::Other};
-  Site site{Site::A};
-  int index{};        ///< of the tap (1, 2, ...) or of the press hold (1: shallow, 2: deep)
-  double elapsed{};   ///< [s] since the phase began
-  double duration{};  ///< [s]
+  Site site{Site::A};  ///< what the errors of a site are of; Other: of none
+  Place place;         ///< where it begins
+  int index{};         ///< of the tap (1, 2, ...) or of the press hold (1: shallow, 2: deep)
+  double elapsed{};    ///< [s] since the phase began
+  double duration{};   ///< [s]
 };
 
 /// True states of one 1 kHz tick. Positions are relative to the true surface at rest.
@@ -35,7 +36,7 @@ struct RunTick {
   double contact_force{};        ///< [N], F_c, largest since the last tick
   double tip{};                  ///< [m], x_s
   double tip_velocity{};         ///< [m/s], of the stage
-  double tip_lateral{};          ///< [m], of the stage
+  Place tip_place;               ///< of the stage
   double energy_operator{};      ///< [J], E_op: work of the hand on the device since the start
   double energy_operator_min{};  ///< [J], least E_op so far, at plant steps
   double energy_net_min{};       ///< [J], least (E_op - E_tissue) so far
@@ -54,6 +55,7 @@ inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 /// One tap as the surgeon felt it.
 struct TapMetrics {
   Site site{};
+  Place place;
   int index{};
   double hand_max{};        ///< [m]
   double stiffness_felt{};  ///< [N/m], slope of F_h on x_m while loading; NaN: undefined

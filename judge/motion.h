@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/core/place.h"
 #include "common/core/time.h"
 
 namespace palp::judge {
@@ -10,7 +11,7 @@ struct Motion {
   double position{};  ///< [m], hand or tip
   double velocity{};  ///< [m/s]
   double force{};     ///< [N], surgeon: applied to the hand, patient: contact
-  double lateral{};   ///< [m]
+  Place place;
 };
 
 }  // namespace palp::judge

@@ -29,11 +29,28 @@ std::optional<double> number(std::string_view text) {
   return whole && std::isfinite(value) ? std::optional{value} : std::nullopt;
 }
 
+std::optional<Place> named_place(std::string_view site) {
+  if (site == "A") return kSiteA;
+  if (site == "B") return kSiteB;
+  return std::nullopt;
+}
+
+/// Where a row lies: by two columns, or by one with a name.
+std::optional<Place> take_place(std::string_view& line, bool named) {
+  const auto first = cut(line, ',');
+  if (named) return named_place(first);
+  const auto x = number(first);
+  const auto y = number(cut(line, ','));
+  if (!x || !y) return std::nullopt;
+  return Place{*x * 1e-3, *y * 1e-3};
+}
+
 }  // namespace
 
 Result<TissueTable> TissueTable::parse(std::string_view csv) {
   TissueTable table;
   int line_number = 0;
+  bool named = false;
   bool header_seen = false;
   while (!csv.empty()) {
     std::string_view line = cut(csv, '\n');
@@ -41,35 +58,48 @@ Result<TissueTable> TissueTable::parse(std::string_view csv) {
     if (line.empty() || line.front() == '#') {
       continue;
     }
-    const auto site = cut(line, ',');
-    const auto indentation_text = cut(line, ',');
-    const auto force_text = cut(line, ',');
     if (!header_seen) {
-      if (site != "site" || indentation_text != "d_mm" || force_text != "F_N") {
-        return fail("the tissue table's columns are not site,d_mm,F_N");
+      const auto first = cut(line, ',');
+      named = first == "site";
+      const bool placed = first == "x_mm" && cut(line, ',') == "y_mm";
+      if (!(named || placed) || cut(line, ',') != "d_mm" || cut(line, ',') != "F_N") {
+        return fail("the tissue table's columns are not x_mm,y_mm,d_mm,F_N");
       }
       header_seen = true;
       continue;
     }
-    const auto indentation = number(indentation_text);
-    const auto force = number(force_text);
-    if ((site != "A" && site != "B") || !indentation || !force) {
-      return fail("line " + std::to_string(line_number) +
-                  " of the tissue table is not A or B and two numbers");
+    const auto place = take_place(line, named);
+    const auto indentation = number(cut(line, ','));
+    const auto force = number(cut(line, ','));
+    if (!place || !indentation || !force) {
+      return fail("line " + std::to_string(line_number) + " of the tissue table is not " +
+                  (named ? "A or B and two numbers" : "four numbers"));
     }
-    auto& rows = table.rows_[site == "A" ? 0 : 1];
+    auto curve = std::find_if(table.curves_.begin(), table.curves_.end(), [&](const Curve& one) {
+      return one.place == *place;
+    });
+    if (curve == table.curves_.end()) {
+      curve = table.curves_.insert(curve, {*place, {}});
+    }
     const double metres = *indentation * 1e-3;
-    if (!rows.empty() && metres <= rows.back().indentation) {
+    if (!curve->rows.empty() && metres <= curve->rows.back().indentation) {
       return fail("d_mm in line " + std::to_string(line_number) +
                   " of the tissue table does not rise");
     }
-    rows.push_back({.indentation = metres, .force = *force});
+    curve->rows.push_back({.indentation = metres, .force = *force});
   }
   return table;
 }
 
-std::optional<double> TissueTable::force(Site site, double indentation) const {
-  const auto& rows = rows_[static_cast<std::size_t>(site)];
+std::optional<double> TissueTable::force(const Place& place, double indentation) const {
+  const auto curve =
+      std::min_element(curves_.begin(), curves_.end(), [&](const Curve& a, const Curve& b) {
+        return distance(a.place, place) < distance(b.place, place);
+      });
+  if (curve == curves_.end() || distance(curve->place, place) > kSamePlace) {
+    return std::nullopt;
+  }
+  const std::vector<Row>& rows = curve->rows;
   const auto above =
       std::lower_bound(rows.begin(), rows.end(), indentation, [](const Row& row, double value) {
         return row.indentation < value;

@@ -1,30 +1,36 @@
 #pragma once
 
-#include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "common/core/place.h"
 #include "common/core/result.h"
-#include "judge/site.h"
 
 namespace palp::judge {
 
-/// The static law of the tissue that a session touched: force over indentation at each site.
+/// The static law of the tissue that a session touched: force over indentation at some places.
 class TissueTable {
  public:
-  /// CSV with the columns site (A or B), d_mm, F_N; lines that begin with # are comments.
+  /// CSV with the columns x_mm, y_mm, d_mm, F_N, or as it was before there was a plane site (A or
+  /// B), d_mm, F_N; lines that begin with # are comments.
   [[nodiscard]] static Result<TissueTable> parse(std::string_view csv);
 
-  /// [N] at indentation [m], linear between rows; nullopt: outside the table.
-  [[nodiscard]] std::optional<double> force(Site site, double indentation) const;
+  /// [N] at indentation [m], linear between rows; nullopt: outside the table, or no curve is of
+  /// this place.
+  [[nodiscard]] std::optional<double> force(const Place& place, double indentation) const;
 
  private:
   struct Row {
     double indentation{};  ///< [m]
     double force{};        ///< [N]
   };
-  std::array<std::vector<Row>, 2> rows_;
+  struct Curve {
+    Place place;
+    std::vector<Row> rows;
+  };
+  std::vector<Curve> curves_;
 };
 
 }  // namespace palp::judge

@@ -7,7 +7,8 @@
 namespace palp::patient {
 
 /// The site in one line for a terminal, without newline: state and its cue, round trip, loss, tip,
-/// contact force, depth. Pure. Thread: the display's; allocates.
+/// contact force, why the tip does not go where it is sent, depth. Pure. Thread: the display's;
+/// allocates.
 [[nodiscard]] std::string status_line(const PatientStatus& status);
 
 }  // namespace palp::patient

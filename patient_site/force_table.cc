@@ -131,19 +131,27 @@ std::string quoted(std::string_view text) {
 struct Columns {
   std::size_t indentation{};
   std::size_t force{};
+  std::optional<std::size_t> x;
+  std::optional<std::size_t> y;
+  [[nodiscard]] bool placed() const noexcept { return x || y; }
 };
 
 Result<Columns> find_columns(std::string_view header) {
   std::optional<std::size_t> indentation;
   std::optional<std::size_t> force;
+  Columns found;
   for (std::size_t column = 0; !header.empty(); ++column) {
     const std::string_view field = trimmed(take_until(header, ','));
     if (field == "d_mm" && !indentation) indentation = column;
     if (field == "F_N" && !force) force = column;
+    if (field == "x_mm" && !found.x) found.x = column;
+    if (field == "y_mm" && !found.y) found.y = column;
   }
   if (!indentation) return fail("the header has no column d_mm");
   if (!force) return fail("the header has no column F_N");
-  return Columns{*indentation, *force};
+  found.indentation = *indentation;
+  found.force = *force;
+  return found;
 }
 
 /// One field as a number; the whole field must be one.
@@ -171,6 +179,100 @@ Result<ForceRow> parse_row(std::string_view line, const Columns& columns) {
   const Result<double> force = parse_number(line, columns.force, "F_N");
   if (!force) return tl::unexpected(force.error());
   return ForceRow{.indentation = *indentation_mm * kMillimetre, .force = *force};
+}
+
+Result<double> parse_coordinate(std::string_view line,
+                                const std::optional<std::size_t>& column,
+                                std::string_view name) {
+  if (!column) return 0.0;
+  const Result<double> value_mm = parse_number(line, *column, name);
+  if (!value_mm) return tl::unexpected(value_mm.error());
+  if (std::abs(*value_mm) > kPlaceMax / kMillimetre) {
+    return fail(std::string{name} + " = " + number_text(*value_mm) + " lies beyond " +
+                number_text(kPlaceMax / kMillimetre));
+  }
+  return *value_mm * kMillimetre;
+}
+
+Result<Place> parse_place(std::string_view line, const Columns& columns) {
+  const Result<double> x = parse_coordinate(line, columns.x, "x_mm");
+  if (!x) return tl::unexpected(x.error());
+  const Result<double> y = parse_coordinate(line, columns.y, "y_mm");
+  if (!y) return tl::unexpected(y.error());
+  return Place{*x, *y};
+}
+
+std::string place_text(const Place& place) {
+  return number_text(place.x / kMillimetre) + "," + number_text(place.y / kMillimetre);
+}
+
+/// Rows of one place after the other, as they are read.
+struct PlacedRows {
+  Place place;
+  std::vector<ForceRow> rows;
+};
+
+/// Empty, or what is wrong with a row at `place` that comes next. A new place begins new rows.
+std::string take_place(std::vector<PlacedRows>& all, const Place& place) {
+  if (!all.empty() && all.back().place == place) return {};
+  for (const PlacedRows& other : all) {
+    if (distance(other.place, place) < kPlacesApart) {
+      return "place " + place_text(place) + " mm comes again, or lies within " +
+             number_text(kPlacesApart / kMillimetre) + " mm of " + place_text(other.place);
+    }
+  }
+  if (all.size() == kPlacesMax) return "more than " + std::to_string(kPlacesMax) + " places";
+  all.push_back({place, {}});
+  return {};
+}
+
+/// All rows of a text; `placed` false: columns of places are as good as any others.
+Result<std::vector<PlacedRows>> parse_rows(std::string_view text,
+                                           const std::string& prefix,
+                                           const Place& otherwise,
+                                           bool placed) {
+  if (text.size() > kTextSizeMax) {
+    return fail(prefix + "the table has " + std::to_string(text.size()) + " bytes, more than " +
+                std::to_string(kTextSizeMax));
+  }
+  std::optional<Columns> columns;
+  std::vector<PlacedRows> all;
+  std::size_t count = 0;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::string where = prefix + "line " + std::to_string(number) + ": ";
+    const std::string_view line = trimmed(take_until(text, '\n'));
+    if (line.empty() || line.front() == '#') continue;
+    if (!columns) {
+      const Result<Columns> found = find_columns(line);
+      if (!found) return fail(where + found.error().text);
+      columns = *found;
+      continue;
+    }
+    Result<Place> place = otherwise;
+    if (placed && columns->placed()) place = parse_place(line, *columns);
+    if (!place) return fail(where + place.error().text);
+    if (const std::string wrong = take_place(all, *place); !wrong.empty()) {
+      return fail(where + wrong);
+    }
+    const Result<ForceRow> row = parse_row(line, *columns);
+    if (!row) return fail(where + row.error().text);
+    std::vector<ForceRow>& rows = all.back().rows;
+    rows.push_back(*row);
+    const std::string wrong = check_row(rows, rows.size() - 1);
+    if (!wrong.empty()) return fail(where + wrong);
+    if (++count > kRowsMax) return fail(where + "more than " + std::to_string(kRowsMax) + " rows");
+  }
+  if (!columns) return fail(prefix + "there is no header line with the columns d_mm and F_N");
+  if (all.empty()) all.push_back({otherwise, {}});
+  return all;
+}
+
+/// `of`: which of several, for the sentence.
+Result<ForceTable> make_table(std::vector<ForceRow> rows, const std::string& of) {
+  if (rows.size() < kRowsMin) return fail(of + too_few(rows.size()));
+  return ForceTable::make(std::move(rows)).map_error([&](const Error& error) {
+    return Error{of + error.text};
+  });
 }
 
 }  // namespace
@@ -229,39 +331,30 @@ double ForceTable::derivative(double indentation) const noexcept {
 
 Result<ForceTable> parse_force_table(std::string_view text, std::string_view name) {
   const std::string prefix = std::string{name} + ": ";
-  if (text.size() > kTextSizeMax) {
-    return fail(prefix + "the table has " + std::to_string(text.size()) + " bytes, more than " +
-                std::to_string(kTextSizeMax));
-  }
-  std::optional<Columns> columns;
-  std::vector<ForceRow> rows;
-  for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::string where = prefix + "line " + std::to_string(number) + ": ";
-    const std::string_view line = trimmed(take_until(text, '\n'));
-    if (line.empty() || line.front() == '#') continue;
-    if (!columns) {
-      const Result<Columns> found = find_columns(line);
-      if (!found) return fail(where + found.error().text);
-      columns = *found;
-      continue;
-    }
-    const Result<ForceRow> row = parse_row(line, *columns);
-    if (!row) return fail(where + row.error().text);
-    rows.push_back(*row);
-    const std::string wrong = check_row(rows, rows.size() - 1);
-    if (!wrong.empty()) return fail(where + wrong);
-    if (rows.size() > kRowsMax) {
-      return fail(where + "more than " + std::to_string(kRowsMax) + " rows");
-    }
-  }
-  if (!columns) return fail(prefix + "there is no header line with the columns d_mm and F_N");
-  if (rows.size() < kRowsMin) return fail(prefix + too_few(rows.size()));
-  return ForceTable::make(std::move(rows)).map_error([&](const Error& error) {
-    return Error{prefix + error.text};
-  });
+  Result<std::vector<PlacedRows>> read = parse_rows(text, prefix, {}, false);
+  if (!read) return tl::unexpected(read.error());
+  return make_table(std::move(read->front().rows), prefix);
 }
 
-Result<ForceTable> load_force_table(const std::string& path) {
+Result<std::vector<PlacedCurve>> parse_tissue_curves(std::string_view text,
+                                                     std::string_view name,
+                                                     const Place& otherwise) {
+  const std::string prefix = std::string{name} + ": ";
+  Result<std::vector<PlacedRows>> read = parse_rows(text, prefix, otherwise, true);
+  if (!read) return tl::unexpected(read.error());
+  std::vector<PlacedCurve> curves;
+  for (PlacedRows& one : *read) {
+    const std::string of =
+        read->size() > 1 ? prefix + "place " + place_text(one.place) + " mm: " : prefix;
+    Result<ForceTable> table = make_table(std::move(one.rows), of);
+    if (!table) return tl::unexpected(table.error());
+    curves.push_back({one.place, std::move(*table)});
+  }
+  return curves;
+}
+
+Result<std::vector<PlacedCurve>> load_tissue_curves(const std::string& path,
+                                                    const Place& otherwise) {
   std::ifstream file{path, std::ios::binary};
   if (!file) return fail_to_reach(path + ": the file cannot be opened");
   std::string text(kTextSizeMax + 1, '\0');
@@ -270,7 +363,7 @@ Result<ForceTable> load_force_table(const std::string& path) {
     return fail_to_reach(path + ": the file cannot be read");
   }
   text.resize(static_cast<std::size_t>(file.gcount()));
-  return parse_force_table(text, path);
+  return parse_tissue_curves(text, path, otherwise);
 }
 
 }  // namespace palp::patient

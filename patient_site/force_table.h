@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/core/place.h"
 #include "common/core/result.h"
 
 namespace palp::patient {
@@ -50,7 +51,24 @@ class ForceTable {
 /// column and reason.
 [[nodiscard]] Result<ForceTable> parse_force_table(std::string_view text, std::string_view name);
 
+/// A curve and where on a tissue it holds.
+struct PlacedCurve {
+  Place place;
+  ForceTable table;
+};
+
+/// The same with columns `x_mm` and `y_mm` (either may be absent: 0) where there are any: rows of
+/// one place follow each other, places lie kPlacesApart or more from each other within kPlaceMax,
+/// and there are kPlacesMax of them at most. Without those columns one curve at `otherwise`.
+[[nodiscard]] Result<std::vector<PlacedCurve>> parse_tissue_curves(std::string_view text,
+                                                                   std::string_view name,
+                                                                   const Place& otherwise);
+inline constexpr std::size_t kPlacesMax = 64;  ///< a force stays a matter of microseconds
+inline constexpr double kPlacesApart = 1e-3;   ///< [m]
+inline constexpr double kPlaceMax = 0.25;      ///< [m], to all sides: half of a stage's travel
+
 /// The same from a file.
-[[nodiscard]] Result<ForceTable> load_force_table(const std::string& path);
+[[nodiscard]] Result<std::vector<PlacedCurve>> load_tissue_curves(const std::string& path,
+                                                                  const Place& otherwise);
 
 }  // namespace palp::patient

@@ -22,10 +22,15 @@ constexpr Duration kTickMax = std::chrono::milliseconds{10};
 
 }  // namespace
 
-void MotionGate::begin(double tip, double lateral) noexcept {
+void MotionGate::begin(double tip, const Place& place, bool can_drag) noexcept {
   command_ = tip;
-  lateral_ = lateral;
   velocity_ = 0;
+  plane_.begin(place, can_drag);
+}
+
+void MotionGate::hold() noexcept {
+  velocity_ = 0;
+  plane_.hold();
 }
 
 void MotionGate::feel(double tip, double contact_force) noexcept {
@@ -43,6 +48,7 @@ void MotionGate::feel(double tip, double contact_force) noexcept {
   // Contact began where Hertz' law of the expected tissue gives no force.
   const double force = std::max(felt_, config_.contact_force / 2) / config_.contact_stiffness;
   surface_ = tip - std::cbrt(force * force);
+  surface_place_ = plane_.command();
   surface_of_this_place_ = true;
 }
 
@@ -79,23 +85,15 @@ double MotionGate::speed_limit() const noexcept {
 
 /// Towards `target` as fast as speed and acceleration allow, braking in time.
 void MotionGate::follow(double target, double dt) noexcept {
-  const double ahead = target - command_;
-  if (std::abs(ahead) <= config_.resync_distance) resynchronising_ = false;
-  const double speed = speed_limit();
-  const double exact = ahead / dt;
-  const double change_max = config_.acceleration_max * dt;
-  const bool small = std::abs(ahead) <= config_.step_free;
-  const bool reachable =
-      std::abs(exact) <= speed && (small || std::abs(exact - velocity_) <= change_max);
-  if (reachable) {
-    velocity_ = exact;
-    command_ = target;
-    return;
-  }
-  const double braking = std::sqrt(2 * config_.acceleration_max * std::abs(ahead));
-  const double wanted = std::copysign(std::min(speed, braking), ahead);
-  velocity_ = std::clamp(step_towards(velocity_, wanted, change_max), -speed, speed);
-  command_ = within_limits(command_ + velocity_ * dt);
+  if (std::abs(target - command_) <= config_.resync_distance) resynchronising_ = false;
+  const AxisMotion next = step_axis({.command = command_, .velocity = velocity_},
+                                    target,
+                                    {.speed = speed_limit(),
+                                     .acceleration = config_.acceleration_max,
+                                     .step_free = config_.step_free},
+                                    dt);
+  velocity_ = next.velocity;
+  command_ = within_limits(next.command);
 }
 
 /// Never inwards.
@@ -104,14 +102,25 @@ void MotionGate::move_out(double tip, double target, double speed, double dt) no
   command_ = std::min(from, std::max(target, from - speed * dt));
   command_ = std::max(command_, std::min(config_.travel_min, from));
   velocity_ = -speed;
+  plane_.hold();
 }
 
-/// A place changes only in the air: sideways motion would tear at the tissue.
-void MotionGate::follow_lateral(double asked, double tip) noexcept {
-  if (!std::isfinite(asked) || !outside(tip)) return;
-  const double place = std::clamp(asked, -config_.lateral_max, config_.lateral_max);
-  if (std::abs(place - lateral_) > config_.place_size) surface_of_this_place_ = false;
-  lateral_ = place;
+/// In the air as fast as the stage may; pressed, at the speed of a drag or not at all: what moves
+/// faster would tear at the tissue.
+void MotionGate::follow_place(const MotionRequest& request,
+                              double dt,
+                              MotionAnswer& answer) noexcept {
+  const NoteCode refused = plane_.follow(request.place, !outside(request.tip), dt);
+  if (refused != place_noted_) answer.place_note = refused;
+  place_noted_ = answer.place_refused = refused;
+}
+
+/// Where the tip is out of the tissue, and away from where it felt the surface, none is known.
+void MotionGate::leave_place(double tip) noexcept {
+  if (surface_of_this_place_ && outside(tip) &&
+      distance(plane_.command(), surface_place_) > kSamePlace) {
+    surface_of_this_place_ = false;
+  }
 }
 
 void MotionGate::note_once(MotionAnswer& answer, NoteCode code, double detail) noexcept {
@@ -155,12 +164,14 @@ MotionAnswer MotionGate::pass(const MotionRequest& request, Duration dt) noexcep
       condition = NoteCode::MotionGateLimited;
       note_once(answer, condition, request.position);
     }
-    follow_lateral(request.lateral, request.tip);
+    follow_place(request, span, answer);
+    leave_place(request.tip);
     follow(target, span);
   }
   if (condition == NoteCode::None) noted_ = NoteCode::None;
+  if (answer.place_refused == NoteCode::None) place_noted_ = NoteCode::None;
   answer.position = command_;
-  answer.lateral = lateral_;
+  answer.place = plane_.command();
   answer.acted = request.state == SiteState::Engaged && command_ != request.position;
   return answer;
 }

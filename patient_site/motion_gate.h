@@ -2,16 +2,17 @@
 
 #include <optional>
 
+#include "common/core/place.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
 #include "common/record/notes.h"
+#include "patient_site/plane_motion.h"
 
 namespace palp::patient {
 
 struct MotionGateConfig {
   double travel_min{-50e-3};       ///< [m], travel box
   double travel_max{50e-3};        ///< [m]
-  double lateral_max{50e-3};       ///< [m], to both sides
   double depth_max{8e-3};          ///< [m], below the learned surface
   double speed_max{0.15};          ///< [m/s], in the air
   double speed_near{0.05};         ///< [m/s], within `near_distance` of a known surface, and in it
@@ -28,39 +29,45 @@ struct MotionGateConfig {
   double clearance{2e-3};          ///< [m], of the tip from the surface after a retraction
   double contact_force{0.1};       ///< [N], two steps of the transducer: felt as contact
   double contact_stiffness{1897};  ///< [N/m^1.5], expected of tissue: how deep contact_force is
-  double place_size{1e-3};         ///< [m], farther along the surface is another place
+  PlaneMotionConfig plane;
 };
 
 /// What a law asks for and what the site measures at the same tick.
 struct MotionRequest {
   SiteState state{};
   double position{};       ///< [m], target asked for
-  double lateral{};        ///< [m], place asked for
+  Place place{};           ///< place asked for
   double tip{};            ///< [m], of the stage
   double contact_force{};  ///< [N]
 };
 
 struct MotionAnswer {
   double position{};  ///< [m], for the stage
-  double lateral{};   ///< [m]
-  bool halt{};        ///< command nothing, hold
-  bool acted{};       ///< not what was asked for
+  Place place{};
+  bool halt{};   ///< command nothing, hold
+  bool acted{};  ///< not what was asked for
   record::NoteCode note{};
-  double detail{};  ///< [by note]
+  double detail{};                   ///< [by note]
+  record::NoteCode place_refused{};  ///< why the tip does not go to the place asked for, as long
+                                     ///< as it does not
+  record::NoteCode place_note{};     ///< the same at the tick it begins
 };
 
 /// The last word before the tissue: nothing reaches the stage but through here, and nothing here
 /// depends on the network. Travel box, depth below the surface, speed, acceleration; a contact
 /// force above its limit is walked away from. Only Engaged follows the law; Retract, and Parked
 /// where the tip is not clear, move out; every other state holds the last command. Learns the
-/// surface from the first contact at a place. Thread: rt. A value.
+/// surface from the first contact at a place; a drag, from there on until the tip is out again,
+/// keeps that surface and what hangs on it. Thread: rt. A value.
 class MotionGate {
  public:
   explicit MotionGate(const MotionGateConfig& config) noexcept
-      : config_{config}, noise_square_{config.contact_force * config.contact_force / 4} {}
+      : config_{config},
+        plane_{config.plane},
+        noise_square_{config.contact_force * config.contact_force / 4} {}
 
   /// The tip stands here and nothing was commanded yet.
-  void begin(double tip, double lateral) noexcept;
+  void begin(double tip, const Place& place, bool can_drag) noexcept;
   /// Once a tick, before pass(). `tip` behind the transducer's pole, as the force is.
   void feel(double tip, double contact_force) noexcept;
   /// Catch up slowly from here: after a gap, at an engagement.
@@ -75,30 +82,33 @@ class MotionGate {
   [[nodiscard]] bool retracted(double tip) const noexcept;
   [[nodiscard]] std::optional<double> surface() const noexcept { return surface_; }  ///< [m]
   [[nodiscard]] double command() const noexcept { return command_; }                 ///< [m]
-  [[nodiscard]] double lateral() const noexcept { return lateral_; }                 ///< [m]
+  [[nodiscard]] Place place() const noexcept { return plane_.command(); }
   [[nodiscard]] double felt_force() const noexcept { return felt_; }  ///< [N], smoothed over 10 ms
 
  private:
   void follow(double target, double dt) noexcept;
   void move_out(double tip, double target, double speed, double dt) noexcept;
-  void hold() noexcept { velocity_ = 0; }
+  void hold() noexcept;
   [[nodiscard]] double speed_limit() const noexcept;
   [[nodiscard]] double within_limits(double position) const noexcept;
   [[nodiscard]] double clear_position() const noexcept;
   [[nodiscard]] bool outside(double tip) const noexcept;
-  void follow_lateral(double asked, double tip) noexcept;
+  void follow_place(const MotionRequest& request, double dt, MotionAnswer& answer) noexcept;
+  void leave_place(double tip) noexcept;
   void note_once(MotionAnswer& answer, record::NoteCode code, double detail) noexcept;
 
   MotionGateConfig config_;
-  double command_{};               ///< [m]
-  double velocity_{};              ///< [m/s], of the command
-  double lateral_{};               ///< [m]
+  double command_{};   ///< [m]
+  double velocity_{};  ///< [m/s], of the command
+  PlaneMotion plane_;
   double felt_{};                  ///< [N]
   double noise_square_;            ///< [N^2], of readings in the air; begins on the safe side
   std::optional<double> surface_;  ///< [m]
+  Place surface_place_;            ///< where it was felt
   bool surface_of_this_place_{};
   bool resynchronising_{};
-  record::NoteCode noted_{};  ///< of the tick before: a lasting condition is noted once
+  record::NoteCode noted_{};        ///< of the tick before: a lasting condition is noted once
+  record::NoteCode place_noted_{};  ///< the same of the place
 };
 
 }  // namespace palp::patient

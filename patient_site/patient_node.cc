@@ -40,17 +40,17 @@ void PatientNode::note_not_finite(bool finite, bool& was_finite) noexcept {
 void PatientNode::read_stage() noexcept {
   const StageState read = parts_.stage.read(now_.at);
   const bool finite =
-      std::isfinite(read.position) && std::isfinite(read.velocity) && std::isfinite(read.lateral);
+      std::isfinite(read.position) && std::isfinite(read.velocity) && is_finite(read.place);
   note_not_finite(finite, stage_was_finite_);
   device_faulted_ = device_faulted_ || read.faulted;
   now_.velocity = 0;
   if (!finite) return;
   now_.position = read.position;
   now_.velocity = read.velocity;
-  now_.lateral = read.lateral;
+  now_.place = read.place;
   if (!begun_) {
     co_filter_.reset(read.position);
-    gate_.begin(read.position, read.lateral);
+    gate_.begin(read.position, read.place, parts_.stage.can_drag());
   }
 }
 
@@ -124,25 +124,27 @@ coupling::PatientInput PatientNode::law_input(const link::Arrivals& arrived) con
   in.position = now_.position;
   in.velocity = now_.velocity;
   in.contact_force = now_.contact_force;
-  in.lateral = now_.lateral;
+  in.place = now_.place;
   if (now_.state == SiteState::Engaged) in.arrived = arrived.samples;
   in.round_trip = now_.link.round_trip;
   return in;
 }
 
-MotionAnswer PatientNode::move(double target, double lateral, Duration dt) noexcept {
+MotionAnswer PatientNode::move(double target, const Place& place, Duration dt) noexcept {
   const MotionAnswer answer = gate_.pass({.state = now_.state,
                                           .position = target,
-                                          .lateral = lateral,
+                                          .place = place,
                                           .tip = now_.position,
                                           .contact_force = now_.contact_force},
                                          dt);
   if (answer.halt) {
     parts_.stage.halt();
   } else {
-    parts_.stage.move_to({answer.position, answer.lateral});
+    parts_.stage.move_to({answer.position, answer.place});
   }
   if (answer.note != NoteCode::None) note(answer.note, answer.detail);
+  if (answer.place_note != NoteCode::None) note(answer.place_note, distance(place, answer.place));
+  now_.place_refused = answer.place_refused;
   now_.command = answer.position;
   now_.gate_acted = answer.acted;
   now_.surface_known = gate_.surface().has_value();
@@ -174,10 +176,10 @@ void PatientNode::tick(TimePoint now) noexcept {
 
   const coupling::PatientInput in = law_input(arrived);
   const coupling::PatientOutput out = coupling::step(parts_.law, in, dt);
-  const bool lateral_asked = arrived.peer_heard && now_.state == SiteState::Engaged;
+  const bool place_asked = arrived.peer_heard && now_.state == SiteState::Engaged;
   const MotionAnswer answer =
-      move(out.target_position, lateral_asked ? arrived.peer.lateral : gate_.lateral(), dt);
-  parts_.link.send({{now_.state, now_.epoch, now_.lateral, depth_report()}, out.to_surgeon}, now);
+      move(out.target_position, place_asked ? arrived.peer.place : gate_.place(), dt);
+  parts_.link.send({{now_.state, now_.epoch, now_.place, depth_report()}, out.to_surgeon}, now);
 
   if (now_.state == SiteState::Engaged) give_contact_sample();
   record(SiteTick{.at = now,
@@ -186,7 +188,7 @@ void PatientNode::tick(TimePoint now) noexcept {
                   .position = in.position,
                   .velocity = in.velocity,
                   .force = in.contact_force,
-                  .lateral = in.lateral,
+                  .place = in.place,
                   .command = answer.position,
                   .gate_acted = answer.acted,
                   .round_trip = in.round_trip,
@@ -199,7 +201,7 @@ void PatientNode::give_contact_sample() noexcept {
   const bool taken = parts_.contact.try_enqueue({.at = now_.at,
                                                  .position = co_filter_.value(),
                                                  .force = now_.contact_force,
-                                                 .lateral = now_.lateral});
+                                                 .place = now_.place});
   ++(taken ? now_.contact_samples : now_.contact_samples_lost);
 }
 

@@ -72,7 +72,7 @@ class PatientNode {
   [[nodiscard]] SupervisorOutput supervise(const link::Arrivals& arrived) noexcept;
   void record_decision(const SupervisorOutput& decision, SiteState before) noexcept;
   [[nodiscard]] coupling::PatientInput law_input(const link::Arrivals& arrived) const noexcept;
-  [[nodiscard]] MotionAnswer move(double target, double lateral, Duration dt) noexcept;
+  [[nodiscard]] MotionAnswer move(double target, const Place& place, Duration dt) noexcept;
   void give_contact_sample() noexcept;
   [[nodiscard]] DepthReport depth_report() noexcept;
   void record_link() noexcept;

@@ -20,13 +20,14 @@ struct PatientStatus {
   SiteState peer_state{};
   bool peer_heard{};
   LinkHealth link;
-  double position{};       ///< [m], tip
-  double velocity{};       ///< [m/s]
-  double lateral{};        ///< [m]
+  double position{};  ///< [m], tip
+  double velocity{};  ///< [m/s]
+  Place place{};
   double contact_force{};  ///< [N], measured
   double command{};        ///< [m], to the stage
   bool gate_acted{};
-  double surface{};  ///< [m], as learned
+  record::NoteCode place_refused{};  ///< why the tip does not follow in the plane; None: it does
+  double surface{};                  ///< [m], as learned
   bool surface_known{};
   DepthEstimate depth;  ///< newest; number 0: none yet
   std::uint64_t ticks{};

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -129,8 +131,25 @@ Result<Phantom> law_phantom(std::string_view spec, const NamedLaw& law) {
                  .relaxation = law.relaxation};
 }
 
-/// "ball depth=12 radius=8 ratio=200": words of a phantom from the depth database; lengths in mm.
-Result<depth::DepthDatabase::Query> database_query(std::string_view spec) {
+/// "12.5,-3" as millimetres.
+std::optional<Place> place_in(std::string_view text) {
+  const auto comma = text.find(',');
+  if (comma == std::string_view::npos) return std::nullopt;
+  std::array<double, 2> values{};
+  std::array<std::string_view, 2> parts{text.substr(0, comma), text.substr(comma + 1)};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const char* end = parts[i].data() + parts[i].size();
+    const auto [stop, error] = std::from_chars(parts[i].data(), end, values[i]);
+    if (error != std::errc{} || stop != end) return std::nullopt;
+    values[i] *= kMillimetre;
+    if (!(std::abs(values[i]) <= kPlaceMax)) return std::nullopt;
+  }
+  return Place{values[0], values[1]};
+}
+
+/// "ball depth=12 radius=8 ratio=200 at=20,0": words of a phantom from the depth database; lengths
+/// in mm. `axis` stays where it was unless the words say.
+Result<depth::DepthDatabase::Query> database_query(std::string_view spec, Place& axis) {
   const auto wrong = [&](const std::string& sentence) {
     return fail("phantom '" + std::string{spec} + "': " + sentence);
   };
@@ -144,6 +163,12 @@ Result<depth::DepthDatabase::Query> database_query(std::string_view spec) {
     const auto mark = word.find('=');
     const std::string name = word.substr(0, mark);
     const std::string text = mark == std::string::npos ? "" : word.substr(mark + 1);
+    if (name == "at") {
+      const std::optional<Place> place = place_in(text);
+      if (!place) return wrong("'" + word + "' is not at=X_MM,Y_MM within 250 mm of the middle");
+      axis = *place;
+      continue;
+    }
     double value = 0;
     const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || stop != text.data() + text.size() || !std::isfinite(value)) {
@@ -156,7 +181,8 @@ Result<depth::DepthDatabase::Query> database_query(std::string_view spec) {
     } else if (name == "ratio") {
       query.ratio = value;
     } else {
-      return wrong("'" + name + "' is unknown; there are depth, radius (mm) and ratio");
+      return wrong("'" + name +
+                   "' is unknown; there are depth, radius (mm), ratio and at=X_MM,Y_MM");
     }
   }
   return query;
@@ -174,7 +200,8 @@ ForceTable database_table(const depth::DepthDatabase& database,
 }
 
 Result<Phantom> database_phantom(std::string_view spec) {
-  const auto query = database_query(spec);
+  Place axis = kSiteB;
+  const auto query = database_query(spec, axis);
   if (!query) return tl::unexpected(query.error());
   const auto database = depth::default_database();
   if (!database) return fail("phantom '" + std::string{spec} + "': " + database.error().text);
@@ -187,27 +214,48 @@ Result<Phantom> database_phantom(std::string_view spec) {
                  .depth = query->depth,
                  .radius = query->radius,
                  .ratio = query->ratio,
-                 .shape = std::string{to_string(query->shape)}};
+                 .shape = std::string{to_string(query->shape)},
+                 .axis = axis};
+}
+
+/// [m], where all of them still hold.
+double common_depth(std::span<const PlacedCurve> curves) noexcept {
+  double depth = INFINITY;
+  for (const PlacedCurve& curve : curves) depth = std::min(depth, curve.table.depth_max());
+  return depth;
 }
 
 Result<Phantom> file_phantom(std::string_view spec, std::string_view path) {
   if (path.empty()) return fail("phantom 'file:' names no file; write file:PATH.csv");
-  Result<ForceTable> table = load_force_table(std::string{path});
-  if (!table) return fail("phantom '" + std::string{spec} + "'", table.error());
+  Result<std::vector<PlacedCurve>> curves = load_tissue_curves(std::string{path}, kSiteB);
+  if (!curves) return fail("phantom '" + std::string{spec} + "'", curves.error());
+  const bool several = curves->size() > 1;
+  const double depth = common_depth(*curves);
+  const auto [softest, stiffest] = std::minmax_element(
+      curves->begin(), curves->end(), [&](const PlacedCurve& a, const PlacedCurve& b) {
+        return a.table.force(depth) < b.table.force(depth);
+      });
   return Phantom{.name = std::string{spec},
-                 .plain = embedded("neo_homog"),
-                 .over = std::move(*table),
+                 .plain = several ? softest->table : embedded("neo_homog"),
+                 .over = stiffest->table,
                  .depth = std::nullopt,
                  .radius = std::nullopt,
                  .ratio = std::nullopt,
-                 .shape = "unknown"};
+                 .shape = "unknown",
+                 .axis = stiffest->place,
+                 .survey = several ? std::move(*curves) : std::vector<PlacedCurve>{}};
 }
 
-void append_rows(std::string& text, char site, const ForceTable& table) {
-  std::array<char, 64> line{};
+void append_rows(std::string& text, const Place& place, const ForceTable& table) {
+  std::array<char, 96> line{};
   for (const ForceRow& row : table.rows()) {
-    std::snprintf(
-        line.data(), line.size(), "%c,%.9g,%.9g\n", site, row.indentation / kMillimetre, row.force);
+    std::snprintf(line.data(),
+                  line.size(),
+                  "%.9g,%.9g,%.9g,%.9g\n",
+                  place.x / kMillimetre,
+                  place.y / kMillimetre,
+                  row.indentation / kMillimetre,
+                  row.force);
     text += line.data();
   }
 }
@@ -231,7 +279,17 @@ Relaxation stretched_relaxation(double share, double time) noexcept {
   return relaxation;
 }
 
-double Phantom::depth_max() const noexcept { return std::min(plain.depth_max(), over.depth_max()); }
+double Phantom::depth_max() const noexcept {
+  return std::min({plain.depth_max(), over.depth_max(), common_depth(survey)});
+}
+
+std::unique_ptr<TissueField> make_field(const Phantom& phantom, double viscous_factor) {
+  if (!phantom.survey.empty()) {
+    return std::make_unique<SurveyField>(phantom.survey, viscous_factor);
+  }
+  return std::make_unique<InclusionField>(
+      phantom.plain, phantom.over, phantom.axis, viscous_factor);
+}
 
 Result<Phantom> make_phantom(std::string_view spec) {
   struct Named {
@@ -276,13 +334,15 @@ Result<Phantom> make_phantom(std::string_view spec) {
               "'; there are paper-5mm, paper-10mm, paper-15mm, paper-20mm, paper-25mm, none, "
               "closed-form[:DEPTH_MM], exponential[:DEPTH_MM], relaxing[:DEPTH_MM], "
               "draining[:DEPTH_MM], layered[:DEPTH_MM], file:PATH.csv and "
-              "\"ball depth=12 radius=8 ratio=200\" (or cylinder)");
+              "\"ball depth=12 radius=8 ratio=200 at=20,0\" (or cylinder)");
 }
 
 std::string tissue_csv(const Phantom& phantom) {
-  std::string text = "site,d_mm,F_N\n";
-  append_rows(text, 'A', phantom.plain);
-  append_rows(text, 'B', phantom.over);
+  std::string text = "x_mm,y_mm,d_mm,F_N\n";
+  for (const PlacedCurve& curve : phantom.survey) append_rows(text, curve.place, curve.table);
+  if (!phantom.survey.empty()) return text;
+  append_rows(text, kSiteA, phantom.plain);
+  append_rows(text, phantom.axis, phantom.over);
   return text;
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "patient_site/force_table.h"
+#include "patient_site/tissue_field.h"
 
 namespace palp::patient {
 
@@ -45,34 +47,40 @@ class RelaxingForce {
   std::array<double, Relaxation::kParts> past_{};  ///< [N]
 };
 
-/// A simulated tissue: a plain block with, at another place along its surface, an inclusion below.
+/// A simulated tissue: a plain block with an inclusion somewhere below its surface, or curves at
+/// several places.
 /// A value; immutable after make_phantom.
 struct Phantom {
   std::string name;
-  ForceTable plain;              ///< site A: the block beside the inclusion
-  ForceTable over;               ///< site B: above the inclusion
+  ForceTable plain;              ///< the block beside the inclusion
+  ForceTable over;               ///< above the inclusion
   std::optional<double> depth;   ///< [m], top of the inclusion below the undeformed surface
   std::optional<double> radius;  ///< [m]
   std::optional<double> ratio;   ///< [-], stiffness of the inclusion over that of the block
   std::string shape;             ///< "ball", "cylinder", "none" or "unknown"
   Relaxation relaxation{};       ///< of the whole tissue
+  Place axis{kSiteB};            ///< where the inclusion lies
+  /// All that is known of the tissue, where that is more than one curve; then `plain` and `over`
+  /// are the softest and the stiffest of them. Empty: those two.
+  std::vector<PlacedCurve> survey{};
 
-  /// The tissue at a place: the sites are `kSiteBoundary` apart.
-  [[nodiscard]] const ForceTable& at(double lateral) const noexcept {
-    return lateral < kSiteBoundary ? plain : over;
-  }
-  [[nodiscard]] double depth_max() const noexcept;  ///< [m], where both tables still hold
-
-  static constexpr double kSiteBoundary = 5e-3;  ///< [m], of lateral: below it site A
+  [[nodiscard]] double depth_max() const noexcept;  ///< [m], where all tables still hold
 };
+
+/// The phantom as a field; `viscous_factor` as there. The phantom outlives it.
+[[nodiscard]] std::unique_ptr<TissueField> make_field(const Phantom& phantom,
+                                                      double viscous_factor);
 
 /// `paper-5mm|paper-10mm|paper-15mm|paper-20mm|paper-25mm|none`, `closed-form[:DEPTH_MM]`,
 /// `exponential[:DEPTH_MM]`, `relaxing[:DEPTH_MM]`, `draining[:DEPTH_MM]`, `layered[:DEPTH_MM]`
-/// (analytic laws for checks, not tissues), `file:PATH.csv`, or from the depth database `ball
-/// depth=12 radius=8 ratio=200` (also `cylinder`). Everything else gives a sentence.
+/// (analytic laws for checks, not tissues), `file:PATH.csv` (see load_tissue_curves: one curve is
+/// that above an inclusion, at B unless it says where, in the paper's plain block), or from the
+/// depth database `ball depth=12 radius=8 ratio=200 at=20,0` (also `cylinder`; lengths and place in
+/// mm). Everything else gives a sentence.
 [[nodiscard]] Result<Phantom> make_phantom(std::string_view spec);
 
-/// Both tables as CSV text, columns `site,d_mm,F_N`: what a session file keeps of its tissue.
+/// All tables as CSV text, columns `x_mm,y_mm,d_mm,F_N`, the plain block at A: what a session file
+/// keeps of its tissue.
 [[nodiscard]] std::string tissue_csv(const Phantom& phantom);
 
 }  // namespace palp::patient

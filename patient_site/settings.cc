@@ -36,6 +36,10 @@ MotionGateConfig make_gate(const proto::config::MotionGate& message) {
   gate.retreat_speed = message.withdraw_speed_m_per_s();
   gate.retract_speed = message.retract_speed_m_per_s();
   gate.clearance = from_milli(message.retract_clear_mm());
+  gate.plane.travel_x = from_milli(message.plane_travel_x_mm());
+  gate.plane.travel_y = from_milli(message.plane_travel_y_mm());
+  gate.plane.speed_max = message.plane_speed_max_m_per_s();
+  gate.plane.drag_speed = message.drag_speed_max_m_per_s();
   return gate;
 }
 
@@ -60,6 +64,7 @@ SimulatedPhantomConfig make_simulation(const proto::config::SimulatedPhantom& me
   simulation.surface_offset = from_milli(message.surface_offset_mm());
   simulation.breathing_amplitude = from_milli(message.breathing_mm());
   simulation.breathing_frequency = message.breathing_hz();
+  simulation.can_drag = message.can_drag();
   simulation.viscous_factor = message.viscous_s_per_m();
   simulation.sensor_cut_off = message.sensor_pole_hz();
   simulation.force_noise = from_milli(message.sensor_noise_mn());

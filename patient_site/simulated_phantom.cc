@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "common/core/check.h"
+#include "common/core/limits.h"
 #include "common/core/random.h"
 
 namespace palp::patient {
@@ -16,6 +17,11 @@ constexpr double kStepSeconds = 1e-4;
 constexpr std::int64_t kStepsMax = 2'000;
 constexpr std::uint64_t kForceNoiseStream = 0x666f726365;  // "force"
 
+Place within(const Place& place, double travel) noexcept {
+  return {std::clamp(place.x, -travel / 2, travel / 2),
+          std::clamp(place.y, -travel / 2, travel / 2)};
+}
+
 double rounded(double value, double quantum) noexcept {
   return quantum > 0 ? quantum * std::round(value / quantum) : value;
 }
@@ -23,11 +29,11 @@ double rounded(double value, double quantum) noexcept {
 }  // namespace
 
 SimulatedPhantom::SimulatedPhantom(const Phantom& phantom, const SimulatedPhantomConfig& config)
-    : phantom_{phantom},
-      config_{config},
-      target_{config.start_position, config.start_lateral},
+    : config_{config},
+      field_{make_field(phantom, config.viscous_factor)},
+      target_{config.start_position, config.start_place},
       position_{config.start_position},
-      lateral_{config.start_lateral},
+      place_{config.start_place},
       surface_{config.surface_offset},
       relaxing_{phantom.relaxation} {
   PALP_CHECK(config.servo_frequency > 0 && config.sensor_cut_off > 0, "frequencies are positive");
@@ -42,18 +48,20 @@ StageState SimulatedPhantom::read(TimePoint now) noexcept {
   return {.sampled_at = now,
           .position = rounded(position_, config_.encoder_step),
           .velocity = velocity_,
-          .lateral = lateral_,
-          .at_limit = false,
+          .place = place_,
+          .at_limit = target_.place != within(target_.place, config_.plane_travel),
           .faulted = false};
 }
 
 void SimulatedPhantom::move_to(const StageTarget& target) noexcept {
-  if (!std::isfinite(target.position) || !std::isfinite(target.lateral)) return halt();
+  if (!std::isfinite(target.position) || !is_finite(target.place)) return halt();
   target_ = target;
-  lateral_ = target.lateral;
 }
 
-void SimulatedPhantom::halt() noexcept { target_.position = position_; }
+void SimulatedPhantom::halt() noexcept {
+  target_.position = position_;
+  target_.place = place_;
+}
 
 std::optional<ForceSample> SimulatedPhantom::sample(TimePoint now) noexcept {
   advance(now);
@@ -82,6 +90,9 @@ void SimulatedPhantom::integrate_step() noexcept {
   velocity_ =
       std::clamp(velocity_ + acceleration * kStepSeconds, -config_.speed_max, config_.speed_max);
   position_ += velocity_ * kStepSeconds;
+  const Place there = within(target_.place, config_.plane_travel);
+  const double way_max = config_.plane_speed_max * kStepSeconds;
+  place_ = {step_towards(place_.x, there.x, way_max), step_towards(place_.y, there.y, way_max)};
   ++steps_;
 
   double surface_rate = 0;
@@ -92,9 +103,9 @@ void SimulatedPhantom::integrate_step() noexcept {
     surface_rate = config_.breathing_amplitude * omega * std::cos(phase);
   }
   const double elastic =
-      relaxing_.step(phantom_.at(lateral_).force(position_ - surface_), kStepSeconds);
+      relaxing_.step(field_->elastic_force(place_, position_ - surface_), kStepSeconds);
   const double rate = velocity_ - surface_rate;
-  contact_force_ = std::max(0.0, elastic * (1 + config_.viscous_factor * rate));
+  contact_force_ = std::max(0.0, elastic * field_->growth(rate));
   tissue_energy_ += contact_force_ * velocity_ * kStepSeconds;
   sensed_force_ += sensor_gain_ * (contact_force_ - sensed_force_);
 }
@@ -102,7 +113,7 @@ void SimulatedPhantom::integrate_step() noexcept {
 PhantomTruth SimulatedPhantom::truth() const noexcept {
   return {.position = position_,
           .velocity = velocity_,
-          .lateral = lateral_,
+          .place = place_,
           .surface = surface_,
           .contact_force = contact_force_,
           .noisy_force = noisy_force_,

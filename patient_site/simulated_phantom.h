@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "patient_site/force_sensor.h"
 #include "patient_site/phantom.h"
@@ -15,7 +16,10 @@ struct SimulatedPhantomConfig {
   double speed_max{0.15};         ///< [m/s]
   double encoder_step{5e-6};      ///< [m]; 0: exact
   double start_position{-10e-3};  ///< [m]
-  double start_lateral{0};        ///< [m]
+  Place start_place{kSiteA};
+  double plane_speed_max{0.3};    ///< [m/s], of each axis of the plane
+  double plane_travel{0.5};       ///< [m], of each, half of it to either side
+  bool can_drag{true};            ///< as facts of stages go
   double surface_offset{0};       ///< [m], where the undeformed surface lies
   double breathing_amplitude{0};  ///< [m], of the surface
   double breathing_frequency{0};  ///< [Hz]
@@ -28,9 +32,9 @@ struct SimulatedPhantomConfig {
 
 /// The plant's own state, for judges: nothing of it may reach a node.
 struct PhantomTruth {
-  double position{};       ///< [m], tip
-  double velocity{};       ///< [m/s]
-  double lateral{};        ///< [m]
+  double position{};  ///< [m], tip
+  double velocity{};  ///< [m/s]
+  Place place{};
   double surface{};        ///< [m], where the surface is now (breathing)
   double contact_force{};  ///< [N]
   double noisy_force{};    ///< [N], the transducer's last reading before its rounding
@@ -38,9 +42,9 @@ struct PhantomTruth {
 };
 
 /// A stage, the tissue it presses and the transducer at its tip, simulated together. A position
-/// servo moves the tip whatever the tissue does; the contact force is F(d) of the phantom at the
-/// present place, with a factor for the rate of indentation. A place is a place: lateral motion
-/// takes no time. Integrates in steps of 0.1 ms from one `now` to the next.
+/// servo moves the tip whatever the tissue does; in the plane it follows its target without lag, at
+/// no more than its speed. The contact force is that of the phantom's field at the present place,
+/// depth and rate of indentation. Integrates in steps of 0.1 ms from one `now` to the next.
 /// Thread: rt. Owns nothing it was given: the phantom outlives it.
 class SimulatedPhantom final : public Stage, public ForceSensor {
  public:
@@ -49,6 +53,7 @@ class SimulatedPhantom final : public Stage, public ForceSensor {
   StageState read(TimePoint now) noexcept override;
   void move_to(const StageTarget& target) noexcept override;
   void halt() noexcept override;
+  [[nodiscard]] bool can_drag() const noexcept override { return config_.can_drag; }
   std::optional<ForceSample> sample(TimePoint now) noexcept override;
 
   [[nodiscard]] PhantomTruth truth() const noexcept;
@@ -57,8 +62,8 @@ class SimulatedPhantom final : public Stage, public ForceSensor {
   void advance(TimePoint now) noexcept;
   void integrate_step() noexcept;
 
-  const Phantom& phantom_;
   SimulatedPhantomConfig config_;
+  std::unique_ptr<TissueField> field_;
   double servo_stiffness_;  ///< [1/s^2]
   double servo_drag_;       ///< [1/s]
   double sensor_gain_;      ///< [-], of the transducer's pole, per step
@@ -67,9 +72,9 @@ class SimulatedPhantom final : public Stage, public ForceSensor {
   TimePoint at_{};         ///< how far the plant has been integrated
   std::uint64_t steps_{};  ///< since the start
   StageTarget target_;
-  double position_{};       ///< [m]
-  double velocity_{};       ///< [m/s]
-  double lateral_{};        ///< [m]
+  double position_{};  ///< [m]
+  double velocity_{};  ///< [m/s]
+  Place place_;
   double surface_{};        ///< [m]
   double contact_force_{};  ///< [N]
   double noisy_force_{};    ///< [N], the last reading before its rounding

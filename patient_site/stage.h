@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/core/place.h"
 #include "common/core/time.h"
 
 namespace palp::patient {
@@ -8,14 +9,14 @@ struct StageState {
   TimePoint sampled_at{};
   double position{};  ///< [m], tip
   double velocity{};  ///< [m/s]
-  double lateral{};   ///< [m]
+  Place place{};
   bool at_limit{};
   bool faulted{};
 };
 
 struct StageTarget {
   double position{};  ///< [m]
-  double lateral{};   ///< [m]
+  Place place{};
 };
 
 /// Thread: rt. Each call returns within 50 us and never blocks.
@@ -25,6 +26,8 @@ class Stage {
   virtual StageState read(TimePoint now) noexcept = 0;
   virtual void move_to(const StageTarget& target) noexcept = 0;  ///< target of this tick
   virtual void halt() noexcept = 0;  ///< hold here, drop the target; idempotent
+  /// A fact: x and y may move while the tip is pressed into the tissue.
+  [[nodiscard]] virtual bool can_drag() const noexcept = 0;
 };
 
 }  // namespace palp::patient

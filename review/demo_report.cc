@@ -5,6 +5,7 @@
 
 #include "common/config/json.h"
 #include "common/core/median.h"
+#include "common/core/place_text.h"
 #include "common/message/health_counters.h"
 #include "common/record/notes.h"
 #include "common/record/session_encoder.h"
@@ -107,12 +108,13 @@ Json statement_json(const judge::DepthStatement& depth, bool with_stddev) {
 Json tap_json(const Tap& tap, const SiteData& patient) {
   const DepthEstimate& estimate = tap.estimate;
   Json json;
-  json["site"] = to_string(tap.site);
+  json["site"] = place_text(tap.place);
   json["index"] = tap.index;
   json["kind"] = to_string(tap.kind);
   json["number"] = estimate.number;
   json["t_s"] = value(seconds(elapsed(patient.began_at, estimate.stroke_began_at)));
-  json["lateral_mm"] = value(estimate.lateral * 1e3);
+  json["x_mm"] = value(estimate.place.x * 1e3);
+  json["y_mm"] = value(estimate.place.y * 1e3);
   json["indentation_max_mm"] = value(estimate.indentation_max * 1e3);
   json["force_max_n"] = value(estimate.force_max);
   json["stiffness_felt_n_per_m"] = value(tap.stiffness.felt());

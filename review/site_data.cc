@@ -20,7 +20,7 @@ struct Collector {
                            .position = tick.position,
                            .velocity = tick.velocity,
                            .force = tick.force,
-                           .lateral = tick.lateral});
+                           .place = tick.place});
   }
   void operator()(const Arrived&) const {}
   void operator()(const LinkStatus& status) const {

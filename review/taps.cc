@@ -40,7 +40,7 @@ class Strokes {
           return stroke.excursion.began_at < at;
         });
     if (later == strokes_.begin() ||
-        std::prev(later)->excursion.site != judge::site_at(estimate.lateral)) {
+        distance(std::prev(later)->excursion.place, estimate.place) > kSamePlace) {
       return std::nullopt;
     }
     return static_cast<std::size_t>(std::prev(later) - strokes_.begin());
@@ -92,18 +92,19 @@ std::vector<Tap> match_taps(const SiteData& surgeon,
                             const SiteData& patient,
                             const judge::TissueTable* tissue) {
   Strokes strokes{surgeon, surface_of(patient), tissue};
-  std::map<std::pair<judge::Site, StrokeKind>, int> counts;
   std::vector<Tap> taps;
   for (const DepthEstimate& estimate : patient.estimates) {
     const auto stroke = strokes.of(estimate);
     const Duration span = stroke ? strokes.span(*stroke)
                                  : elapsed(estimate.stroke_began_at, estimate.stroke_ended_at);
-    Tap tap{.site = judge::site_at(estimate.lateral),
+    Tap tap{.place = estimate.place,
             .kind = span > kTapMax ? StrokeKind::Press : StrokeKind::Tap,
             .index = 0,
             .estimate = estimate,
             .stiffness = {}};
-    tap.index = ++counts[{tap.site, tap.kind}];
+    tap.index = 1 + static_cast<int>(std::count_if(taps.begin(), taps.end(), [&](const Tap& other) {
+                  return other.kind == tap.kind && distance(other.place, tap.place) <= kSamePlace;
+                }));
     if (stroke) {
       tap.stiffness = strokes.stiffness(*stroke);
     }
@@ -115,7 +116,7 @@ std::vector<Tap> match_taps(const SiteData& surgeon,
 std::optional<judge::DepthStatement> overall_depth(const std::vector<Tap>& taps) {
   std::vector<DepthEstimate> over;
   for (const Tap& tap : taps) {
-    if (tap.site == judge::Site::B && tap.kind == StrokeKind::Tap) {
+    if (site_at(tap.place) == Site::B && tap.kind == StrokeKind::Tap) {
       over.push_back(tap.estimate);
     }
   }
@@ -139,7 +140,7 @@ std::string tap_table(const std::vector<Tap>& taps,
     const auto scaled = [](const std::optional<double>& value, double factor) {
       return value ? std::optional{*value * factor} : std::nullopt;
     };
-    text += left(to_string(tap.site), 6) +
+    text += left(place_text(tap.place), 6) +
             left(std::string{to_string(tap.kind)} + ' ' + std::to_string(tap.index), 10) +
             cell(estimate.indentation_max * 1e3, 2, 11) + cell(estimate.force_max, 3, 11) +
             cell(tap.stiffness.felt(), 1, 16) + cell(tap.stiffness.truth(), 1, 8) +

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "common/core/place.h"
 #include "judge/depth_statement.h"
 #include "judge/felt_stiffness.h"
-#include "judge/site.h"
 #include "judge/tissue_table.h"
 #include "review/site_data.h"
 
@@ -22,7 +22,7 @@ inline constexpr Duration kTapMax{std::chrono::milliseconds{1500}};  ///< longer
 
 /// One stroke as both sites saw it.
 struct Tap {
-  judge::Site site{};
+  Place place;
   StrokeKind kind{};
   int index{};  ///< 1, 2, ... among the strokes of its kind at its site
   DepthEstimate estimate;

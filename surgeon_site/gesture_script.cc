@@ -19,7 +19,7 @@ Intent half_cosine(const Stretch& stretch, double elapsed) noexcept {
   const double way = stretch.to - stretch.from;
   return {stretch.from + way * (1 - std::cos(angle)) / 2,
           way * pi / (2 * duration) * std::sin(angle),
-          stretch.lateral};
+          stretch.place};
 }
 
 /// Raised cosine: from `from` to `to` and back.
@@ -29,7 +29,7 @@ Intent raised_cosine(const Stretch& stretch, double elapsed) noexcept {
   const double way = stretch.to - stretch.from;
   return {stretch.from + way * (1 - std::cos(angle)) / 2,
           way * pi / duration * std::sin(angle),
-          stretch.lateral};
+          stretch.place};
 }
 
 Intent sine(const Stretch& stretch, double elapsed) noexcept {
@@ -37,7 +37,13 @@ Intent sine(const Stretch& stretch, double elapsed) noexcept {
   const double amplitude = stretch.to - stretch.from;
   return {stretch.from + amplitude * std::sin(turn * elapsed),
           amplitude * turn * std::cos(turn * elapsed),
-          stretch.lateral};
+          stretch.place};
+}
+
+/// Half a cosine along the surface, at one height.
+Intent glide(const Stretch& stretch, double elapsed) noexcept {
+  const double share = (1 - std::cos(pi * elapsed / seconds(stretch.duration))) / 2;
+  return {stretch.from, 0, between(stretch.place, stretch.to_place, share)};
 }
 
 Intent position_in(const Stretch& stretch, double elapsed) noexcept {
@@ -50,6 +56,9 @@ Intent position_in(const Stretch& stretch, double elapsed) noexcept {
       return raised_cosine(stretch, elapsed);
     case StretchKind::Air:
       return sine(stretch, elapsed);
+    case StretchKind::Travel:
+    case StretchKind::Drag:
+      return glide(stretch, elapsed);
     case StretchKind::Hold:
     case StretchKind::Pause:
     case StretchKind::PressHold:
@@ -57,7 +66,7 @@ Intent position_in(const Stretch& stretch, double elapsed) noexcept {
     case StretchKind::Replay:
       break;
   }
-  return {stretch.from, 0, stretch.lateral};
+  return {stretch.from, 0, stretch.place};
 }
 
 }  // namespace
@@ -87,7 +96,8 @@ GestureScript::GestureScript(std::vector<ReplayPoint> points)
   whole.duration = length_;
   whole.from = points_.front().position;
   whole.to = points_.back().position;
-  whole.lateral = points_.front().lateral;
+  whole.place = points_.front().place;
+  whole.to_place = points_.back().place;
   stretches_.push_back(whole);
 }
 
@@ -123,7 +133,7 @@ Intent GestureScript::replayed_at(Duration script_time) const noexcept {
   const double share = seconds(script_time - left.at) / span;
   return {left.position + share * (right.position - left.position),
           (right.position - left.position) / span,
-          left.lateral + share * (right.lateral - left.lateral)};
+          between(left.place, right.place, share)};
 }
 
 std::uint32_t GestureScript::phase_at(Duration script_time) const noexcept {

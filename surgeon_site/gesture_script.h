@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/place.h"
 #include "common/core/time.h"
 
 namespace palp::surgeon {
@@ -20,7 +21,9 @@ enum class StretchKind : std::uint8_t {
   PressHold,
   LiftMove,
   LiftHold,
-  Replay  ///< recorded motion
+  Travel,  ///< to another place, in the air
+  Drag,    ///< to another place, pressed
+  Replay   ///< recorded motion
 };
 
 /// One piece of motion with one formula.
@@ -32,7 +35,8 @@ struct Stretch {
   Duration duration{};
   double from{};       ///< [m], where it starts
   double to{};         ///< [m], end of a move, bottom of a tap, crest of a wave
-  double lateral{};    ///< [m]
+  Place place{};       ///< where it starts
+  Place to_place{};    ///< where it ends: another one in Travel and Drag
   double depth{};      ///< [m], aimed at in plain tissue: taps and presses; otherwise 0
   double frequency{};  ///< [Hz]: Air
 };
@@ -47,14 +51,14 @@ struct ScriptPhase {
 struct ReplayPoint {
   Duration at{};      ///< script time
   double position{};  ///< [m]
-  double lateral{};   ///< [m]
+  Place place{};
 };
 
 /// Where the hand wants to be.
 struct Intent {
   double position{};  ///< [m], + into the tissue, 0 at the surface as the operator sees it
   double velocity{};  ///< [m/s]
-  double lateral{};   ///< [m]
+  Place place{};
 };
 
 /// The intent of a scripted operator over script time, which starts at 0 and runs only while the

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "common/core/place.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
 
@@ -13,7 +14,7 @@ struct HandState {
   TimePoint sampled_at{};
   double position{};      ///< [m], device axis, + into the tissue
   double velocity{};      ///< [m/s]
-  double lateral{};       ///< [m], along the surface
+  Place place{};          ///< on the undeformed surface
   bool pedal_held{};      ///< the pedal; up: no force
   bool emergency_stop{};  ///< latched by the device or by the user
   bool faulted{};
@@ -73,6 +74,8 @@ class HapticDevice {
   virtual HandState read(TimePoint now) noexcept = 0;        ///< the last one again if none is new
   virtual void apply(double force) noexcept = 0;             ///< [N], + pushes out; |force| <= max
   virtual void show(const OperatorView& view) noexcept = 0;  ///< devices without a lamp ignore it
+  /// The hand presses tissue, or no longer: a device that can lock its plane does so meanwhile.
+  virtual void hold_in_plane(bool /*held*/) noexcept {}
   [[nodiscard]] virtual ScriptProgress progress() const noexcept { return {}; }
   [[nodiscard]] virtual double force_max() const noexcept = 0;         ///< [N], peak
   [[nodiscard]] virtual double force_continuous() const noexcept = 0;  ///< [N], for i^2 t

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <utility>
 
 #include "common/core/check.h"
@@ -14,6 +15,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
+constexpr Duration kTravelMin = milliseconds{100};
 constexpr double kHertz = 1897.0;  ///< [N/m^1.5], see plain_force
 
 std::string millimetres(double length) {
@@ -23,7 +25,7 @@ std::string millimetres(double length) {
 }
 
 void palpate(ScriptBuilder& script, Duration hold) {
-  script.move(-3e-3, milliseconds{500})
+  script.move(kNearPlace, milliseconds{500})
       .taps(4, 4e-3, milliseconds{1000}, milliseconds{500})
       .press(2e-3, milliseconds{600}, hold)
       .press(4e-3, milliseconds{400}, hold)
@@ -31,7 +33,7 @@ void palpate(ScriptBuilder& script, Duration hold) {
 }
 
 void palpate_briefly(ScriptBuilder& script) {
-  script.move(-3e-3, milliseconds{500})
+  script.move(kNearPlace, milliseconds{500})
       .taps(4, 4e-3, milliseconds{1000}, milliseconds{500})
       .press(4e-3, milliseconds{600}, milliseconds{2000})
       .lift(milliseconds{600}, milliseconds{1000});
@@ -40,13 +42,6 @@ void palpate_briefly(ScriptBuilder& script) {
 }  // namespace
 
 double plain_force(double depth) noexcept { return kHertz * depth * std::sqrt(depth); }
-
-std::string site_name(double lateral) {
-  constexpr double kSamePlace = 1e-9;  // [m]
-  if (std::abs(lateral - kSiteA) < kSamePlace) return "A";
-  if (std::abs(lateral - kSiteB) < kSamePlace) return "B";
-  return millimetres(lateral);
-}
 
 ScriptBuilder::ScriptBuilder(double hand_stiffness) : hand_stiffness_{hand_stiffness} {
   PALP_CHECK(hand_stiffness > 0, "a hand without stiffness cannot aim");
@@ -62,7 +57,10 @@ void ScriptBuilder::append(Stretch stretch) {
   stretch.phase = static_cast<std::uint32_t>(phases_.size());
   stretch.began_at = length_;
   stretch.from = position_;
-  stretch.lateral = lateral_;
+  stretch.place = place_;
+  if (stretch.kind != StretchKind::Travel && stretch.kind != StretchKind::Drag) {
+    stretch.to_place = place_;
+  }
   length_ += stretch.duration;
   stretches_.push_back(stretch);
 }
@@ -103,7 +101,7 @@ ScriptBuilder& ScriptBuilder::air(double amplitude, double frequency, Duration s
 }
 
 ScriptBuilder& ScriptBuilder::move(double position, Duration span) {
-  begin_phase("move " + site_name(lateral_));
+  begin_phase("move " + place_text(place_));
   move_as(StretchKind::Move, position, span);
   return *this;
 }
@@ -112,7 +110,7 @@ ScriptBuilder& ScriptBuilder::taps(std::uint32_t count,
                                    double depth,
                                    Duration span,
                                    Duration pause) {
-  begin_phase("taps " + site_name(lateral_));
+  begin_phase("taps " + place_text(place_));
   for (std::uint32_t index = 1; index <= count; ++index) {
     Stretch tap;
     tap.kind = StretchKind::Tap;
@@ -127,7 +125,7 @@ ScriptBuilder& ScriptBuilder::taps(std::uint32_t count,
 }
 
 ScriptBuilder& ScriptBuilder::press(double depth, Duration move_span, Duration hold_span) {
-  begin_phase("press " + millimetres(depth) + " " + site_name(lateral_));
+  begin_phase("press " + millimetres(depth) + " " + place_text(place_));
   move_as(StretchKind::PressMove, aim_for(depth), move_span, depth);
   hold_as(StretchKind::PressHold, hold_span);
   stretches_.back().depth = depth;
@@ -135,14 +133,39 @@ ScriptBuilder& ScriptBuilder::press(double depth, Duration move_span, Duration h
 }
 
 ScriptBuilder& ScriptBuilder::lift(Duration move_span, Duration hold_span) {
-  begin_phase("lift " + site_name(lateral_));
+  begin_phase("lift " + place_text(place_));
   move_as(StretchKind::LiftMove, kClearPlace, move_span);
   hold_as(StretchKind::LiftHold, hold_span);
   return *this;
 }
 
-ScriptBuilder& ScriptBuilder::site(double lateral) {
-  lateral_ = lateral;
+ScriptBuilder& ScriptBuilder::site(const Place& place) {
+  place_ = place;
+  return *this;
+}
+
+void ScriptBuilder::glide_as(StretchKind kind, const Place& to, Duration span) {
+  Stretch stretch;
+  stretch.kind = kind;
+  stretch.duration = span;
+  stretch.to = position_;
+  stretch.to_place = to;
+  append(stretch);
+  place_ = to;
+}
+
+ScriptBuilder& ScriptBuilder::travel(const Place& place) {
+  if (place == place_) return *this;
+  begin_phase("to " + place_text(place));
+  // A half cosine peaks at pi/2 times its mean speed.
+  const double time = std::numbers::pi / 2 * distance(place, place_) / kTravelSpeed;
+  glide_as(StretchKind::Travel, place, std::max<Duration>(kTravelMin, from_seconds(time)));
+  return *this;
+}
+
+ScriptBuilder& ScriptBuilder::drag(const Place& place, Duration span) {
+  begin_phase("drag to " + place_text(place));
+  glide_as(StretchKind::Drag, place, span);
   return *this;
 }
 
@@ -170,9 +193,10 @@ GestureScript breath_script(const ScriptSetting& setting) {
 GestureScript long_script(const ScriptSetting& setting) {
   ScriptBuilder script{setting.hand_stiffness};
   while (script.length() < std::chrono::minutes{10}) {
-    for (const double site : {kSiteA, kSiteB}) {
+    for (const Place& site : {kSiteA, kSiteB}) {
       script.site(site).air(5e-3, 1.0, milliseconds{4000});
-      script.move(-3e-3, milliseconds{500}).taps(4, 4e-3, milliseconds{1000}, milliseconds{500});
+      script.move(kNearPlace, milliseconds{500})
+          .taps(4, 4e-3, milliseconds{1000}, milliseconds{500});
       script.lift(milliseconds{600}, milliseconds{2000});
     }
   }

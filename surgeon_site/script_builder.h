@@ -9,18 +9,15 @@
 
 namespace palp::surgeon {
 
-inline constexpr double kSiteA = 0.0;          ///< [m], lateral of the site without inclusion
-inline constexpr double kSiteB = 20e-3;        ///< [m], lateral of the site above the inclusion
 inline constexpr double kClearPlace = -10e-3;  ///< [m], where scripts start and lift to
+inline constexpr double kNearPlace = -3e-3;    ///< [m], from where taps begin
+inline constexpr double kTravelSpeed = 0.1;    ///< [m/s], fastest of a hand along the surface
 
 /// Force of plain tissue at `depth` [m] >= 0, as scripts assume it: 1897 d^1.5 [N], Hertz's law for
 /// a sphere of 5 mm radius on an elastic half space of 15.3 kPa, Poisson's ratio 0.49.
 [[nodiscard]] double plain_force(double depth) noexcept;
 
-/// "A", "B", or the lateral place [m] in millimetres: the name of a site for people and reports.
-[[nodiscard]] std::string site_name(double lateral);
-
-/// Puts a script together, phase by phase, from a hold of no length at -10 mm, lateral 0.
+/// Puts a script together, phase by phase, from a hold of no length at -10 mm, site A.
 /// Depths are what a hand of the given stiffness reaches on plain tissue: it aims at
 /// d + plain_force(d)/stiffness, on every tissue alike, so a stiffer one gives less depth.
 /// All spans must be > 0; ranges are the reader's to check. Not for rt: allocates.
@@ -36,10 +33,14 @@ class ScriptBuilder {
   ScriptBuilder& taps(std::uint32_t count, double depth, Duration span, Duration pause);
   ScriptBuilder& press(double depth, Duration move_span, Duration hold_span);  ///< depth [m]
   ScriptBuilder& lift(Duration move_span, Duration hold_span);
-  /// The next phases are at `lateral` [m]. Takes no time, so be clear of the tissue.
-  ScriptBuilder& site(double lateral);
+  /// The next phases are at `place`. Takes no time, so be clear of the tissue.
+  ScriptBuilder& site(const Place& place);
+  /// There at the present height, no faster than kTravelSpeed. Nothing where it is there already.
+  ScriptBuilder& travel(const Place& place);
+  ScriptBuilder& drag(const Place& place, Duration span);  ///< the same, pressed
 
   [[nodiscard]] double position() const noexcept { return position_; }  ///< [m], after all so far
+  [[nodiscard]] Place place() const noexcept { return place_; }         ///< likewise
   [[nodiscard]] Duration length() const noexcept { return length_; }
   [[nodiscard]] GestureScript build() const;  ///< at least one phase was added
 
@@ -49,11 +50,12 @@ class ScriptBuilder {
   /// Fills in phase, time and place, and goes to where the stretch ends.
   void append(Stretch stretch);
   void hold_as(StretchKind kind, Duration span);
+  void glide_as(StretchKind kind, const Place& to, Duration span);
   void move_as(StretchKind kind, double to, Duration span, double depth = 0);
 
   double hand_stiffness_;         ///< [N/m]
   double position_{kClearPlace};  ///< [m]
-  double lateral_{kSiteA};        ///< [m]
+  Place place_{kSiteA};
   Duration length_{};
   std::vector<Stretch> stretches_;
   std::vector<ScriptPhase> phases_;

@@ -18,7 +18,7 @@ namespace {
 constexpr double kScriptSecondsMax = 4 * 3600.0;  ///< [s], bounds the memory a file can ask for
 constexpr double kPlaceMin = -60e-3;              ///< [m], travel of a hand
 constexpr double kPlaceMax = 20e-3;               ///< [m]
-constexpr double kLateralMax = 200e-3;            ///< [m], either way
+constexpr double kReachMax = 200e-3;              ///< [m], along the surface, either way
 
 /// One word of a line: what it means and what it may be.
 struct Word {
@@ -38,9 +38,11 @@ constexpr Word kPosition{"POSITION_MM", kPlaceMin / kMillimetre, kPlaceMax / kMi
 constexpr Word kAmplitude{"AMPLITUDE_MM", 0, 30, true};
 constexpr Word kFrequency{"FREQUENCY_HZ", 0, 10, true};
 constexpr Word kCount{"COUNT", 1, 1000, false, true};
-constexpr Word kLateral{"A|B|LATERAL_MM", -kLateralMax / kMillimetre, kLateralMax / kMillimetre};
+constexpr Word kX{"X_MM", -kReachMax / kMillimetre, kReachMax / kMillimetre};
+constexpr Word kY{"Y_MM", -kReachMax / kMillimetre, kReachMax / kMillimetre};
 
 constexpr std::size_t kWordsMax = 4;
+constexpr double kStandardTap = 4e-3;  ///< [m], as deep as the standard palpation taps
 
 struct Command {
   const char* name;
@@ -54,7 +56,6 @@ constexpr std::array kCommands{
     Command{"taps", {&kCount, &kDepth, &kSeconds, &kPauseSeconds}},
     Command{"press", {&kDepth, &kMoveSeconds, &kHoldSeconds}},
     Command{"lift", {&kMoveSeconds, &kHoldSeconds}},
-    Command{"site", {&kLateral}},
 };
 
 std::string quoted(std::string_view text) {
@@ -161,32 +162,90 @@ Result<void> add_air(ScriptBuilder& script, const std::array<double, kWordsMax>&
   return {};
 }
 
+/// "A", "B", "12.5,3" or "12.5", which lies in the line of both.
+Result<Place> read_place(std::string_view text) {
+  if (text == "A") return kSiteA;
+  if (text == "B") return kSiteB;
+  const std::size_t comma = text.find(',');
+  const bool alone = comma == std::string_view::npos;
+  const Result<double> x = read_word(kX, text.substr(0, comma));
+  if (alone && !number_in(text)) {
+    return fail("PLACE " + quoted(text) + " is neither A, B nor X_MM,Y_MM");
+  }
+  if (!x) return tl::unexpected(x.error());
+  const Result<double> y = alone ? Result<double>{0.0} : read_word(kY, text.substr(comma + 1));
+  if (!y) return tl::unexpected(y.error());
+  return Place{metres(*x), metres(*y)};
+}
+
+Result<void> needs_clear(const ScriptBuilder& script, const std::string& what) {
+  if (script.position() <= 0) return {};
+  return fail("'" + what + "' needs the hand clear of the tissue, but it is at " +
+              shown(script.position() / kMillimetre) + " mm: lift first");
+}
+
 Result<void> add_site(ScriptBuilder& script, const std::vector<std::string_view>& words) {
-  if (words.size() != 2) return fail("expected 'site A|B|LATERAL_MM'");
-  if (script.position() > 0) {
-    return fail("'site' needs the hand clear of the tissue, but it is at " +
-                shown(script.position() / kMillimetre) + " mm: lift first");
+  if (words.size() != 2) return fail("expected 'site PLACE'");
+  if (const auto clear = needs_clear(script, "site"); !clear) return clear;
+  const Result<Place> place = read_place(words[1]);
+  if (!place) return tl::unexpected(place.error());
+  script.site(*place);
+  return {};
+}
+
+Result<void> add_travel(ScriptBuilder& script, const std::vector<std::string_view>& words) {
+  if (words.size() != 3) return fail("expected 'move to PLACE'");
+  if (const auto clear = needs_clear(script, "move to"); !clear) return clear;
+  const Result<Place> place = read_place(words[2]);
+  if (!place) return tl::unexpected(place.error());
+  script.travel(*place);
+  return {};
+}
+
+Result<void> add_taps_at(ScriptBuilder& script, const std::vector<std::string_view>& words) {
+  const bool sentence =
+      words.size() == 5 && (words[2] == "times" || words[2] == "time") && words[3] == "at";
+  if (!sentence) return fail("expected 'tap COUNT times at PLACE'");
+  if (const auto clear = needs_clear(script, "tap"); !clear) return clear;
+  const Result<double> count = read_word(kCount, words[1]);
+  if (!count) return tl::unexpected(count.error());
+  const Result<Place> place = read_place(words[4]);
+  if (!place) return tl::unexpected(place.error());
+  script.travel(*place);
+  if (script.position() != kNearPlace) script.move(kNearPlace, from_seconds(0.5));
+  script.taps(static_cast<std::uint32_t>(*count), kStandardTap, from_seconds(1), from_seconds(0.5));
+  return {};
+}
+
+Result<void> add_drag(ScriptBuilder& script, const std::vector<std::string_view>& words) {
+  const bool sentence =
+      words.size() == 6 && words[1] == "to" && words[3] == "in" && words[5] == "s";
+  if (!sentence) return fail("expected 'drag to PLACE in SECONDS s'");
+  if (script.position() <= 0) {
+    return fail("'drag' needs the hand pressed into the tissue, but it is at " +
+                shown(script.position() / kMillimetre) + " mm: press first");
   }
-  if (words[1] == "A" || words[1] == "B") {
-    script.site(words[1] == "A" ? kSiteA : kSiteB);
-    return {};
-  }
-  const Result<double> lateral = read_word(kLateral, words[1]);
-  if (!lateral) return fail(lateral.error().text);
-  script.site(metres(*lateral));
+  const Result<Place> place = read_place(words[2]);
+  if (!place) return tl::unexpected(place.error());
+  const Result<double> span = read_word(kSeconds, words[4]);
+  if (!span) return tl::unexpected(span.error());
+  script.drag(*place, from_seconds(*span));
   return {};
 }
 
 Result<void> add_phase(ScriptBuilder& script, const std::vector<std::string_view>& words) {
+  if (words[0] == "site") return add_site(script, words);
+  if (words[0] == "tap") return add_taps_at(script, words);
+  if (words[0] == "drag") return add_drag(script, words);
+  if (words[0] == "move" && words.size() > 1 && words[1] == "to") return add_travel(script, words);
   const Command* command = nullptr;
   for (const Command& known : kCommands) {
     if (words[0] == known.name) command = &known;
   }
   if (command == nullptr) {
     return fail("unknown phase " + quoted(words[0]) +
-                ", expected hold, air, move, taps, press, lift or site");
+                ", expected hold, air, move, taps, press, lift, site, tap or drag");
   }
-  if (words[0] == "site") return add_site(script, words);
   const Result<std::array<double, kWordsMax>> read = read_words(*command, words);
   if (!read) return fail(read.error().text);
   const std::array<double, kWordsMax>& values = *read;
@@ -229,25 +288,27 @@ std::vector<std::string_view> cells_of(std::string_view line) {
 struct ReplayRow {
   double time{};      ///< [s]
   double position{};  ///< [m]
-  double lateral{};   ///< [m]
+  Place place{};
 };
 
 Result<ReplayRow> read_row(const std::vector<std::string_view>& cells, std::size_t columns) {
-  constexpr std::array<Word, 3> kColumns{
+  constexpr double kReachMm = kReachMax / kMillimetre;
+  const std::array<Word, 4> kColumns{
       Word{"t_s", -1e9, 1e9},
       Word{"position_mm", kPlaceMin / kMillimetre, kPlaceMax / kMillimetre},
-      Word{"lateral_mm", -kLateralMax / kMillimetre, kLateralMax / kMillimetre}};
+      Word{columns == 3 ? "lateral_mm" : "x_mm", -kReachMm, kReachMm},
+      Word{"y_mm", -kReachMm, kReachMm}};
   if (cells.size() != columns) {
     return fail("expected " + std::to_string(columns) + " columns, found " +
                 std::to_string(cells.size()));
   }
-  std::array<double, 3> values{};
+  std::array<double, 4> values{};
   for (std::size_t i = 0; i < columns; ++i) {
     const Result<double> value = read_word(kColumns[i], cells[i]);
     if (!value) return fail(value.error().text);
     values[i] = *value;
   }
-  return ReplayRow{values[0], metres(values[1]), metres(values[2])};
+  return ReplayRow{values[0], metres(values[1]), {metres(values[2]), metres(values[3])}};
 }
 
 Result<std::string> read_file(const std::string& path) {
@@ -283,10 +344,15 @@ Result<GestureScript> parse_script(std::string_view text, double hand_stiffness)
 
 Result<GestureScript> parse_replay(std::string_view text) {
   const std::vector<std::string_view> header = cells_of(next_line(text));
-  const bool known = (header.size() == 2 || header.size() == 3) && header[0] == "t_s" &&
-                     header[1] == "position_mm" &&
-                     (header.size() == 2 || header[2] == "lateral_mm");
-  if (!known) return fail("line 1: expected the header 't_s,position_mm[,lateral_mm]'");
+  using Header = std::vector<std::string_view>;
+  const bool known = header == Header{"t_s", "position_mm"} ||
+                     header == Header{"t_s", "position_mm", "x_mm", "y_mm"} ||
+                     header == Header{"t_s", "position_mm", "lateral_mm"};
+  if (!known) {
+    return fail(
+        "line 1: expected the header 't_s,position_mm', 't_s,position_mm,x_mm,y_mm' or "
+        "'t_s,position_mm,lateral_mm'");
+  }
   std::vector<ReplayPoint> points;
   double first_time = 0;  // [s]
   for (std::size_t line = 2; !text.empty(); ++line) {
@@ -302,7 +368,7 @@ Result<GestureScript> parse_replay(std::string_view text) {
     if (!points.empty() && at <= points.back().at) {
       return fail_in_line(line, "t_s " + shown(row->time) + " does not rise");
     }
-    points.push_back({at, row->position, row->lateral});
+    points.push_back({at, row->position, row->place});
   }
   if (points.size() < 2) return fail("a recording needs two rows or more");
   return GestureScript{std::move(points)};

@@ -51,7 +51,7 @@ ScriptedOperator::ScriptedOperator(const OperatorConfig& config, GestureScript s
     : config_{config}, script_{std::move(script)} {
   PALP_CHECK(config.aligning_speed > 0, "an operator who never moves never aligns");
   intent_.position = config.surface_offset + config.start;
-  intent_.lateral = script_.at(Duration{0}).lateral;
+  intent_.place = script_.at(Duration{0}).place;
 }
 
 bool ScriptedOperator::may_align() const noexcept {
@@ -70,14 +70,14 @@ void ScriptedOperator::begin(Doing next) noexcept {
 
 void ScriptedOperator::begin_aligning() noexcept {
   move_.begin(intent_.position, view_.tip_position, config_.aligning_speed);
-  intent_.lateral = script_.at(script_time_).lateral;
+  intent_.place = script_.at(script_time_).place;
   begin(Doing::Aligning);
 }
 
 void ScriptedOperator::begin_approach() noexcept {
   const Intent first = script_.at(script_time_);
   move_.begin(intent_.position, config_.surface_offset + first.position, config_.aligning_speed);
-  intent_.lateral = first.lateral;
+  intent_.place = first.place;
   begin(Doing::Approaching);
 }
 

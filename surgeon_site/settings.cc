@@ -59,6 +59,7 @@ Result<Settings> make_settings(const proto::config::SurgeonConfig& message) {
     made.node.supervisor.round_trip_max_to_engage = made.direct_round_trip_max;
   }
   made.node.gate = make_gate(message.force_gate());
+  made.node.hold_in_plane = message.hand().hold_in_plane();
   made.master = message.hand().master();
   made.grip = message.hand().grip();
   made.hand = *hand;

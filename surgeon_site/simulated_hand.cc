@@ -35,7 +35,7 @@ SimulatedHand::SimulatedHand(const SimulatedHandConfig& config, GestureScript sc
   PALP_CHECK(config.encoder_step > 0, "an encoder counts steps");
   pull_ = pull();
   state_.position = config_.encoder_step * std::round(plant_.position() / config_.encoder_step);
-  state_.lateral = person_.intent().lateral;
+  state_.place = person_.intent().place;
 }
 
 Pull SimulatedHand::pull() const noexcept {
@@ -78,7 +78,7 @@ HandState SimulatedHand::read(TimePoint now) noexcept {
     }
     state_.sampled_at = now;
   }
-  state_.lateral = person_.intent().lateral;
+  if (!held_in_plane_) state_.place = person_.intent().place;
   state_.pedal_held = person_.pedal_held();
   return state_;
 }

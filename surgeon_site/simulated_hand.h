@@ -40,6 +40,8 @@ class SimulatedHand final : public HapticDevice {
   /// 100 ms: the rest of so long a pause is lost to it.
   HandState read(TimePoint now) noexcept override;
   void apply(double force) noexcept override;
+  /// Held, it stays at its place whatever the person means; let go, it is where the person is.
+  void hold_in_plane(bool held) noexcept override { held_in_plane_ = held; }
   void show(const OperatorView& view) noexcept override { person_.see(view); }
   [[nodiscard]] ScriptProgress progress() const noexcept override { return person_.progress(); }
   [[nodiscard]] double force_max() const noexcept override { return config_.force_max; }
@@ -65,6 +67,7 @@ class SimulatedHand final : public HapticDevice {
   double force_{};          ///< [N]
   double velocity_gain_{};  ///< [-], of the low pass for a part of one period
   bool started_{};
+  bool held_in_plane_{};
 };
 
 }  // namespace palp::surgeon

@@ -14,6 +14,9 @@ using record::NoteCode;
 /// What a law may do in one tick is bounded by time; what the process slept through buys nothing.
 constexpr Duration kLawTickMax = std::chrono::milliseconds{10};
 
+/// The hand presses, and does not only move air: two steps of the patient's transducer.
+constexpr double kPressed = 0.1;  // [N]
+
 ForceGateConfig within_device(ForceGateConfig gate, const HapticDevice& device) {
   gate.force_max = std::min(gate.force_max, device.force_max());
   gate.force_continuous = std::min(gate.force_continuous, device.force_continuous());
@@ -21,8 +24,7 @@ ForceGateConfig within_device(ForceGateConfig gate, const HapticDevice& device) 
 }
 
 bool finite(const HandState& hand) noexcept {
-  return std::isfinite(hand.position) && std::isfinite(hand.velocity) &&
-         std::isfinite(hand.lateral);
+  return std::isfinite(hand.position) && std::isfinite(hand.velocity) && is_finite(hand.place);
 }
 
 }  // namespace
@@ -140,7 +142,8 @@ void SurgeonNode::tick(TimePoint now) noexcept {
   const ForceAnswer answer =
       gate_.pass({out.force, decision.state, hand.pedal_held, cut, out.fade_max}, dt);
   parts_.device.apply(answer.force);
-  parts_.link.send({{decision.state, decision.epoch, hand.lateral, {}}, out.to_patient}, now);
+  parts_.device.hold_in_plane(config_.hold_in_plane && answer.force >= kPressed);
+  parts_.link.send({{decision.state, decision.epoch, hand.place, {}}, out.to_patient}, now);
 
   if (answer.note != NoteCode::None) note(answer.note, answer.detail);
   record(SiteTick{.at = now,
@@ -149,7 +152,7 @@ void SurgeonNode::tick(TimePoint now) noexcept {
                   .position = in.position,
                   .velocity = in.velocity,
                   .force = in.force_applied,
-                  .lateral = hand.lateral,
+                  .place = hand.place,
                   .command = answer.force,
                   .gate_acted = answer.acted,
                   .round_trip = in.round_trip,
@@ -159,7 +162,7 @@ void SurgeonNode::tick(TimePoint now) noexcept {
   record_script();
 
   now_.position = in.position;
-  now_.lateral = hand.lateral;
+  now_.place = hand.place;
   now_.force = answer.force;
   now_.gate_acted = answer.acted;
   status_.put(now_);

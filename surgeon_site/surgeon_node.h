@@ -20,6 +20,7 @@ struct SurgeonConfig {
   Duration period{std::chrono::milliseconds{1}};
   SupervisorConfig supervisor;
   ForceGateConfig gate;  ///< the device's own limits are kept as well
+  bool hold_in_plane{};  ///< tell the device to lock its plane while the hand presses
   Duration link_status_every{std::chrono::milliseconds{100}};
 };
 

@@ -21,9 +21,9 @@ struct SurgeonStatus {
   bool peer_heard{};
   LinkHealth link;
   double position{};  ///< [m], hand, as given to the law
-  double lateral{};   ///< [m]
-  double offset{};    ///< [m], clutch: hand minus tip at the last engagement
-  double tip{};       ///< [m], as last heard
+  Place place{};
+  double offset{};  ///< [m], clutch: hand minus tip at the last engagement
+  double tip{};     ///< [m], as last heard
   bool tip_known{};
   double force{};          ///< [N], to the hand
   double contact_force{};  ///< [N], as last heard

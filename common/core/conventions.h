@@ -8,7 +8,7 @@
 ///           Hand force F_h [N]: positive pushes the hand out of the tissue; the force on the hand
 ///           along +x is -F_h. In these signs eq. (1) of the paper reads
 ///           F_h = alpha * F_s + k_p * (beta * x_m - x_s).
-/// Lateral   Place along the surface [m]; a new place means new tissue.
+/// Place     x and y [m] on the undeformed surface (place.h); a new place means new tissue.
 /// Units     SI and double inside. At a border (proto, config, CSV, flags, log) the unit ends the
 ///           name: depth_mm, force_n, sent_at_ns; conversion happens once, where the value enters.
 /// Time      See time.h: instants and spans are chrono types, `now` is always an argument.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 
+#include "common/core/place.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
 #include "common/message/port_sample.h"
@@ -36,7 +37,7 @@ struct PatientInput {
   double position{};                  ///< [m], tip
   double velocity{};                  ///< [m/s]
   double contact_force{};             ///< [N], measured; noise may make it negative
-  double lateral{};                   ///< [m], along the surface; a new place is new tissue
+  Place place{};                      ///< along the surface; a new place is new tissue
   std::span<const Incoming> arrived;  ///< since the last tick, by number
   Duration round_trip{};
 };

@@ -6,7 +6,6 @@
 namespace palp::coupling {
 namespace {
 
-constexpr double kPlaceSize = 1e-3;         // [m], farther along the surface is another place
 constexpr double kEnergyTolerance = 1e-15;  // [J]
 constexpr double kForceTolerance = 1e-12;   // [N]
 constexpr int kHalvings = 30;
@@ -225,11 +224,11 @@ double MmtPatient::target(const PatientInput& in) noexcept {
 
 PatientOutput MmtPatient::step(const PatientInput& in, Duration /*dt*/) noexcept {
   const double aim = target(in);
-  if (!began_) lateral_ = in.lateral;
+  if (!began_) place_ = in.place;
   began_ = true;
-  if (std::abs(in.lateral - lateral_) > kPlaceSize) {
+  if (distance(in.place, place_) > kSamePlace) {
     estimator_.new_place();
-    lateral_ = in.lateral;
+    place_ = in.place;
   }
   estimator_.step(in.position, in.contact_force);
   return {aim, {in.position, in.velocity, in.contact_force, estimator_.model()}};

@@ -115,7 +115,7 @@ class MmtPatient {
   double hand_velocity_{};  ///< [m/s], newest
   TimePoint heard_at_{};
   LowPass lead_velocity_;  ///< [m/s]
-  double lateral_{};       ///< [m]
+  Place place_;
   bool began_{};
 };
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "common/core/depth_verdict.h"
+#include "common/core/place.h"
 #include "common/core/time.h"
 #include "common/message/enumerators.h"
 #include "common/message/field.h"
@@ -17,7 +18,7 @@ struct ContactSample {
   TimePoint at{};
   double position{};  ///< [m], tip, behind the co-filter; the surface is the estimator's to find
   double force{};     ///< [N], as measured
-  double lateral{};   ///< [m]
+  Place place;
 };
 
 /// The result of one stroke (contact to reversal).
@@ -25,7 +26,7 @@ struct DepthEstimate {
   std::uint32_t number{};  ///< 1, 2, ... in this session; 0: none yet
   TimePoint stroke_began_at{};
   TimePoint stroke_ended_at{};
-  double lateral{};          ///< [m]
+  Place place;
   double indentation_max{};  ///< [m]
   double force_max{};        ///< [N]
   double surface{};          ///< [m], as found
@@ -60,14 +61,15 @@ inline constexpr auto fields<S> = list({.log = "ContactSample"},
                                        aside<&S::at>("at_ns"),
                                        field<1, &S::position>("position_m"),
                                        field<2, &S::force>("force_n"),
-                                       field<3, &S::lateral>("lateral_m"));
+                                       field<3, &S::place, &Place::x>("x_m"),
+                                       field<4, &S::place, &Place::y>("y_m"));
 
 template <std::same_as<DepthEstimate> S>
 inline constexpr auto fields<S> = list({.log = "DepthEstimate"},
                                        field<1, &S::number>("number"),
                                        field<2, &S::stroke_began_at>("stroke_began_at_ns"),
                                        field<3, &S::stroke_ended_at>("stroke_ended_at_ns"),
-                                       field<4, &S::lateral>("lateral_m"),
+                                       field<4, &S::place, &Place::x>("x_m"),
                                        field<5, &S::indentation_max>("indentation_max_m"),
                                        field<6, &S::force_max>("force_max_n"),
                                        field<7, &S::surface>("surface_m"),
@@ -78,7 +80,8 @@ inline constexpr auto fields<S> = list({.log = "DepthEstimate"},
                                        field<12, &S::depth_stddev>("depth_stddev_m"),
                                        field<13, &S::depth_low>("depth_low_m"),
                                        field<14, &S::depth_high>("depth_high_m"),
-                                       field<15, &S::fit_rms>("fit_rms_n"));
+                                       field<15, &S::fit_rms>("fit_rms_n"),
+                                       field<16, &S::place, &Place::y>("y_m"));
 
 /// In the log the hash stands before the depths.
 template <std::same_as<DepthReport> S>

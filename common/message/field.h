@@ -16,7 +16,8 @@
 ///   inline constexpr auto fields<S> =
 ///       list({.wire = "Site"},
 ///            field<1, &S::state>("state"),
-///            field<3, &S::lateral>("lateral_m", wire<float>, limit(kLengthMax)));
+///            field<2, &S::epoch>("epoch"),
+///            field<3, &S::place, &Place::x>("x_m", wire<float>, limit(kLengthMax)));
 ///
 /// Bytes, range checks, digests, schemas, tests and text are made from the lists; the authority is
 /// proto/, which a test holds every list against. A time point or span is told as whole

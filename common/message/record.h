@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "common/core/place.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
 #include "common/message/depth.h"
@@ -22,10 +23,10 @@ struct SiteTick {
   TimePoint at{};
   SiteState state{};
   std::uint32_t epoch{};
-  double position{};      ///< [m], as given to the law
-  double velocity{};      ///< [m/s]
-  double force{};         ///< [N]; surgeon: as applied last tick, patient: contact force measured
-  double lateral{};       ///< [m]
+  double position{};  ///< [m], as given to the law
+  double velocity{};  ///< [m/s]
+  double force{};     ///< [N]; surgeon: as applied last tick, patient: contact force measured
+  Place place;
   double command{};       ///< [N] to the hand or [m] to the stage, behind the gate
   bool gate_acted{};      ///< the gate changed what the law asked for
   Duration round_trip{};  ///< as given to the law
@@ -102,11 +103,12 @@ inline constexpr auto fields<S> = list({.log = "SurgeonTick", .log_patient = "Pa
                                        field<3, &S::position>("position_m"),
                                        field<4, &S::velocity>("velocity_m_per_s"),
                                        field<5, &S::force>("force_n"),
-                                       field<6, &S::lateral>("lateral_m"),
+                                       field<6, &S::place, &Place::x>("x_m"),
                                        field<7, &S::command>({"command_n", "command_m"}),
                                        field<8, &S::gate_acted>("gate_acted"),
                                        field<9, &S::round_trip>("round_trip_ns"),
-                                       spread<9, &S::sent>("sent_"));
+                                       spread<9, &S::sent>("sent_"),
+                                       field<16, &S::place, &Place::y>("y_m"));
 
 template <std::same_as<Arrived> S>
 inline constexpr auto fields<S> = list({.log = "ArrivedSample"},

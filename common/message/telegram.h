@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "common/core/place.h"
 #include "common/core/site_state.h"
 #include "common/message/depth.h"
 #include "common/message/enumerators.h"
@@ -17,8 +18,8 @@ namespace palp {
 struct SiteReport {
   SiteState state{};
   std::uint32_t epoch{};  ///< +1 at every engagement; samples of older epochs are dropped
-  double lateral{};       ///< [m]
-  DepthReport depth;      ///< patient to surgeon only
+  Place place;
+  DepthReport depth;  ///< patient to surgeon only
 };
 
 /// What a node says. The link adds stamps, acknowledgements and two older samples (WIRE.md).
@@ -47,8 +48,9 @@ inline constexpr auto fields<S> =
     list({.wire = "Site"},
          field<1, &S::state>("state"),
          field<2, &S::epoch>("epoch"),
-         field<3, &S::lateral>("lateral_m", wire<float>, limit(kLengthMax)),
-         field<4, &S::depth>("depth", nothing_if_zero<&DepthReport::number>));
+         field<3, &S::place, &Place::x>("x_m", wire<float>, limit(kLengthMax)),
+         field<4, &S::depth>("depth", nothing_if_zero<&DepthReport::number>),
+         field<5, &S::place, &Place::y>("y_m", wire<float>, limit(kLengthMax)));
 
 template <std::same_as<WireTelegram> S>
 inline constexpr auto fields<S> =

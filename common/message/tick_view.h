@@ -70,8 +70,9 @@ inline constexpr auto fields<S> =
          field<13, &S::command, &SignalView::newest>({"command_n", "command_m"}),
          field<14, &S::command, &SignalView::min>({"command_min_n", "command_min_m"}),
          field<15, &S::command, &SignalView::max>({"command_max_n", "command_max_m"}),
-         field<16, &S::newest, &SiteTick::lateral>("lateral_m"),
-         field<17, &S::newest, &SiteTick::round_trip>("round_trip_ns"));
+         field<16, &S::newest, &SiteTick::place, &Place::x>("x_m"),
+         field<17, &S::newest, &SiteTick::round_trip>("round_trip_ns"),
+         field<18, &S::newest, &SiteTick::place, &Place::y>("y_m"));
 
 }  // namespace message
 }  // namespace palp

@@ -64,6 +64,10 @@ std::string_view to_string(NoteCode code) noexcept {
       return "the link is lost: nothing arrived for long";
     case NoteCode::KeysReplaced:
       return "telegrams come under new keys";
+    case NoteCode::DragRefused:
+      return "the stage cannot drag: it keeps its place while pressed";
+    case NoteCode::PlaceBeyondTravel:
+      return "a place beyond the stage's travel";
   }
   return "unknown note";
 }

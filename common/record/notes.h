@@ -42,6 +42,8 @@ enum class NoteCode : std::uint16_t {
   LinkHolds = 42,           ///< detail: gap [s]
   LinkIsLost = 43,          ///< detail: gap [s]
   KeysReplaced = 44,        ///< telegrams come under other keys; detail: their id
+  DragRefused = 45,         ///< the stage cannot; detail: distance to the place asked for [m]
+  PlaceBeyondTravel = 46,   ///< detail: likewise
 };
 
 /// The text of a note, for people. Unknown codes give "unknown note".

@@ -19,7 +19,6 @@ using std::chrono::milliseconds;
 
 constexpr double kPaperRadius = 15e-3;           // [m]
 constexpr double kPaperRatio = 13.1e6 / 15.3e3;  // paper II.B
-constexpr double kStage = 5e-3;                  // [m], of lateral: from here site B
 
 /// Draws of one case, each on a stream of its own.
 enum class Draw : std::uint64_t { Depth = 9100, Radius, Ratio, Scale, Time, Reach, Grip };
@@ -123,7 +122,7 @@ std::vector<TipState> motion_of(const RunResult& result, TimePoint until) {
   std::vector<TipState> out;
   for (const judge::RunTick& tick : result.ticks) {
     if (result.began_at + from_seconds(tick.at) > until) break;
-    out.push_back({tick.tip, tick.tip_velocity, tick.tip_lateral >= kStage});
+    out.push_back({tick.tip, tick.tip_velocity, site_at(tick.tip_place) == Site::B});
   }
   return out;
 }
@@ -166,7 +165,7 @@ Result<Scenario> scenario_of(const DepthStudy& study,
     script.taps(
         static_cast<std::uint32_t>(study.reference_taps), truth.reach, span, milliseconds{300});
   }
-  script.site(surgeon::kSiteB)
+  script.site(kSiteB)
       .taps(static_cast<std::uint32_t>(study.taps), truth.reach, span, milliseconds{300})
       .hold(milliseconds{300});
   scenario->script = script.build();
@@ -203,7 +202,7 @@ Result<DepthCase> run_case(const DepthStudy& study, std::uint32_t index) {
   out.assumed_high = prior_of(plan).depth_max;
   TimePoint answered = TimePoint::max();
   for (const DepthEstimate& estimate : result.depths) {
-    if (estimate.lateral < kStage) continue;
+    if (site_at(estimate.place) != Site::B) continue;
     ++out.strokes;
     if (estimate.verdict == DepthVerdict::Invalid) continue;
     out.verdict = estimate.verdict;  // the last one has heard all taps

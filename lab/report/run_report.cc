@@ -9,6 +9,7 @@
 
 #include "common/config/json.h"
 #include "common/core/number_text.h"
+#include "common/core/place_text.h"
 #include "judge/depth_statement.h"
 #include "judge/depth_summary.h"
 #include "lab/run/digest.h"
@@ -21,10 +22,10 @@ using config::Json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-std::vector<DepthEstimate> estimates_at(judge::Site site, std::span<const DepthEstimate> all) {
+std::vector<DepthEstimate> estimates_at(const Place& place, std::span<const DepthEstimate> all) {
   std::vector<DepthEstimate> here;
   for (const DepthEstimate& estimate : all) {
-    if (judge::site_at(estimate.lateral) == site) here.push_back(estimate);
+    if (distance(estimate.place, place) <= kSamePlace) here.push_back(estimate);
   }
   return here;
 }
@@ -51,14 +52,14 @@ Json depth_json(const DepthEstimate& estimate, depth::EstimatorKind kind) {
 
 /// The strokes of a site follow each other as its taps do; presses come behind them.
 Json taps_json(const RunResult& result, depth::EstimatorKind kind) {
-  const std::array<std::vector<DepthEstimate>, 2> strokes{
-      estimates_at(judge::Site::A, result.depths), estimates_at(judge::Site::B, result.depths)};
   Json taps = Json::array();
   for (const judge::TapMetrics& tap : result.metrics.taps) {
-    const auto& here = strokes[static_cast<std::size_t>(tap.site)];
+    const std::vector<DepthEstimate> here = estimates_at(tap.place, result.depths);
     const auto index = static_cast<std::size_t>(tap.index - 1);
     Json json;
-    json["site"] = to_string(tap.site);
+    json["site"] = place_text(tap.place);
+    json["x_mm"] = tap.place.x * 1e3;
+    json["y_mm"] = tap.place.y * 1e3;
     json["index"] = tap.index;
     const bool known = index < here.size();
     json["indentation_max_mm"] = known ? number(here[index].indentation_max * 1e3) : Json(nullptr);
@@ -104,7 +105,7 @@ std::string measured(double value, int decimals, const char* unit) {
 
 std::string tap_text(const judge::TapMetrics& tap) {
   std::string text;
-  append(text, "tap %s%-2d    ", to_string(tap.site), tap.index);
+  append(text, "tap %s%-2d    ", place_text(tap.place).c_str(), tap.index);
   if (!std::isfinite(tap.stiffness_felt)) return text + "no contact\n";
   append(text,
          "felt %6.1f N/m, true %6.1f N/m (%s), hand to %.2f mm\n",
@@ -136,8 +137,9 @@ std::string run_report(const Scenario& scenario,
   json["records"] = result.records;
   json.update(metrics_json(result.metrics));
   json["taps"] = taps_json(result, scenario.estimator.kind);
-  json["depth"] = depth_json(judge::summarise_depths(estimates_at(judge::Site::B, result.depths)),
-                             scenario.estimator.kind);
+  json["depth"] =
+      depth_json(judge::summarise_depths(estimates_at(scenario.phantom.axis, result.depths)),
+                 scenario.estimator.kind);
   // A file's name need not be UTF-8.
   return json.dump(2) + "\n";
 }
@@ -157,7 +159,7 @@ std::string run_summary(const Scenario& scenario,
   for (const DepthEstimate& estimate : result.depths) {
     append(text,
            "stroke %s    h %.4f N, %s",
-           to_string(judge::site_at(estimate.lateral)),
+           place_text(estimate.place).c_str(),
            estimate.hash,
            std::string{to_string(estimate.verdict)}.c_str());
     if (estimate.verdict == DepthVerdict::Found) append(text, " at %.1f mm", estimate.depth * 1e3);
@@ -186,13 +188,14 @@ std::string run_summary(const Scenario& scenario,
 std::string trace_csv(const RunResult& result) {
   std::string text =
       "t_s,site,phase,index,hand_mm,tip_mm,force_felt_n,force_true_n,contact_force_n,energy_mj,"
-      "counted,hand_speed_m_per_s,surface_mm\n";
+      "counted,hand_speed_m_per_s,surface_mm,x_mm,y_mm\n";
+  constexpr std::array kSites{"A", "B", ""};
   constexpr std::array kKinds{"other", "air", "tap", "press", "lift"};
   for (const judge::RunTick& tick : result.ticks) {
     append(text,
-           "%.4f,%s,%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%.9g,%.9g\n",
+           "%.4f,%s,%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%.9g,%.9g,%.9g,%.9g\n",
            tick.at,
-           to_string(tick.phase.site),
+           kSites[static_cast<std::size_t>(tick.phase.site)],
            kKinds[static_cast<std::size_t>(tick.phase.kind)],
            tick.phase.index,
            tick.hand * 1e3,
@@ -203,7 +206,9 @@ std::string trace_csv(const RunResult& result) {
            tick.energy_operator * 1e3,
            tick.counted ? 1 : 0,
            tick.hand_velocity,
-           tick.surface * 1e3);
+           tick.surface * 1e3,
+           tick.tip_place.x * 1e3,
+           tick.tip_place.y * 1e3);
   }
   return text;
 }

@@ -1,7 +1,5 @@
 #include "lab/run/phase_finder.h"
 
-#include <array>
-
 namespace palp::lab {
 namespace {
 
@@ -23,20 +21,20 @@ judge::PhaseKind kind_of(surgeon::StretchKind kind) {
 }  // namespace
 
 PhaseFinder::PhaseFinder(const surgeon::GestureScript& script) {
-  std::array<int, 2> taps{};
-  std::array<int, 2> presses{};
-  double lateral = script.at(Duration{0}).lateral;  // [m]
+  int taps = 0;
+  int presses = 0;
+  Place place = script.at(Duration{0}).place;
   for (const surgeon::Stretch& stretch : script.stretches()) {
     Entry entry{stretch.began_at, stretch.began_at + stretch.duration, {}};
     entry.tag.kind = kind_of(stretch.kind);
-    entry.tag.site = judge::site_at(stretch.lateral);
+    entry.tag.site = site_at(stretch.place);
+    entry.tag.place = stretch.place;
     entry.tag.duration = seconds(stretch.duration);
-    const auto site = static_cast<std::size_t>(entry.tag.site);
     // Each visit begins with a first tap: the law has seen another place meanwhile.
-    if (stretch.lateral != lateral) taps[site] = presses[site] = 0;
-    lateral = stretch.lateral;
-    if (entry.tag.kind == judge::PhaseKind::Tap) entry.tag.index = ++taps[site];
-    if (entry.tag.kind == judge::PhaseKind::PressHold) entry.tag.index = ++presses[site];
+    if (stretch.place != place) taps = presses = 0;
+    place = stretch.place;
+    if (entry.tag.kind == judge::PhaseKind::Tap) entry.tag.index = ++taps;
+    if (entry.tag.kind == judge::PhaseKind::PressHold) entry.tag.index = ++presses;
     entries_.push_back(entry);
   }
 }

@@ -94,6 +94,7 @@ class Probe {
         hand_{hand},
         tissue_{tissue},
         phases_{scenario.script},
+        field_{patient::make_field(scenario.phantom, scenario.tissue.viscous_factor)},
         relaxing_{scenario.phantom.relaxation} {}
 
   /// `at`: since the start of the run [s].
@@ -120,8 +121,8 @@ class Probe {
     net_min_ = std::min(net_min_, net);
     // What the hand itself would have felt, had it pressed the tissue.
     const double depth = hand.position - status.offset - tissue.surface;
-    const double force_true = relaxing_.step(scenario_.phantom.at(status.lateral).force(depth),
-                                             seconds(scenario_.link.period));
+    const double force_true =
+        relaxing_.step(field_->elastic_force(status.place, depth), seconds(scenario_.link.period));
     if (!hand.performing || !site.alive()) return;
 
     judge::RunTick tick;
@@ -136,7 +137,7 @@ class Probe {
     tick.contact_force = tissue.contact_force;
     tick.tip = tissue.position - tissue.surface;
     tick.tip_velocity = tissue.velocity;
-    tick.tip_lateral = tissue.lateral;
+    tick.tip_place = tissue.place;
     tick.energy_operator = hand.work;
     tick.energy_operator_min = work_min_;
     tick.energy_net_min = net_min_;
@@ -161,6 +162,7 @@ class Probe {
   const surgeon::SimulatedHand& hand_;
   const patient::SimulatedPhantom& tissue_;
   PhaseFinder phases_;
+  std::unique_ptr<patient::TissueField> field_;
   patient::RelaxingForce relaxing_;
   double work_min_{};          ///< [J]
   double net_min_{};           ///< [J]

@@ -81,10 +81,10 @@ void SurgeonProcess::kill(TimePoint now) {
   parts_.reset();
   session_setup_.kill(now);
   const double offset = status_.offset;
-  const double lateral = status_.lateral;
+  const Place place = status_.place;
   status_ = {};
   status_.offset = offset;
-  status_.lateral = lateral;
+  status_.place = place;
 }
 
 void SurgeonProcess::tick(TimePoint now) {
@@ -92,6 +92,7 @@ void SurgeonProcess::tick(TimePoint now) {
     // A device that nobody writes to any more lets go by itself.
     (void)hand_.read(now);
     hand_.apply(0);
+    hand_.hold_in_plane(false);
     hand_.show({});
     session_setup_.lose(now);
     return;

@@ -34,6 +34,7 @@ class HandAtClock final : public surgeon::HapticDevice {
 
   surgeon::HandState read(TimePoint now) noexcept override;
   void apply(double force) noexcept override { hand_.apply(force); }
+  void hold_in_plane(bool held) noexcept override { hand_.hold_in_plane(held); }
   void show(const surgeon::OperatorView& view) noexcept override { hand_.show(view); }
   [[nodiscard]] surgeon::ScriptProgress progress() const noexcept override {
     return hand_.progress();
@@ -61,6 +62,7 @@ class PhantomAtClock final : public patient::Stage, public patient::ForceSensor 
   patient::StageState read(TimePoint now) noexcept override;
   void move_to(const patient::StageTarget& target) noexcept override;
   void halt() noexcept override { phantom_.halt(); }
+  [[nodiscard]] bool can_drag() const noexcept override { return phantom_.can_drag(); }
   std::optional<patient::ForceSample> sample(TimePoint now) noexcept override;
 
  private:

@@ -92,7 +92,7 @@ void records(int rounds) {
        {"arrived with a model", arrived},
        {"link status", status},
        {"note", Note{.at = {}, .code = 33, .detail = 1.5}},
-       {"contact", ContactSample{.at = {}, .position = 1e-3, .force = 0.2, .lateral = 0.01}},
+       {"contact", ContactSample{.at = {}, .position = 1e-3, .force = 0.2, .place = {}}},
        {"depth estimate", estimate}}};
   SessionEncoder encoder{link::Role::Patient};
   std::vector<std::byte> room(1024);

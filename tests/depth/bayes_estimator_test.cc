@@ -26,7 +26,7 @@ std::vector<DepthEstimate> estimates_over(const char* spec, const SimulatedPhant
   std::vector<DepthEstimate> out;
   palpate(*phantom, sensor, kTaps, [&](const ContactSample& sample) {
     const auto estimate = estimator.add(sample);
-    if (estimate && sample.lateral > 0) out.push_back(*estimate);
+    if (estimate && sample.place == kSiteB) out.push_back(*estimate);
   });
   return out;
 }

@@ -35,7 +35,7 @@ void expect_same_stroke(const DepthEstimate& a, const DepthEstimate& b) {
   EXPECT_EQ(a.number, b.number);
   EXPECT_EQ(a.stroke_began_at, b.stroke_began_at);
   EXPECT_EQ(a.stroke_ended_at, b.stroke_ended_at);
-  EXPECT_EQ(a.lateral, b.lateral);
+  EXPECT_EQ(a.place, b.place);
   EXPECT_EQ(a.indentation_max, b.indentation_max);
   EXPECT_EQ(a.force_max, b.force_max);
   EXPECT_EQ(a.surface, b.surface);

@@ -53,7 +53,7 @@ TEST(StrokeTrackerTest, TellsTheDepthsApartWithTheRealSensor) {
     const auto strokes = strokes_of(*phantom, {}, {.indentation = 3.8e-3});
     ASSERT_EQ(strokes.size(), 8U);
     EXPECT_NEAR(median_hash(strokes), expected, c.tolerance * expected) << c.phantom;
-    EXPECT_NEAR(strokes.back().place.surface, 0, 0.1e-3);
+    EXPECT_NEAR(strokes.back().known.surface, 0, 0.1e-3);
     EXPECT_NEAR(strokes.back().indentation_max, 3.8e-3, 0.3e-3);
   }
 }
@@ -124,7 +124,7 @@ TEST(StrokeTrackerTest, AStrokeThatGoesBackAndPressesOnIsNotMonotone) {
     const auto stroke = tracker.take({.at = now,
                                       .position = co_filter.step(stage.position),
                                       .force = site.sample(now)->force,
-                                      .lateral = 0});
+                                      .place = {}});
     if (stroke) strokes.push_back(*stroke);
     // To 3 mm, back to 2 mm, on to 4 mm, out.
     const double t = i * 1e-3;
@@ -132,7 +132,7 @@ TEST(StrokeTrackerTest, AStrokeThatGoesBackAndPressesOnIsNotMonotone) {
                           : t < 0.8 ? 3e-3 - 5e-3 * (t - 0.6)
                           : t < 1.2 ? 2e-3 + 5e-3 * (t - 0.8)
                                     : 4e-3 - 10e-3 * (t - 1.2);
-    site.move_to({std::max(-3e-3, target), 0});
+    site.move_to({std::max(-3e-3, target), {}});
   }
   ASSERT_EQ(strokes.size(), 2U);
   EXPECT_EQ(strokes[1].reason, DepthReason::StrokeNotMonotone);
@@ -155,7 +155,7 @@ TEST(StrokeTrackerTest, OtherTissueAtTheSamePlaceStartsAfresh) {
   for (const Phantom* phantom : {&*soft, &*hard}) {
     SimulatedPhantomConfig config = ideal_sensor();
     config.start_position = -3e-3;
-    config.start_lateral = 10e-3;
+    config.start_place = kSiteB;
     SimulatedPhantom site{*phantom, config};
     LowPass co_filter{20, 1e-3};
     co_filter.reset(-3e-3);
@@ -163,11 +163,11 @@ TEST(StrokeTrackerTest, OtherTissueAtTheSamePlaceStartsAfresh) {
       now += std::chrono::milliseconds{1};
       const StageState stage = site.read(now);
       if (const auto stroke = tracker.take(
-              {now, co_filter.step(stage.position), site.sample(now)->force, stage.lateral})) {
+              {now, co_filter.step(stage.position), site.sample(now)->force, stage.place})) {
         hashes.push_back(stroke->hash);
       }
       const double t = std::min((i % 1500) * 1e-3, 1.0);
-      site.move_to({-3e-3 + 3.4e-3 * (1 - std::cos(2 * std::numbers::pi * t)), 10e-3});
+      site.move_to({-3e-3 + 3.4e-3 * (1 - std::cos(2 * std::numbers::pi * t)), kSiteB});
     }
   }
   ASSERT_EQ(hashes.size(), 4U);
@@ -180,7 +180,7 @@ TEST(StrokeTrackerTest, AHoldOnTheWayInIsStillOneStroke) {
   ASSERT_TRUE(phantom);
   SimulatedPhantomConfig config = ideal_sensor();
   config.start_position = -3e-3;
-  config.start_lateral = 10e-3;
+  config.start_place = kSiteB;
   SimulatedPhantom site{*phantom, config};
   depth::StrokeTracker tracker{{}};
   LowPass co_filter{20, 1e-3};
@@ -191,14 +191,14 @@ TEST(StrokeTrackerTest, AHoldOnTheWayInIsStillOneStroke) {
     now += std::chrono::milliseconds{1};
     const StageState stage = site.read(now);
     if (const auto stroke = tracker.take(
-            {now, co_filter.step(stage.position), site.sample(now)->force, stage.lateral})) {
+            {now, co_filter.step(stage.position), site.sample(now)->force, stage.place})) {
       strokes.push_back(*stroke);
     }
     const double t = i * 1e-3;
     const double target = t < 2.5   ? std::min(-3e-3 + 10e-3 * t, 2e-3)
                           : t < 4.5 ? std::min(2e-3 + 8e-3 * (t - 2.5), 4e-3)
                                     : 4e-3 - 15e-3 * (t - 4.5);
-    site.move_to({target, 10e-3});
+    site.move_to({target, kSiteB});
   }
   ASSERT_EQ(strokes.size(), 1U);
   const double expected = hash_of(phantom->over);
@@ -231,7 +231,7 @@ std::vector<depth::Touch> touches_of(const Tapping& tapping, std::size_t cut) {
     ++answers;
     if (sample.at < second) return;
     ASSERT_EQ(stroke->reason, DepthReason::Ok);
-    touches.assign(stroke->place.touches.begin(), stroke->place.touches.end());
+    touches.assign(stroke->known.touches.begin(), stroke->known.touches.end());
   });
   return touches;
 }
@@ -277,8 +277,8 @@ TEST(StrokeTrackerTest, KeepsTheLastTouchesAlone) {
   feel_taps(*phantom, ideal_sensor(), tapping, {}, [&](const ContactSample& sample) {
     const auto stroke = tracker.take(sample);
     if (!stroke) return;
-    EXPECT_EQ(stroke->place.touched, ++strokes);
-    EXPECT_EQ(stroke->place.touches.size(), std::min<std::size_t>(strokes, depth::kTouchesKept));
+    EXPECT_EQ(stroke->known.touched, ++strokes);
+    EXPECT_EQ(stroke->known.touches.size(), std::min<std::size_t>(strokes, depth::kTouchesKept));
   });
   EXPECT_EQ(strokes, 40U);
 }
@@ -289,21 +289,21 @@ TEST(StrokeTrackerTest, IndexesPlacesAndTheTissueUnderThem) {
   depth::StrokeTracker tracker{{}};
   std::vector<depth::Stroke> strokes;
   TimePoint now{};
-  for (const double lateral : {0.0, 20e-3, 0.4e-3}) {
+  for (const double x : {0.0, 20e-3, 0.4e-3}) {
     Tapping tapping = kTwice;
-    tapping.lateral = lateral;
+    tapping.place = {.x = x, .y = 0};
     now = feel_taps(*phantom, ideal_sensor(), tapping, now, [&](const ContactSample& sample) {
       if (const auto stroke = tracker.take(sample)) strokes.push_back(*stroke);
     });
   }
   ASSERT_EQ(strokes.size(), 6U);
-  EXPECT_EQ(strokes[0].place.index, strokes[4].place.index);
-  EXPECT_EQ(strokes[0].place.generation, strokes[4].place.generation);
-  EXPECT_EQ(strokes[4].place.touched, 3U);
-  EXPECT_EQ(strokes[4].place.lateral, 0) << "a place stays where it was first touched";
-  EXPECT_NE(strokes[0].place.index, strokes[2].place.index);
-  EXPECT_NE(strokes[0].place.generation, strokes[2].place.generation);
-  EXPECT_EQ(strokes[2].place.touched, 1U);
+  EXPECT_EQ(strokes[0].known.index, strokes[4].known.index);
+  EXPECT_EQ(strokes[0].known.generation, strokes[4].known.generation);
+  EXPECT_EQ(strokes[4].known.touched, 3U);
+  EXPECT_EQ(strokes[4].known.place, kSiteA) << "a place stays where it was first touched";
+  EXPECT_NE(strokes[0].known.index, strokes[2].known.index);
+  EXPECT_NE(strokes[0].known.generation, strokes[2].known.generation);
+  EXPECT_EQ(strokes[2].known.touched, 1U);
 }
 
 TEST(StrokeTrackerTest, TheOldestOfManyPlacesGivesWay) {
@@ -315,16 +315,16 @@ TEST(StrokeTrackerTest, TheOldestOfManyPlacesGivesWay) {
   TimePoint now{};
   for (std::size_t i = 0; i < depth::kPlacesMax + 2; ++i) {
     // The first place is touched again before there is one too many.
-    tapping.lateral = i == depth::kPlacesMax ? 0 : static_cast<double>(i) * 5e-3;
+    tapping.place.x = i == depth::kPlacesMax ? 0 : static_cast<double>(i) * 5e-3;
     now = feel_taps(*phantom, ideal_sensor(), tapping, now, [&](const ContactSample& sample) {
       if (const auto stroke = tracker.take(sample)) strokes.push_back(*stroke);
     });
   }
   ASSERT_EQ(strokes.size(), depth::kPlacesMax + 2);
-  EXPECT_EQ(strokes[depth::kPlacesMax].place.touched, 2U);
-  EXPECT_EQ(strokes.back().place.index, strokes[1].place.index);
-  EXPECT_EQ(strokes.back().place.touched, 1U);
-  EXPECT_GT(strokes.back().place.generation, strokes[depth::kPlacesMax - 1].place.generation);
+  EXPECT_EQ(strokes[depth::kPlacesMax].known.touched, 2U);
+  EXPECT_EQ(strokes.back().known.index, strokes[1].known.index);
+  EXPECT_EQ(strokes.back().known.touched, 1U);
+  EXPECT_GT(strokes.back().known.generation, strokes[depth::kPlacesMax - 1].known.generation);
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ struct Tapping {
   double clearance{3e-3};    ///< [m], where a tap begins
   double tap_time{1.0};      ///< [s], raised cosine
   double rest_time{0.5};     ///< [s], after each tap
-  double lateral{10e-3};     ///< [m], site B
-  int hesitant{0};           ///< so many taps, the first ones, go back near their end, and on
+  Place place{kSiteB};
+  int hesitant{0};  ///< so many taps, the first ones, go back near their end, and on
 };
 
 /// Where the tip is wanted, from the undeformed surface; `t`: share of the tap's time.
@@ -45,7 +45,7 @@ TimePoint feel_taps(const Phantom& phantom,
                     TimePoint now,
                     const Feel& feel) {
   config.start_position = config.surface_offset - tapping.clearance;
-  config.start_lateral = tapping.lateral;
+  config.start_place = tapping.place;
   SimulatedPhantom site{phantom, config};
   LowPass co_filter{20, 1e-3};
   co_filter.reset(config.start_position);
@@ -57,10 +57,10 @@ TimePoint feel_taps(const Phantom& phantom,
     feel(ContactSample{.at = now,
                        .position = co_filter.step(stage.position),
                        .force = force->force,
-                       .lateral = stage.lateral});
+                       .place = stage.place});
     const double t = std::min((i % per_tap) * 1e-3, tapping.tap_time) / tapping.tap_time;
     const bool hesitant = i / per_tap < tapping.hesitant;
-    site.move_to({config.surface_offset + tapped_position(tapping, hesitant, t), tapping.lateral});
+    site.move_to({config.surface_offset + tapped_position(tapping, hesitant, t), tapping.place});
   }
   return now;
 }
@@ -96,7 +96,7 @@ inline std::vector<depth::Stroke> strokes_of(const Phantom& phantom,
   feel_taps(phantom, config, tapping, {}, [&](const ContactSample& sample) {
     auto stroke = tracker.take(sample);
     if (!stroke) return;
-    stroke->place.touches = {};
+    stroke->known.touches = {};
     strokes.push_back(*stroke);
   });
   return strokes;
@@ -125,11 +125,11 @@ void palpate(const Phantom& phantom,
              Tapping tapping,
              const Feel& feel) {
   TimePoint now{};
-  for (const double lateral : {0.0, 20e-3}) {
-    SimulatedPhantomConfig place = sensor;
-    place.seed += static_cast<std::uint64_t>(lateral * 1e3);
-    tapping.lateral = lateral;
-    now = feel_taps(phantom, place, tapping, now, feel);
+  for (const Place& place : {kSiteA, kSiteB}) {
+    SimulatedPhantomConfig config = sensor;
+    config.seed += static_cast<std::uint64_t>(place.x * 1e3);
+    tapping.place = place;
+    now = feel_taps(phantom, config, tapping, now, feel);
   }
 }
 

@@ -55,7 +55,8 @@ void limit_laws(const WireTelegram& telegram) {
              "samples keep the limits of the wire");
   PALP_CHECK(within(depth.hash, 1e5) && within(depth.depth, 10) && within(depth.depth_stddev, 10) &&
                  within(depth.depth_low, 10) && within(depth.depth_high, 10) &&
-                 within(telegram.telegram.site.lateral, 10),
+                 within(telegram.telegram.site.place.x, 10) &&
+                 within(telegram.telegram.site.place.y, 10),
              "reports keep the limits of the wire");
   PALP_CHECK(static_cast<int>(telegram.telegram.site.state) < kSiteStateCount &&
                  static_cast<int>(depth.verdict) < kDepthVerdictCount &&

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/core/check.h"
+#include "patient_site/tissue_field.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace palp::patient {
@@ -42,6 +43,23 @@ void table_laws(const ForceTable& table) {
   }
 }
 
+/// A tissue has a force everywhere, and at its places that of its curves.
+void survey_laws(const std::vector<PlacedCurve>& curves) {
+  for (const PlacedCurve& curve : curves) table_laws(curve.table);
+  if (curves.size() < 2) return;
+  const SurveyField field{curves, 0};
+  for (const PlacedCurve& curve : curves) {
+    const double depth = curve.table.depth_max() / 2;
+    const double there = curve.table.force(depth);
+    PALP_CHECK(std::abs(field.elastic_force(curve.place, depth) - there) <= 1e-9 * (1 + there),
+               "a survey is its curves at their places");
+    const Place beside{curve.place.x + 3e-4, curve.place.y - 7e-4};
+    const double force = field.elastic_force(beside, depth);
+    PALP_CHECK(std::isfinite(force) && force >= 0, "and has a force between them");
+    PALP_CHECK(std::isfinite(field.stiffness(beside, depth)), "and a stiffness");
+  }
+}
+
 }  // namespace
 }  // namespace palp::patient
 
@@ -51,6 +69,13 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     palp::patient::table_laws(*table);
   } else {
     PALP_CHECK(table.error().text.starts_with("fuzz: "), "a refusal says of what and why");
+  }
+  const auto curves =
+      palp::patient::parse_tissue_curves(palp::fuzz::as_text(data, size), "fuzz", palp::kSiteB);
+  if (curves) {
+    palp::patient::survey_laws(*curves);
+  } else {
+    PALP_CHECK(curves.error().text.starts_with("fuzz: "), "a refusal says of what and why");
   }
   return 0;
 }

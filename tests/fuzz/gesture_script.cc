@@ -11,7 +11,7 @@ namespace {
 constexpr double kHandStiffness = 300;  // [N/m]
 constexpr double kPlaceMin = -60e-3;    // [m], as the reader allows
 constexpr double kPlaceMax = 40e-3;     // [m], aimed at for 20 mm of plain tissue
-constexpr double kLateralMax = 200e-3;  // [m]
+constexpr double kReachMax = 200e-3;    // [m]
 constexpr double kRounding = 1e-9;      // [m]
 constexpr double kStepMax = 1e-6;       // [m] in a nanosecond: a jump
 constexpr Duration kNanosecond{1};
@@ -24,7 +24,9 @@ bool between(double value, double low, double high) {
 Intent sound_intent(const GestureScript& script, Duration at) {
   const Intent intent = script.at(at);
   PALP_CHECK(between(intent.position, kPlaceMin, kPlaceMax), "the hand stays in reach");
-  PALP_CHECK(between(intent.lateral, -kLateralMax, kLateralMax), "the hand stays in reach");
+  PALP_CHECK(between(intent.place.x, -kReachMax, kReachMax) &&
+                 between(intent.place.y, -kReachMax, kReachMax),
+             "the hand stays in reach");
   PALP_CHECK(std::isfinite(intent.velocity), "the hand has a speed");
   const std::uint32_t phase = script.phase_at(at);
   PALP_CHECK(phase >= 1 && phase <= script.phases().size(), "each instant has its phase");

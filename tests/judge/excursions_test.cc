@@ -14,7 +14,7 @@ std::vector<Motion> hand_motion(int taps_per_place) {
   std::vector<Motion> motion;
   for (std::int64_t ms = 0; ms < 2000 * taps_per_place; ++ms) {
     const auto tick = test::hand_tick(ms, taps_per_place);
-    motion.push_back({tick.at, tick.position, tick.velocity, tick.force, tick.lateral});
+    motion.push_back({tick.at, tick.position, tick.velocity, tick.force, tick.place});
   }
   return motion;
 }
@@ -23,8 +23,8 @@ TEST(ExcursionsTest, FindsEachTapOnceAndEndsItsLoadingAtTheDeepestTick) {
   const auto motion = hand_motion(2);
   const auto excursions = find_excursions(motion, kSurface);
   ASSERT_EQ(excursions.size(), 4u);
-  EXPECT_EQ(excursions[1].site, Site::A);
-  EXPECT_EQ(excursions[2].site, Site::B);
+  EXPECT_EQ(excursions[1].place, kSiteA);
+  EXPECT_EQ(excursions[2].place, kSiteB);
   for (std::size_t k = 0; k < 4; ++k) {
     EXPECT_EQ(excursions[k].loading.back().at,
               test::at_ms(static_cast<std::int64_t>(k) * 1000 + 400));

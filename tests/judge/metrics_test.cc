@@ -30,7 +30,7 @@ struct Builder {
     for (int k = 0; k < count; ++k) {
       const double t = k * 1e-3;
       RunTick tick;
-      tick.phase = {kind, site, index, t, duration};
+      tick.phase = {kind, site, site == Site::A ? kSiteA : kSiteB, index, t, duration};
       tick.counted = true;
       tick.hand = hand(t);
       tick.hand_velocity = (hand(t + 1e-3) - hand(t)) / 1e-3;

@@ -29,7 +29,7 @@ struct Bench {
     const auto phantom = make_phantom("paper-10mm");
     SimulatedPhantomConfig config = ideal_sensor();
     config.start_position = -3e-3;
-    config.start_lateral = 10e-3;
+    config.start_place = kSiteB;
     SimulatedPhantom site{*phantom, config};
     LowPass co_filter{20, 1e-3};
     co_filter.reset(-3e-3);
@@ -38,9 +38,9 @@ struct Bench {
       now += std::chrono::milliseconds{1};
       const StageState stage = site.read(now);
       contact.try_enqueue(
-          {now, co_filter.step(stage.position), site.sample(now)->force, stage.lateral});
+          {now, co_filter.step(stage.position), site.sample(now)->force, stage.place});
       const double t = std::min(i * 1e-3, 1.0);
-      site.move_to({-3e-3 + 3.5e-3 * (1 - std::cos(2 * std::numbers::pi * t)), 10e-3});
+      site.move_to({-3e-3 + 3.5e-3 * (1 - std::cos(2 * std::numbers::pi * t)), kSiteB});
     }
   }
 };

@@ -122,8 +122,46 @@ TEST(ForceTableTest, SaysWhereAFileIsWrong) {
   EXPECT_EQ(sentence(head + "2,0.2\n3,0.3\n"), "");
 }
 
+std::string placed_sentence(const std::string& text) {
+  const auto curves = parse_tissue_curves(text, "t.csv", kSiteB);
+  return curves ? std::string{} : curves.error().text;
+}
+
+TEST(ForceTableTest, CurvesWithoutPlacesAreOneWhereTheCallerSays) {
+  const auto curves = parse_tissue_curves("d_mm,F_N\n0,0\n1,0.1\n2,0.2\n3,0.3\n", "t", kSiteB);
+  ASSERT_TRUE(curves) << curves.error().text;
+  ASSERT_EQ(curves->size(), 1U);
+  EXPECT_EQ(curves->front().place, kSiteB);
+}
+
+TEST(ForceTableTest, AColumnOfPlacesThatIsAbsentIsZero) {
+  const auto curves =
+      parse_tissue_curves("d_mm,x_mm,F_N\n0,3,0\n1,3,0.1\n2,3,0.2\n3,3,0.3\n", "t", kSiteB);
+  ASSERT_TRUE(curves) << curves.error().text;
+  EXPECT_EQ(curves->front().place, (Place{3e-3, 0}));
+}
+
+TEST(ForceTableTest, SaysWhichPlaceIsWrong) {
+  const std::string one = "x_mm,y_mm,d_mm,F_N\n1,2,0,0\n1,2,1,0.1\n1,2,2,0.2\n1,2,3,0.3\n";
+  const std::string two = "5,2,0,0\n5,2,1,0.1\n5,2,2,0.2\n5,2,3,0.3\n";
+  EXPECT_EQ(placed_sentence(one + two), "");
+  EXPECT_THAT(placed_sentence(one + two + "1,2,4,1\n"),
+              HasSubstr("t.csv: line 10: place 1,2 mm comes again"));
+  EXPECT_THAT(placed_sentence(one + "1.9,2,0,0\n"), HasSubstr("within 1 mm of 1,2"));
+  EXPECT_THAT(placed_sentence(one + "5,2,0,0\n"), HasSubstr("place 5,2 mm: there are 1 rows"));
+  EXPECT_THAT(placed_sentence(one + "250.5,2,0,0\n"), HasSubstr("x_mm = 250.5 lies beyond 250"));
+  EXPECT_THAT(placed_sentence(one + "5,-251,0,0\n"), HasSubstr("y_mm = -251 lies beyond 250"));
+  EXPECT_THAT(placed_sentence(one + "5,,0,0\n"),
+              HasSubstr("column 2 (y_mm): the value is missing"));
+  std::string many = "x_mm,y_mm,d_mm,F_N\n";
+  for (int i = 0; i < 65; ++i) {
+    for (int d = 0; d < 4; ++d) many += std::to_string(2 * i) + ",0," + std::to_string(d) + ",1\n";
+  }
+  EXPECT_THAT(placed_sentence(many), HasSubstr("more than 64 places"));
+}
+
 TEST(ForceTableTest, ANamedFileThatIsNotThereIsOneSentence) {
-  const auto table = load_force_table("no/such/file.csv");
+  const auto table = load_tissue_curves("no/such/file.csv", {});
   ASSERT_FALSE(table);
   EXPECT_EQ(table.error().text, "no/such/file.csv: the file cannot be opened");
 }

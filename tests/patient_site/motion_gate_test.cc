@@ -14,12 +14,12 @@ constexpr Duration kTick = std::chrono::milliseconds{1};
 
 MotionGate gate_at(double tip, const MotionGateConfig& config = {}) {
   MotionGate gate{config};
-  gate.begin(tip, 0);
+  gate.begin(tip, {}, true);
   return gate;
 }
 
 MotionRequest engaged(double position, double tip = 0, double force = 0) {
-  return {SiteState::Engaged, position, 0, tip, force};
+  return {SiteState::Engaged, position, {}, tip, force};
 }
 
 /// Felt for long enough to be believed.
@@ -62,7 +62,7 @@ TEST(MotionGateTest, ALateTickBuysNoBiggerStep) {
     const auto step_after = [&](Duration dt) {
       MotionGate gate = gate_at(0);
       touch(gate, 0, 0.2);
-      const MotionRequest request{state, 40e-3, 0, 0, 0};
+      const MotionRequest request{state, 40e-3, {}, 0, 0};
       return std::abs(gate.pass(request, dt).position);
     };
     EXPECT_GT(step_after(10 * kTick), 0);
@@ -151,7 +151,7 @@ TEST(MotionGateTest, RetreatsInEveryStateButStopped) {
   for (const SiteState state :
        {SiteState::Clutched, SiteState::Hold, SiteState::Retract, SiteState::Parked}) {
     MotionGate gate = gate_at(5e-3);
-    EXPECT_LT(gate.pass({state, 9e-3, 0, 5e-3, 3.5}, kTick).position, 5e-3);
+    EXPECT_LT(gate.pass({state, 9e-3, {}, 5e-3, 3.5}, kTick).position, 5e-3);
   }
 }
 
@@ -168,13 +168,13 @@ TEST(MotionGateTest, HoldsOnWhatIsNoNumber) {
 TEST(MotionGateTest, OnlyEngagedFollows) {
   for (const SiteState state : {SiteState::Parked, SiteState::Clutched, SiteState::Hold}) {
     MotionGate gate = gate_at(1e-3);
-    const MotionAnswer answer = gate.pass({state, 5e-3, 10e-3, 1e-3, 0}, kTick);
+    const MotionAnswer answer = gate.pass({state, 5e-3, {10e-3, 0}, 1e-3, 0}, kTick);
     EXPECT_EQ(answer.position, 1e-3) << to_string(state);
-    EXPECT_EQ(answer.lateral, 0);
+    EXPECT_EQ(answer.place, kSiteA);
     EXPECT_FALSE(answer.halt);
   }
   MotionGate gate = gate_at(1e-3);
-  EXPECT_TRUE(gate.pass({SiteState::Stopped, 5e-3, 0, 2e-3, 0}, kTick).halt);
+  EXPECT_TRUE(gate.pass({SiteState::Stopped, 5e-3, {}, 2e-3, 0}, kTick).halt);
 }
 
 TEST(MotionGateTest, RetractsSlowlyToTwoMillimetreClear) {
@@ -183,7 +183,7 @@ TEST(MotionGateTest, RetractsSlowlyToTwoMillimetreClear) {
   EXPECT_FALSE(gate.retracted(3e-3));
   double before = gate.command();
   for (int i = 0; i < 2000; ++i) {
-    const double position = gate.pass({SiteState::Retract, 9e-3, 0, before, 0.2}, kTick).position;
+    const double position = gate.pass({SiteState::Retract, 9e-3, {}, before, 0.2}, kTick).position;
     EXPECT_LE(position, before);
     EXPECT_LE(before - position, 5e-6 + 1e-12);
     before = position;
@@ -195,7 +195,7 @@ TEST(MotionGateTest, RetractsSlowlyToTwoMillimetreClear) {
 TEST(MotionGateTest, ATipThatNeverTouchedIsClearAlready) {
   MotionGate gate = gate_at(-10e-3);
   EXPECT_TRUE(gate.retracted(-10e-3));
-  EXPECT_EQ(gate.pass({SiteState::Retract, 0, 0, -10e-3, 0}, kTick).position, -10e-3);
+  EXPECT_EQ(gate.pass({SiteState::Retract, 0, {}, -10e-3, 0}, kTick).position, -10e-3);
 }
 
 TEST(MotionGateTest, CatchesUpSlowlyAfterAGap) {
@@ -219,14 +219,101 @@ TEST(MotionGateTest, CatchesUpSlowlyAfterAGap) {
   EXPECT_GT(fastest, 100e-6) << "caught up, the speed of the air holds again";
 }
 
-TEST(MotionGateTest, ChangesThePlaceInTheAirOnly) {
+/// Asks for `place` until the stage would stand there, half a second at most.
+MotionAnswer go_to(MotionGate& gate, const Place& place, double tip, double force = 0) {
+  MotionAnswer answer;
+  for (int i = 0; i < 500; ++i) {
+    answer = gate.pass({SiteState::Engaged, tip, place, tip, force}, kTick);
+    if (answer.place == place) break;
+  }
+  return answer;
+}
+
+TEST(MotionGateTest, GoesToAnyPlaceOfItsTravelInTheAir) {
+  MotionGate gate = gate_at(-10e-3);
+  EXPECT_EQ(go_to(gate, {10e-3, -4e-3}, -10e-3).place, (Place{10e-3, -4e-3}));
+  EXPECT_EQ(gate.pass({SiteState::Engaged, -10e-3, {10e-3, -4e-3}, -10e-3, 0}, kTick).place_refused,
+            NoteCode::None);
+}
+
+TEST(MotionGateTest, KeepsItsPlaceWhileNotEngaged) {
+  MotionGate gate = gate_at(-10e-3);
+  for (const SiteState state : {SiteState::Hold, SiteState::Retract, SiteState::Stopped}) {
+    EXPECT_EQ(gate.pass({state, -10e-3, kSiteB, -10e-3, 0}, kTick).place, kSiteA);
+  }
+}
+
+TEST(MotionGateTest, APlaceThatIsNoNumberIsNotedOnceAndNotFollowed) {
+  MotionGate gate = gate_at(-10e-3);
+  const MotionRequest request{SiteState::Engaged, -10e-3, {std::nan(""), 0}, -10e-3, 0};
+  MotionAnswer answer = gate.pass(request, kTick);
+  EXPECT_EQ(answer.place, kSiteA);
+  EXPECT_EQ(answer.place_note, NoteCode::NotFinite);
+  answer = gate.pass(request, kTick);
+  EXPECT_EQ(answer.place_note, NoteCode::None);
+  EXPECT_EQ(answer.place_refused, NoteCode::NotFinite);
+}
+
+TEST(MotionGateTest, DragsSlowlyWhatIsPressed) {
+  MotionGate gate = gate_at(2e-3);
+  touch(gate, 2e-3, 0.3);
+  Place before = kSiteA;
+  for (int i = 0; i < 1200; ++i) {
+    const MotionAnswer answer = gate.pass({SiteState::Engaged, 2e-3, kSiteB, 2e-3, 0.3}, kTick);
+    ASSERT_LE(distance(answer.place, before), 20e-6 + 1e-12);
+    before = answer.place;
+  }
+  EXPECT_EQ(before, kSiteB);
+}
+
+TEST(MotionGateTest, AStageThatCannotDragKeepsItsPlaceAndSaysSo) {
+  MotionGate gate{{}};
+  gate.begin(2e-3, kSiteA, false);
+  touch(gate, 2e-3, 0.3);
+  const MotionAnswer first = gate.pass({SiteState::Engaged, 2e-3, kSiteB, 2e-3, 0.3}, kTick);
+  EXPECT_EQ(first.place, kSiteA);
+  EXPECT_EQ(first.place_note, NoteCode::DragRefused);
+  EXPECT_EQ(go_to(gate, kSiteB, 2e-3, 0.3).place, kSiteA);
+  let_go(gate, -5e-3);
+  const MotionAnswer out = go_to(gate, kSiteB, -5e-3);
+  EXPECT_EQ(out.place, kSiteB);
+  EXPECT_EQ(out.place_refused, NoteCode::None);
+}
+
+TEST(MotionGateTest, ADragKeepsTheSurfaceAndTheDepthAllowed) {
   MotionGate gate = gate_at(0);
-  touch(gate, 0, 0.2);
-  EXPECT_EQ(gate.pass({SiteState::Engaged, 0, 10e-3, 0, 0.2}, kTick).lateral, 0);
-  let_go(gate, -4e-3);
-  EXPECT_EQ(gate.pass({SiteState::Engaged, 0, 10e-3, -4e-3, 0}, kTick).lateral, 10e-3);
-  EXPECT_EQ(gate.pass({SiteState::Engaged, 0, 90e-3, -4e-3, 0}, kTick).lateral, 50e-3);
-  EXPECT_EQ(gate.pass({SiteState::Engaged, 0, std::nan(""), -4e-3, 0}, kTick).lateral, 50e-3);
+  touch(gate, 0, 0.1);
+  const double surface = *gate.surface();
+  for (int i = 0; i < 1500; ++i) {
+    // Softer tissue at the same depth: no reason to believe that the surface sank.
+    gate.feel(6e-3, 0.15);
+    const MotionAnswer answer = gate.pass({SiteState::Engaged, 50e-3, kSiteB, 6e-3, 0.15}, kTick);
+    ASSERT_LE(answer.position, surface + MotionGateConfig{}.depth_max);
+  }
+  EXPECT_EQ(gate.place(), kSiteB);
+  EXPECT_EQ(*gate.surface(), surface);
+}
+
+TEST(MotionGateTest, AfterAnyHaltThePlaneSetsOutFromRest) {
+  for (const SiteState state : {SiteState::Hold, SiteState::Engaged}) {
+    MotionGate gate = gate_at(-10e-3);
+    const MotionRequest on_its_way{SiteState::Engaged, -10e-3, kSiteB, -10e-3, 0};
+    for (int i = 0; i < 60; ++i) (void)gate.pass(on_its_way, kTick);
+    // Not followed in Hold, nor where a force is walked away from.
+    const Place stood = gate.pass({state, -10e-3, kSiteB, -10e-3, 3.5}, kTick).place;
+    const Place next = gate.pass(on_its_way, kTick).place;
+    EXPECT_LE(distance(next, stood), 8e-6 + 1e-12) << to_string(state);
+  }
+}
+
+TEST(MotionGateTest, ARetreatFromForceDoesNotDrag) {
+  MotionGate gate = gate_at(2e-3);
+  touch(gate, 2e-3, 3.5);
+  for (int i = 0; i < 100; ++i) {
+    const MotionAnswer answer =
+        gate.pass({SiteState::Engaged, 2e-3, kSiteB, gate.command(), 3.5}, kTick);
+    EXPECT_EQ(answer.place, kSiteA);
+  }
 }
 
 TEST(MotionGateTest, LearnsTheSurfaceAnewAtAnotherPlace) {
@@ -234,7 +321,7 @@ TEST(MotionGateTest, LearnsTheSurfaceAnewAtAnotherPlace) {
   touch(gate, 0, 0.1);
   const double first = *gate.surface();
   let_go(gate, -5e-3);
-  (void)gate.pass({SiteState::Engaged, -5e-3, 10e-3, -5e-3, 0}, kTick);
+  (void)go_to(gate, {10e-3, 0}, -5e-3);
   EXPECT_EQ(*gate.surface(), first) << "until something else is felt";
   touch(gate, 2e-3, 0.1);
   // The threshold follows the noise of the sensor, and with it the depth of the first contact.

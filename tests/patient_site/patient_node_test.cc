@@ -43,8 +43,10 @@ class FaultySite final : public Stage, public ForceSensor {
     sample->saturated = saturated;
     return sample;
   }
+  [[nodiscard]] bool can_drag() const noexcept override { return drags; }
   [[nodiscard]] StageTarget target() const { return target_; }
 
+  bool drags{true};
   bool stage_gives_nan{};
   bool stage_faulted{};
   bool stage_stuck{};
@@ -371,9 +373,53 @@ TEST(PatientNodeTest, ALawThatGivesNoNumberMovesNothing) {
 TEST(PatientNodeTest, ChangesThePlaceWithTheSurgeon) {
   World world;
   world.engage();
-  world.say.site.lateral = 10e-3;
-  world.run(milliseconds{10});
-  EXPECT_NEAR(world.status().lateral, 10e-3, 1e-8);
+  world.say.site.place = {10e-3, -4e-3};
+  world.run(milliseconds{300});
+  EXPECT_NEAR(distance(world.status().place, {10e-3, -4e-3}), 0, 1e-8);
+  EXPECT_EQ(world.status().place_refused, NoteCode::None);
+}
+
+bool noted(const World& world, NoteCode code) {
+  for (const Note& note : world.recorder.all<Note>()) {
+    if (note.code == static_cast<std::uint16_t>(code)) return true;
+  }
+  return false;
+}
+
+TEST(PatientNodeTest, DragsThePressedTipToTheSurgeonsPlace) {
+  World world;
+  world.engage();
+  world.move(3e-3, milliseconds{800});
+  ASSERT_GT(world.status().contact_force, 0.1);
+  world.say.site.place = {4e-3, 3e-3};
+  world.run(milliseconds{100});
+  const double way = distance(world.status().place, kSiteA);
+  EXPECT_GT(way, 0);
+  EXPECT_LE(way, std::sqrt(2) * 0.1 * 0.02 + 1e-6);
+  world.run(milliseconds{400});
+  EXPECT_NEAR(distance(world.status().place, {4e-3, 3e-3}), 0, 1e-8);
+  EXPECT_GT(world.status().contact_force, 0.1);
+}
+
+TEST(PatientNodeTest, AStageThatCannotDragSaysSo) {
+  World world;
+  world.site.drags = false;
+  world.engage();
+  world.move(3e-3, milliseconds{800});
+  world.say.site.place = {4e-3, 3e-3};
+  world.run(milliseconds{500});
+  EXPECT_EQ(world.status().place, kSiteA);
+  EXPECT_EQ(world.status().place_refused, NoteCode::DragRefused);
+  EXPECT_TRUE(noted(world, NoteCode::DragRefused));
+}
+
+TEST(PatientNodeTest, APlaceBeyondTheTravelEndsAtIt) {
+  World world;
+  world.engage();
+  world.say.site.place = {0, -9};
+  world.run(milliseconds{2500});
+  EXPECT_EQ(world.status().place, (Place{0, -0.25}));
+  EXPECT_TRUE(noted(world, NoteCode::PlaceBeyondTravel));
 }
 
 TEST(PatientNodeTest, RecordsEachTickEachArrivalAndTheLinkTenTimesASecond) {
@@ -408,7 +454,7 @@ TEST(PatientNodeTest, ATapGivesADepthAtTheSurgeons) {
   ListRecorder stroke_recorder;
   EstimatorWorker worker{{}, {world.contact, world.depth, stroke_recorder}};
   world.engage();
-  world.say.site.lateral = 10e-3;
+  world.say.site.place = kSiteB;
   world.move(-3e-3, milliseconds{500});
   for (int tap = 0; tap < 3; ++tap) {
     for (int i = 0; i < 1500; ++i) {

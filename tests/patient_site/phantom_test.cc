@@ -28,9 +28,11 @@ TEST(PhantomTest, PaperPhantomsGrowSofterWithDepth) {
 TEST(PhantomTest, SiteAIsThePlainBlockAndSiteBLiesOverTheInclusion) {
   const auto phantom = make_phantom("paper-5mm");
   ASSERT_TRUE(phantom);
-  EXPECT_EQ(&phantom->at(0), &phantom->plain);
-  EXPECT_EQ(&phantom->at(4.9e-3), &phantom->plain);
-  EXPECT_EQ(&phantom->at(5e-3), &phantom->over);
+  const auto field = make_field(*phantom, 0);
+  for (const double d : {0.5e-3, 2e-3, 4e-3}) {
+    EXPECT_EQ(field->elastic_force(kSiteA, d), phantom->plain.force(d));
+    EXPECT_EQ(field->elastic_force(kSiteB, d), phantom->over.force(d));
+  }
   EXPECT_EQ(*phantom->depth, 5e-3);
 }
 
@@ -65,6 +67,38 @@ TEST(PhantomTest, AFileIsSiteBBesideThePapersBlock) {
   std::remove(path.c_str());
 }
 
+TEST(PhantomTest, AFileMaySayWhereItsCurvesLie) {
+  const std::string path = ::testing::TempDir() + "palp_phantom_places.csv";
+  std::ofstream{path} << "x_mm,y_mm,d_mm,F_N\n0,0,0,0\n0,0,1,0.1\n0,0,2,0.3\n0,0,4,1\n"
+                      << "5,-2,0,0\n5,-2,1,0.2\n5,-2,2,0.6\n5,-2,3,2\n";
+  const auto phantom = make_phantom("file:" + path);
+  std::remove(path.c_str());
+  ASSERT_TRUE(phantom) << phantom.error().text;
+  EXPECT_EQ(phantom->survey.size(), 2U);
+  EXPECT_EQ(phantom->depth_max(), 3e-3);
+  EXPECT_EQ(phantom->axis, (Place{5e-3, -2e-3}));
+  const auto field = make_field(*phantom, 0);
+  EXPECT_NEAR(field->elastic_force(kSiteA, 2e-3), 0.3, 1e-12);
+  EXPECT_NEAR(field->elastic_force({5e-3, -2e-3}, 2e-3), 0.6, 1e-12);
+  const std::string text = tissue_csv(*phantom);
+  const auto read = parse_tissue_curves(text, "t", kSiteB);
+  ASSERT_TRUE(read) << read.error().text;
+  EXPECT_EQ(read->size(), 2U);
+}
+
+TEST(PhantomTest, ABallLiesWhereItIsAskedFor) {
+  const auto phantom = make_phantom("ball depth=8 at=-12.5,3");
+  ASSERT_TRUE(phantom) << phantom.error().text;
+  EXPECT_NEAR(phantom->axis.x, -12.5e-3, 1e-12);
+  EXPECT_NEAR(phantom->axis.y, 3e-3, 1e-12);
+  EXPECT_EQ(make_phantom("ball depth=8")->axis, kSiteB);
+  for (const char* bad : {"at=3", "at=3,", "at=,3", "at=251,0", "at=nan,0", "at=1,2,3", "at"}) {
+    EXPECT_THAT(make_phantom(std::string{"ball depth=8 "} + bad).error().text,
+                HasSubstr("is not at=X_MM,Y_MM"))
+        << bad;
+  }
+}
+
 TEST(PhantomTest, UnknownNamesGetOneSentence) {
   EXPECT_THAT(make_phantom("paper-7mm").error().text, HasSubstr("unknown phantom 'paper-7mm'"));
   EXPECT_THAT(make_phantom("").error().text, HasSubstr("unknown phantom"));
@@ -85,8 +119,8 @@ TEST(PhantomTest, TissueTextIsATableThatCanBeReadBack) {
   const auto phantom = make_phantom("paper-10mm");
   ASSERT_TRUE(phantom);
   const std::string text = tissue_csv(*phantom);
-  EXPECT_THAT(text, ::testing::StartsWith("site,d_mm,F_N\nA,0,0\nA,0.25,"));
-  const std::string b = "site,d_mm,F_N\n" + text.substr(text.find("B,"));
+  EXPECT_THAT(text, ::testing::StartsWith("x_mm,y_mm,d_mm,F_N\n0,0,0,0\n0,0,0.25,"));
+  const std::string b = "x_mm,y_mm,d_mm,F_N\n" + text.substr(text.find("20,0,"));
   const auto table = parse_force_table(b, "B");
   ASSERT_TRUE(table) << table.error().text;
   for (int tenths = 0; tenths < 50; ++tenths) {

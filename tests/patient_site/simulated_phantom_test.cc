@@ -18,10 +18,10 @@ const Phantom& soft() {
 }
 
 /// Moves to a position and stays for a while; the last force.
-double press(SimulatedPhantom& site, TimePoint& now, double position, double lateral = 10e-3) {
+double press(SimulatedPhantom& site, TimePoint& now, double position, const Place& place = kSiteB) {
   double force = 0;
   for (int i = 0; i < 1000; ++i) {
-    site.move_to({position, lateral});
+    site.move_to({position, place});
     now += kTick;
     (void)site.read(now);
     force = site.sample(now)->force;
@@ -35,7 +35,7 @@ TEST(SimulatedPhantomTest, HoldsTheTablesForceAtRest) {
   SimulatedPhantom site{soft(), config};
   TimePoint now{};
   EXPECT_NEAR(press(site, now, 4.7e-3), soft().over.force(3e-3), 1e-6);
-  EXPECT_NEAR(press(site, now, 4.7e-3, 0), soft().plain.force(3e-3), 1e-6);
+  EXPECT_NEAR(press(site, now, 4.7e-3, kSiteA), soft().plain.force(3e-3), 1e-6);
   EXPECT_NEAR(press(site, now, 1.0e-3), 0, 1e-12);
 }
 
@@ -47,7 +47,7 @@ TEST(SimulatedPhantomTest, KeepsSpeedAndAcceleration) {
   double fastest = 0;
   (void)site.read(now);
   for (int i = 0; i < 400; ++i) {
-    site.move_to({20e-3, 0});
+    site.move_to({20e-3, {}});
     now += kTick;
     (void)site.read(now);
     EXPECT_LE(std::abs(site.truth().velocity - before), 8.001e-3);
@@ -63,7 +63,7 @@ TEST(SimulatedPhantomTest, ReadingTwiceAtOneInstantAdvancesOnce) {
   TimePoint now{};
   for (int i = 0; i < 300; ++i) {
     now += kTick;
-    for (SimulatedPhantom* site : {&once, &twice}) site->move_to({2e-3, 10e-3});
+    for (SimulatedPhantom* site : {&once, &twice}) site->move_to({2e-3, kSiteB});
     (void)twice.sample(now);
     (void)twice.read(now);
     EXPECT_EQ(once.read(now).position, twice.read(now).position);
@@ -78,7 +78,7 @@ TEST(SimulatedPhantomTest, TheSensorLagsBy20Hz) {
   TimePoint now{};
   (void)site.read(now);
   const double full = soft().plain.force(2e-3);
-  site.move_to({-10e-3, 0});
+  site.move_to({-10e-3, {}});
   now += std::chrono::microseconds{7958};  // one time constant of 20 Hz, in whole steps of 0.1 ms
   EXPECT_NEAR(site.sample(now)->force / full, 1 - std::exp(-1.0), 0.01);
 }
@@ -109,7 +109,7 @@ TEST(SimulatedPhantomTest, ForceComesInSteps) {
   SimulatedPhantom site{soft(), {}};
   TimePoint now{};
   for (int i = 0; i < 500; ++i) {
-    site.move_to({3e-3, 10e-3});
+    site.move_to({3e-3, kSiteB});
     now += kTick;
     const double steps = site.sample(now)->force / 0.05;
     EXPECT_NEAR(steps, std::round(steps), 1e-9);
@@ -153,7 +153,7 @@ TEST(SimulatedPhantomTest, ATargetThatIsNoNumberIsAHalt) {
   SimulatedPhantom site{soft(), {}};
   TimePoint now{};
   (void)press(site, now, 1e-3);
-  site.move_to({std::nan(""), 0});
+  site.move_to({std::nan(""), {}});
   for (int i = 0; i < 100; ++i) (void)site.read(now += kTick);
   EXPECT_NEAR(site.truth().position, 1e-3, 1e-5);
 }
@@ -165,8 +165,8 @@ TEST(SimulatedPhantomTest, HalfTheStepsGiveTheSameMotion) {
   TimePoint now{};
   (void)coarse.read(now);
   (void)fine.read(now);
-  coarse.move_to({2e-3, 0});
-  fine.move_to({2e-3, 0});
+  coarse.move_to({2e-3, {}});
+  fine.move_to({2e-3, {}});
   for (int i = 0; i < 200; ++i) {
     (void)fine.read(now + kTick / 2);
     now += kTick;

@@ -12,7 +12,7 @@ SupervisorInput quiet() {
   SupervisorInput in;
   in.link = LinkState::Live;
   in.session_id = 1;
-  in.peer = {SiteState::Clutched, 0, 0, {}};
+  in.peer = {SiteState::Clutched, 0, {}, {}};
   in.peer_heard = true;
   in.free_to_follow = true;
   in.retracted = true;

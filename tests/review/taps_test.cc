@@ -20,7 +20,7 @@ TEST(TapsTest, EachStrokeGetsItsPlaceIndexAndStiffness) {
   const auto taps = taps_of(sample_session());
   ASSERT_EQ(taps.size(), 6u);
   for (std::size_t k = 0; k < 6; ++k) {
-    EXPECT_EQ(taps[k].site, k < 3 ? judge::Site::A : judge::Site::B);
+    EXPECT_EQ(taps[k].place, k < 3 ? kSiteA : kSiteB);
     EXPECT_EQ(taps[k].index, static_cast<int>(k % 3) + 1);
     EXPECT_EQ(taps[k].kind, StrokeKind::Tap);
     EXPECT_NEAR(taps[k].stiffness.felt().value(), k < 3 ? test::kFeltA : test::kFeltB, 1e-6);
@@ -62,7 +62,7 @@ TEST(TapsTest, ManyEstimatesOfOneLongStrokeTakeNoLonger) {
 TEST(TapsTest, HandAtAnotherPlaceIsNotTheOneOfTheStroke) {
   auto session = load(sample_session());
   for (judge::Motion& motion : session.surgeon.motion) {
-    motion.lateral = 0.010;
+    motion.place = kSiteB;
   }
   const auto taps = match_taps(session.surgeon, session.patient, nullptr);
   EXPECT_FALSE(taps[0].stiffness.felt()) << "A";

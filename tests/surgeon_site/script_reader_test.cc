@@ -45,7 +45,7 @@ TEST(ScriptReaderTest, StandardPalpationAsTextIsTheStandardPalpation) {
   ASSERT_EQ(read->length(), standard.length());
   for (Duration t{}; t <= standard.length(); t += 7ms) {
     ASSERT_EQ(read->at(t).position, standard.at(t).position) << seconds(t);
-    ASSERT_EQ(read->at(t).lateral, standard.at(t).lateral) << seconds(t);
+    ASSERT_EQ(read->at(t).place, standard.at(t).place) << seconds(t);
   }
 }
 
@@ -55,7 +55,7 @@ TEST(ScriptReaderTest, LastLineNeedsNoNewline) {
 }
 
 TEST(ScriptReaderTest, RefusalsNameLineWordAndWhatWasExpected) {
-  EXPECT_THAT(refusal("hold 1\n\ntap 4"), AllOf(HasSubstr("line 3"), HasSubstr("'tap'")));
+  EXPECT_THAT(refusal("hold 1\n\ntab 4"), AllOf(HasSubstr("line 3"), HasSubstr("'tab'")));
   EXPECT_THAT(refusal("hold"), AllOf(HasSubstr("line 1"), HasSubstr("hold SECONDS")));
   EXPECT_THAT(refusal("hold 1 2"), AllOf(HasSubstr("hold SECONDS"), HasSubstr("2 value")));
   EXPECT_THAT(refusal("taps 4 4 one 0.5"), AllOf(HasSubstr("SECONDS 'one'"), HasSubstr("number")));
@@ -63,7 +63,7 @@ TEST(ScriptReaderTest, RefusalsNameLineWordAndWhatWasExpected) {
   EXPECT_THAT(refusal("hold nan"), HasSubstr("not a number"));
   EXPECT_THAT(refusal("hold inf"), HasSubstr("not a number"));
   EXPECT_THAT(refusal("taps 1.5 4 1 0"), AllOf(HasSubstr("COUNT 1.5"), HasSubstr("whole number")));
-  EXPECT_THAT(refusal("site C"), HasSubstr("'C' is not a number"));
+  EXPECT_THAT(refusal("site C"), HasSubstr("PLACE 'C' is neither A, B nor X_MM,Y_MM"));
   EXPECT_THAT(refusal(""), HasSubstr("no phase"));
   EXPECT_THAT(refusal("# nothing\nsite B\n"), HasSubstr("no phase"));
 }
@@ -99,13 +99,73 @@ TEST(ScriptReaderTest, SiteChangesOnlyClearOfTheTissue) {
               AllOf(HasSubstr("line 2"), HasSubstr("lift first")));
 }
 
+TEST(ScriptReaderTest, PlacesAreNamedByTheirCoordinates) {
+  const Result<GestureScript> script = parse_script(
+      "site 12.5,3\nhold 1\nmove to -4,1\ntap 2 times at B\npress 3 0.5 1\ndrag to 8,-2 in 4 s\n"
+      "lift 1 1\nsite 7\nhold 1\n",
+      kStiffness);
+  ASSERT_TRUE(script) << script.error().text;
+  EXPECT_EQ(script->at(500ms).place, (Place{12.5e-3, 3e-3}));
+  EXPECT_EQ(script->phase(2).name, "to -4,1");
+  EXPECT_EQ(script->phase(5).name, "taps B");
+  EXPECT_EQ(script->phase(7).name, "drag to 8,-2");
+  EXPECT_EQ(script->at(script->length()).place, (Place{7e-3, 0}));
+}
+
+TEST(ScriptReaderTest, ADragGlidesAtThePressedDepth) {
+  const Result<GestureScript> script =
+      parse_script("press 3 0.5 1\ndrag to 8,-2 in 4 s\n", kStiffness);
+  ASSERT_TRUE(script) << script.error().text;
+  const double depth = script->at(1s).position;
+  for (const Duration at : {1500ms, 2500ms, 3500ms, 5500ms}) {
+    EXPECT_EQ(script->at(at).position, depth);
+    EXPECT_EQ(script->at(at).velocity, 0);
+  }
+  EXPECT_NEAR(distance(script->at(3500ms).place, {4e-3, -1e-3}), 0, 1e-12);
+  EXPECT_EQ(script->at(5500ms).place, (Place{8e-3, -2e-3}));
+}
+
+TEST(ScriptReaderTest, TravelIsNoFasterThanAHand) {
+  const Result<GestureScript> script = parse_script("move to 150,-120\nhold 1\n", kStiffness);
+  ASSERT_TRUE(script) << script.error().text;
+  for (Duration at{}; at < script->length(); at += 1ms) {
+    ASSERT_LE(distance(script->at(at).place, script->at(at + 1ms).place), 0.1e-3 + 1e-9);
+  }
+}
+
+TEST(ScriptReaderTest, PlacesHaveBordersAndTheirPhasesAnOrder) {
+  EXPECT_EQ(refusal("site -200,200\nhold 1"), "accepted");
+  EXPECT_THAT(refusal("site 200.1,0\nhold 1"), HasSubstr("X_MM 200.1 must be from -200 to 200"));
+  EXPECT_THAT(refusal("site 0,-200.1\nhold 1"), HasSubstr("Y_MM -200.1"));
+  EXPECT_THAT(refusal("site 300\nhold 1"), HasSubstr("X_MM 300"));
+  EXPECT_THAT(refusal("site 1,\nhold 1"), HasSubstr("Y_MM '' is not a number"));
+  EXPECT_THAT(refusal("site 1,2,3\nhold 1"), HasSubstr("Y_MM '2,3'"));
+  EXPECT_THAT(refusal("drag to B in 4 s"), HasSubstr("press first"));
+  EXPECT_THAT(refusal("press 3 1 1\ndrag to B in 4"), HasSubstr("drag to PLACE in SECONDS s"));
+  EXPECT_THAT(refusal("press 3 1 1\ndrag to B in 0.01 s"), HasSubstr("SECONDS 0.01"));
+  EXPECT_THAT(refusal("press 3 1 1\nmove to B"), HasSubstr("'move to' needs the hand clear"));
+  EXPECT_THAT(refusal("press 3 1 1\ntap 1 times at B"), HasSubstr("'tap' needs the hand clear"));
+  EXPECT_THAT(refusal("tap 0 times at B"), HasSubstr("COUNT 0"));
+  EXPECT_THAT(refusal("tap 4 at B"), HasSubstr("tap COUNT times at PLACE"));
+}
+
+TEST(ScriptReaderTest, ARecordedHandMayHaveAPlane) {
+  const Result<GestureScript> script =
+      parse_replay("t_s,position_mm,x_mm,y_mm\n0,-10,1,2\n1,-9,3,-4\n");
+  ASSERT_TRUE(script) << script.error().text;
+  EXPECT_NEAR(distance(script->at(500ms).place, {2e-3, -1e-3}), 0, 1e-12);
+  EXPECT_THAT(replay_refusal("t_s,position_mm,x_mm\n0,0,0\n1,0,0\n"), HasSubstr("y_mm"));
+  EXPECT_THAT(replay_refusal("t_s,position_mm,x_mm,y_mm\n0,0,0,201\n1,0,0,0\n"),
+              HasSubstr("y_mm 201"));
+}
+
 TEST(ScriptReaderTest, ReplayStartsAtItsFirstRow) {
   const Result<GestureScript> script =
       parse_replay("t_s,position_mm,lateral_mm\r\n5.0,-10,0\r\n5.5,-9,0\n\n6,-9,20\n");
   ASSERT_TRUE(script) << script.error().text;
   EXPECT_EQ(script->length(), 1s);
   EXPECT_NEAR(script->at(250ms).position, -9.5e-3, 1e-12);
-  EXPECT_NEAR(script->at(1s).lateral, 20e-3, 1e-12);
+  EXPECT_NEAR(script->at(1s).place.x, 20e-3, 1e-12);
 }
 
 TEST(ScriptReaderTest, ReplayRefusalsNameLineAndValue) {

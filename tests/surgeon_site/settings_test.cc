@@ -25,6 +25,7 @@ std::string text_of(const Settings& settings) {
       .add("round_trip_max_to_engage", settings.node.supervisor.round_trip_max_to_engage)
       .add("direct_round_trip_max", settings.direct_round_trip_max)
       .add("engagement_forced", settings.engagement_forced)
+      .add("hold_in_plane", settings.node.hold_in_plane)
       .add("gate.force_max", settings.node.gate.force_max)
       .add("gate.force_continuous", settings.node.gate.force_continuous)
       .add("gate.thermal_time", settings.node.gate.thermal_time)

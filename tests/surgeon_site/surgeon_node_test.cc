@@ -126,6 +126,33 @@ TEST(SurgeonNodeTest, PalpatesFromBeginningToEnd) {
   EXPECT_TRUE(noted(bench.recorder, NoteCode::SessionBegan));
 }
 
+GestureScript dragging_script() {
+  ScriptBuilder script{1500};
+  script.press(3e-3, 800ms, 300ms).drag(kSiteB, 500ms).lift(500ms, 300ms);
+  return script.build();
+}
+
+/// How far along x the hand went while it felt something.
+double way_under_force(bool hold_in_plane) {
+  SimulatedHand hand{firm_hand(), dragging_script()};
+  SurgeonConfig config;
+  config.hold_in_plane = hold_in_plane;
+  Bench bench{hand, config};
+  bench.run(30s, [&] { return !hand.finished(); });
+  EXPECT_EQ(hand.progress().outcome, ScriptOutcome::Completed);
+  double way = 0;
+  for (const SiteTick& tick : bench.recorder.all<SiteTick>()) {
+    if (tick.force >= 0.1) way = std::max(way, tick.place.x);
+  }
+  EXPECT_EQ(bench.status().place, kSiteB) << "let go, the hand is where the person is";
+  return way;
+}
+
+TEST(SurgeonNodeTest, APlaneIsLockedWhileTheHandPressesIfTheDeviceIsTold) {
+  EXPECT_EQ(way_under_force(false), kSiteB.x);
+  EXPECT_EQ(way_under_force(true), 0);
+}
+
 TEST(SurgeonNodeTest, LawIsToldTheForceThatWasApplied) {
   SimulatedHand hand{firm_hand(), short_script()};
   Bench bench{hand};

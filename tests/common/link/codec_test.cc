@@ -182,7 +182,8 @@ TEST(CodecTest, EveryNumberHasItsLimitAndMustBeFinite) {
       {"position", [](auto& w, double x) { w.telegram.port.position = x; }, message::kLengthMax},
       {"velocity", [](auto& w, double x) { w.telegram.port.velocity = x; }, message::kSpeedMax},
       {"force", [](auto& w, double x) { w.telegram.port.force = x; }, message::kForceMax},
-      {"lateral", [](auto& w, double x) { w.telegram.site.lateral = x; }, message::kLengthMax},
+      {"x", [](auto& w, double x) { w.telegram.site.place.x = x; }, message::kLengthMax},
+      {"y", [](auto& w, double x) { w.telegram.site.place.y = x; }, message::kLengthMax},
       {"depth", [](auto& w, double x) { w.telegram.site.depth.depth = x; }, message::kLengthMax},
       {"stddev",
        [](auto& w, double x) { w.telegram.site.depth.depth_stddev = x; },
@@ -297,18 +298,20 @@ TEST(WireCodecTest, TelegramsHaveTheSizesOfTheWirePage) {
   wire.telegram.port = {1, 1, 1, std::monostate{}};
   wire.older_count = 2;
   wire.older.fill(wire.telegram.port);
-  wire.telegram.site = {SiteState::Stopped, kMost, 1, {}};
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 15U + 3 * 17U);  // direct, surgeon to patient
+  wire.telegram.site = {SiteState::Stopped, kMost, {1, 0}, {}};
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 15U + 3 * 17U) << "a y of 0 takes no bytes";
+  wire.telegram.site.place.y = 1;
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 20U + 3 * 17U);  // direct, surgeon to patient
   wire.telegram.site.depth = {
       kMost, DepthVerdict::Found, DepthReason::HashOutOfRange, 1, 1, 1, 1, 1};
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 52U + 3 * 17U);  // direct, patient to surgeon
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 57U + 3 * 17U);  // direct, patient to surgeon
   wire.telegram.port.payload = ModelPayload{kMost, {1, 1, 1, 1}, 1, 1, 1, 1, 1, 1, 1, 1};
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 52U + 85U + 2 * 17U);
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 57U + 85U + 2 * 17U);
   wire.telegram.port.payload = TdpaPayload{1};
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 52U + 28U + 2 * 17U);
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 57U + 28U + 2 * 17U);
   wire.telegram.port.payload = WavePayload{1, 1};
   wire.older.fill(wire.telegram.port);
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 52U + 3 * 37U);  // the largest of all
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 57U + 3 * 37U);  // the largest of all
 }
 
 TEST(WireCodecTest, WorksInAnotherThreadThanItsMaker) {

@@ -123,7 +123,7 @@ TEST(LinkTest, ALateTelegramFillsItsGapAndIsNotFresh) {
   };
   couple.connect();
   couple.before_send = [&] {
-    couple.surgeon.telegram.site.lateral = seconds(couple.now.time_since_epoch());
+    couple.surgeon.telegram.site.place.x = seconds(couple.now.time_since_epoch());
   };
   couple.run(24ms);
   EXPECT_EQ(couple.patient_health().lost, 1U);
@@ -131,7 +131,7 @@ TEST(LinkTest, ALateTelegramFillsItsGapAndIsNotFresh) {
   EXPECT_EQ(couple.patient_health().lost, 0U);
   EXPECT_EQ(couple.patient_health().late, 1U);
   EXPECT_EQ(couple.patient_health().reordered, 1U);
-  ASSERT_EQ(couple.patient.last.peer.lateral, double{0.023F});  // of the newest, not of the late
+  ASSERT_EQ(couple.patient.last.peer.place.x, double{0.023F});  // of the newest, not of the late
   couple.run(10ms);
   EXPECT_EQ(couple.patient_health().repaired, 0U);  // it was handed over already
   EXPECT_EQ(couple.patient.samples.size(), 34U);

@@ -18,7 +18,7 @@ inline SiteTick tick(std::int64_t ms) {
           .position = 1e-3 * static_cast<double>(ms % 7),
           .velocity = -0.02,
           .force = 0.25,
-          .lateral = 0.01,
+          .place = {.x = 0.01, .y = -0.02},
           .command = 0.125,
           .gate_acted = ms % 5 == 0,
           .round_trip = Duration{12345678},

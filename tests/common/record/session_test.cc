@@ -1,3 +1,4 @@
+#include <cstring>
 #include <set>
 #include <vector>
 
@@ -239,6 +240,28 @@ TEST(SessionTest, ValueOutsideItsEnumerationIsMalformedNotTrusted) {
   EXPECT_EQ(verdict("palp.session.LinkStatus", kStateNine), Verdict::Malformed);
   EXPECT_EQ(verdict("palp.session.PatientTickView", kStateTwo), Verdict::View);
   EXPECT_EQ(verdict("foxglove.Grid", kStateTwo), Verdict::Unknown);
+}
+
+/// `value` as the double of field `number`, below 16.
+std::vector<std::byte> one_double(unsigned number, double value) {
+  std::vector<std::byte> bytes(9);
+  bytes[0] = static_cast<std::byte>(number << 3U | 1U);
+  std::memcpy(&bytes[1], &value, sizeof value);
+  return bytes;
+}
+
+TEST(SessionTest, TheLateralOfAnOldFileIsX) {
+  SessionDecoder decoder;
+  const auto place = [&](std::string_view schema, unsigned number) {
+    const Record record = decoder.decode(schema, one_double(number, 0.02), at_ms(0)).record;
+    if (const auto* tick = std::get_if<SiteTick>(&record)) return tick->place;
+    if (const auto* contact = std::get_if<ContactSample>(&record)) return contact->place;
+    return std::get<DepthEstimate>(record).place;
+  };
+  EXPECT_EQ(place("palp.session.SurgeonTick", 6), kSiteB);
+  EXPECT_EQ(place("palp.session.PatientTick", 6), kSiteB);
+  EXPECT_EQ(place("palp.session.ContactSample", 3), kSiteB);
+  EXPECT_EQ(place("palp.session.DepthEstimate", 4), kSiteB);
 }
 
 RC_GTEST_PROP(SessionTest, AnyBytesAreDecodedOrRefusedNeverTrusted, ()) {

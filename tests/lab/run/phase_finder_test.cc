@@ -10,11 +10,11 @@
 namespace palp::lab {
 namespace {
 
-using judge::Site;
+using Site;
 
 TEST(PhaseFinderTest, CountsTheTapsOfEachVisit) {
   surgeon::ScriptBuilder script{300};
-  for (const double site : {surgeon::kSiteA, surgeon::kSiteB, surgeon::kSiteA}) {
+  for (const Place& site : {kSiteA, kSiteB, kSiteA}) {
     script.site(site).move(-3e-3, std::chrono::milliseconds{500});
     script.taps(2, 4e-3, std::chrono::seconds{1}, std::chrono::milliseconds{500});
   }

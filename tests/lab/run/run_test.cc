@@ -47,7 +47,7 @@ TEST(RunTest, APalpationIsPerformedToItsEndAndFindsTheInclusion) {
   std::vector<DepthEstimate> beside;
   std::vector<DepthEstimate> over;
   for (const DepthEstimate& estimate : result.depths) {
-    (estimate.lateral < patient::Phantom::kSiteBoundary ? beside : over).push_back(estimate);
+    (site_at(estimate.place) == Site::A ? beside : over).push_back(estimate);
   }
   EXPECT_EQ(judge::summarise_depths(beside).verdict, DepthVerdict::None);
   const DepthEstimate depth = judge::summarise_depths(over);

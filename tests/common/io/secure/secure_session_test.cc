@@ -16,7 +16,8 @@ using test::World;
 /// As in a session with all that a telegram of the default law can hold.
 void fill_telegrams(World& world) {
   for (test::Site* site : {world.surgeon.get(), world.patient.get()}) {
-    site->telegram.site = {.state = SiteState::Engaged, .epoch = 3, .lateral = 1e-3, .depth = {}};
+    site->telegram.site = {
+        .state = SiteState::Engaged, .epoch = 3, .place = {1e-3, 0}, .depth = {}};
     site->telegram.port = {.position = 1e-3, .velocity = 0.02, .force = 0.3, .payload = {}};
   }
   world.patient->telegram.site.depth = {.number = 4, .depth = 1e-2, .depth_low = 9e-3};
