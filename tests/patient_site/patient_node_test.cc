@@ -386,21 +386,6 @@ bool noted(const World& world, NoteCode code) {
   return false;
 }
 
-TEST(PatientNodeTest, DragsThePressedTipToTheSurgeonsPlace) {
-  World world;
-  world.engage();
-  world.move(3e-3, milliseconds{800});
-  ASSERT_GT(world.status().contact_force, 0.1);
-  world.say.site.place = {4e-3, 3e-3};
-  world.run(milliseconds{100});
-  const double way = distance(world.status().place, kSiteA);
-  EXPECT_GT(way, 0);
-  EXPECT_LE(way, std::sqrt(2) * 0.1 * 0.02 + 1e-6);
-  world.run(milliseconds{400});
-  EXPECT_NEAR(distance(world.status().place, {4e-3, 3e-3}), 0, 1e-8);
-  EXPECT_GT(world.status().contact_force, 0.1);
-}
-
 TEST(PatientNodeTest, AStageThatCannotDragSaysSo) {
   World world;
   world.site.drags = false;
@@ -411,15 +396,6 @@ TEST(PatientNodeTest, AStageThatCannotDragSaysSo) {
   EXPECT_EQ(world.status().place, kSiteA);
   EXPECT_EQ(world.status().place_refused, NoteCode::DragRefused);
   EXPECT_TRUE(noted(world, NoteCode::DragRefused));
-}
-
-TEST(PatientNodeTest, APlaceBeyondTheTravelEndsAtIt) {
-  World world;
-  world.engage();
-  world.say.site.place = {0, -9};
-  world.run(milliseconds{2500});
-  EXPECT_EQ(world.status().place, (Place{0, -0.25}));
-  EXPECT_TRUE(noted(world, NoteCode::PlaceBeyondTravel));
 }
 
 TEST(PatientNodeTest, RecordsEachTickEachArrivalAndTheLinkTenTimesASecond) {
