@@ -62,13 +62,44 @@ struct RecordFolder {
     fold_all(digest, t.at, t.from, t.to, t.reason);
   }
   void operator()(const ContactSample& c) const noexcept {
-    fold_all(digest, c.at, c.position, c.force, c.lateral);
+    fold_all(digest, c.at, c.position, c.force, c.lateral, c.position_age, c.force_age);
   }
   void operator()(const DepthEstimate& d) const noexcept {
     fold_all(digest, d.number, d.stroke_ended_at, d.verdict, d.reason, d.hash, d.depth, d.surface);
   }
   void operator()(const record::DepthArrived& d) const noexcept {
     fold_all(digest, d.at, d.report.number, d.report.verdict, d.report.depth, d.report.hash);
+  }
+  void operator()(const record::HandReading& h) const noexcept {
+    fold_all(digest, h.at, h.sampled_at, h.position, h.velocity, h.lateral, h.dead_man_held);
+    fold_all(digest, h.emergency_stop, h.faulted, h.script_phase);
+  }
+  void operator()(const record::StageReading& s) const noexcept {
+    fold_all(digest, s.at, s.sampled_at, s.position, s.velocity, s.lateral, s.at_limit, s.faulted);
+  }
+  void operator()(const record::ForceReading& f) const noexcept {
+    fold_all(digest, f.at, f.fresh, f.sampled_at, f.force, f.saturated);
+  }
+  void operator()(const record::LinkHeard& l) const noexcept {
+    fold_all(digest, l.at, l.state, l.session_id, l.gap, l.round_trip, l.key, l.peer_heard);
+    fold_all(digest, l.peer_state, l.peer_epoch, l.peer_lateral, l.depth_number);
+  }
+  void operator()(const record::UserAsked& u) const noexcept {
+    fold_all(digest, u.at, u.command.emergency_stop, u.command.resets);
+  }
+  void operator()(const record::DevicesTold& d) const noexcept {
+    fold_all(digest, d.at, d.of_peer, d.facts.hand.has_value(), d.facts.stage.has_value());
+    if (const auto& hand = d.facts.hand) {
+      fold_all(digest, hand->axes, hand->force_peak, hand->force_continuous, hand->rate);
+    }
+    if (const auto& stage = d.facts.stage) {
+      fold_all(digest, stage->axes, stage->travel_min, stage->travel_max, stage->travel_side);
+      fold_all(digest, stage->speed, stage->acceleration, stage->rate, stage->lag, stage->drags);
+    }
+    if (const auto& sensor = d.facts.sensor) {
+      fold_all(digest, sensor->pole, sensor->step, sensor->range, sensor->noise, sensor->rate);
+      fold_all(digest, sensor->lag);
+    }
   }
 };
 

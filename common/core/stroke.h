@@ -8,13 +8,15 @@
 /// What goes into a depth estimator and what comes out of it.
 namespace palp {
 
-/// One measured point. The position has passed the same 20 Hz pole as the force carries from its
-/// transducer: position and force must share their dynamics, or contact looks like hysteresis.
+/// One measured point, as the devices gave it. The force carries its sensor's pole and the tip does
+/// not: whoever compares them gives the tip the same, or contact looks like hysteresis.
 struct ContactSample {
   TimePoint at{};
-  double position{};  ///< [m], tip, behind the co-filter; the surface is the estimator's to find
-  double force{};     ///< [N], as measured
-  double lateral{};   ///< [m]
+  double position{};        ///< [m], tip; the surface is the estimator's to find
+  double force{};           ///< [N], as measured
+  double lateral{};         ///< [m]
+  Duration position_age{};  ///< of the tip's reading at `at`
+  Duration force_age{};     ///< of the force's
 };
 
 /// Found: an inclusion at `depth`. None: there is no inclusion in reach. Invalid: no statement.

@@ -126,8 +126,98 @@ Record event_of(const session::Event& in, TimePoint at, Range& range) {
 }
 
 Record contact_of(const session::ContactSample& in, TimePoint at) {
-  return ContactSample{
-      .at = at, .position = in.position_m(), .force = in.force_n(), .lateral = in.lateral_m()};
+  return ContactSample{.at = at,
+                       .position = in.tip_m(),
+                       .force = in.force_n(),
+                       .lateral = in.lateral_m(),
+                       .position_age = Duration{in.tip_age_ns()},
+                       .force_age = Duration{in.force_age_ns()}};
+}
+
+/// Any age may stand in a file.
+TimePoint earlier(TimePoint at, std::int64_t age_ns) noexcept {
+  return TimePoint{
+      Duration{static_cast<std::int64_t>(static_cast<std::uint64_t>(at.time_since_epoch().count()) -
+                                         static_cast<std::uint64_t>(age_ns))}};
+}
+
+Record hand_of(const session::HandReading& in, TimePoint at) {
+  return HandReading{.at = at,
+                     .sampled_at = earlier(at, in.age_ns()),
+                     .position = in.position_m(),
+                     .velocity = in.velocity_m_per_s(),
+                     .lateral = in.lateral_m(),
+                     .dead_man_held = in.dead_man_held(),
+                     .emergency_stop = in.emergency_stop(),
+                     .faulted = in.faulted(),
+                     .script_phase = in.script_phase()};
+}
+
+Record stage_of(const session::StageReading& in, TimePoint at) {
+  return StageReading{.at = at,
+                      .sampled_at = earlier(at, in.age_ns()),
+                      .position = in.position_m(),
+                      .velocity = in.velocity_m_per_s(),
+                      .lateral = in.lateral_m(),
+                      .at_limit = in.at_limit(),
+                      .faulted = in.faulted()};
+}
+
+Record force_of(const session::ForceReading& in, TimePoint at) {
+  return ForceReading{.at = at,
+                      .fresh = in.fresh(),
+                      .sampled_at = earlier(at, in.age_ns()),
+                      .force = in.force_n(),
+                      .saturated = in.saturated()};
+}
+
+Record heard_of(const session::LinkHeard& in, TimePoint at, Range& range) {
+  range.ok = range.ok && in.key() <= std::numeric_limits<std::uint8_t>::max();
+  return LinkHeard{.at = at,
+                   .state = range.checked<LinkState>(in.state(), kLinkStateCount),
+                   .session_id = in.session_id(),
+                   .gap = Duration{in.gap_ns()},
+                   .round_trip = Duration{in.round_trip_ns()},
+                   .key = static_cast<std::uint8_t>(in.key()),
+                   .peer_heard = in.peer_heard(),
+                   .peer_state = range.site_state(in.peer_state()),
+                   .peer_epoch = in.peer_epoch(),
+                   .peer_lateral = in.peer_lateral_m(),
+                   .depth_number = in.depth_number()};
+}
+
+Record user_of(const session::UserCommand& in, TimePoint at) {
+  return UserAsked{.at = at, .command = {in.emergency_stop(), in.resets()}};
+}
+
+Record devices_of(const session::Devices& in, TimePoint at) {
+  DevicesTold told{.at = at, .of_peer = in.of_peer(), .facts = {}};
+  if (in.has_hand()) {
+    told.facts.hand = HandFacts{.axes = in.hand().axes(),
+                                .force_peak = in.hand().force_peak_n(),
+                                .force_continuous = in.hand().force_continuous_n(),
+                                .rate = in.hand().rate_hz()};
+  }
+  if (in.has_stage()) {
+    told.facts.stage = StageFacts{.axes = in.stage().axes(),
+                                  .travel_min = in.stage().travel_min_m(),
+                                  .travel_max = in.stage().travel_max_m(),
+                                  .travel_side = in.stage().travel_side_m(),
+                                  .speed = in.stage().speed_m_per_s(),
+                                  .acceleration = in.stage().acceleration_m_per_s2(),
+                                  .rate = in.stage().rate_hz(),
+                                  .lag = in.stage().lag_s(),
+                                  .drags = in.stage().drags()};
+  }
+  if (in.has_sensor()) {
+    told.facts.sensor = ForceSensorFacts{.pole = in.sensor().pole_hz(),
+                                         .step = in.sensor().step_n(),
+                                         .range = in.sensor().range_n(),
+                                         .noise = in.sensor().noise_n(),
+                                         .rate = in.sensor().rate_hz(),
+                                         .lag = in.sensor().lag_s()};
+  }
+  return told;
 }
 
 Record estimate_of(const session::DepthEstimate& in, Range& range) {
@@ -174,6 +264,12 @@ struct SessionDecoder::Messages {
   session::ContactSample contact;
   session::DepthEstimate estimate;
   session::DepthReport report;
+  session::HandReading hand;
+  session::StageReading stage;
+  session::ForceReading force;
+  session::LinkHeard heard;
+  session::UserCommand user;
+  session::Devices devices;
 };
 
 SessionDecoder::SessionDecoder() : messages_{std::make_unique<Messages>()} {}
@@ -204,6 +300,12 @@ SessionDecoder::Answer SessionDecoder::decode(std::string_view schema,
   attempt(from.surgeon_tick, [&] { return record(tick_of(from.surgeon_tick, at, range)); });
   attempt(from.patient_tick, [&] { return record(tick_of(from.patient_tick, at, range)); });
   attempt(from.arrived, [&] { return record(arrived_of(from.arrived, at)); });
+  attempt(from.hand, [&] { return record(hand_of(from.hand, at)); });
+  attempt(from.stage, [&] { return record(stage_of(from.stage, at)); });
+  attempt(from.force, [&] { return record(force_of(from.force, at)); });
+  attempt(from.heard, [&] { return record(heard_of(from.heard, at, range)); });
+  attempt(from.user, [&] { return record(user_of(from.user, at)); });
+  attempt(from.devices, [&] { return record(devices_of(from.devices, at)); });
   attempt(from.contact, [&] { return record(contact_of(from.contact, at)); });
   attempt(from.link, [&] { return record(link_status_of(from.link, at, range)); });
   attempt(from.event, [&] { return record(event_of(from.event, at, range)); });

@@ -1,9 +1,5 @@
 #include "common/record/session_encoder.h"
 
-#include <set>
-
-#include <google/protobuf/descriptor.pb.h>
-
 #include "common/record/notes.h"
 #include "proto/session_log.pb.h"
 
@@ -166,9 +162,92 @@ void put_event(std::uint16_t code, session::Event& out) {
 }
 
 void put(const ContactSample& sample, session::ContactSample& out) {
-  out.set_position_m(sample.position);
+  out.set_tip_m(sample.position);
   out.set_force_n(sample.force);
   out.set_lateral_m(sample.lateral);
+  out.set_tip_age_ns(sample.position_age.count());
+  out.set_force_age_ns(sample.force_age.count());
+}
+
+/// Wraps as the decoder does, so that any two instants come back.
+std::int64_t age_ns(TimePoint at, TimePoint then) noexcept {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(at.time_since_epoch().count()) -
+                                   static_cast<std::uint64_t>(then.time_since_epoch().count()));
+}
+
+void put(const HandReading& hand, session::HandReading& out) {
+  out.set_position_m(hand.position);
+  out.set_velocity_m_per_s(hand.velocity);
+  out.set_lateral_m(hand.lateral);
+  out.set_dead_man_held(hand.dead_man_held);
+  out.set_emergency_stop(hand.emergency_stop);
+  out.set_faulted(hand.faulted);
+  out.set_age_ns(age_ns(hand.at, hand.sampled_at));
+  out.set_script_phase(hand.script_phase);
+}
+
+void put(const StageReading& stage, session::StageReading& out) {
+  out.set_position_m(stage.position);
+  out.set_velocity_m_per_s(stage.velocity);
+  out.set_lateral_m(stage.lateral);
+  out.set_at_limit(stage.at_limit);
+  out.set_faulted(stage.faulted);
+  out.set_age_ns(age_ns(stage.at, stage.sampled_at));
+}
+
+void put(const ForceReading& force, session::ForceReading& out) {
+  out.set_fresh(force.fresh);
+  out.set_force_n(force.force);
+  out.set_saturated(force.saturated);
+  out.set_age_ns(age_ns(force.at, force.sampled_at));
+}
+
+void put(const LinkHeard& heard, session::LinkHeard& out) {
+  out.set_state(to_wire<session::LinkState>(heard.state));
+  out.set_session_id(heard.session_id);
+  out.set_gap_ns(heard.gap.count());
+  out.set_round_trip_ns(heard.round_trip.count());
+  out.set_key(heard.key);
+  out.set_peer_heard(heard.peer_heard);
+  out.set_peer_state(to_wire<session::SiteState>(heard.peer_state));
+  out.set_peer_epoch(heard.peer_epoch);
+  out.set_peer_lateral_m(heard.peer_lateral);
+  out.set_depth_number(heard.depth_number);
+}
+
+void put(const UserCommand& command, session::UserCommand& out) {
+  out.set_emergency_stop(command.emergency_stop);
+  out.set_resets(command.resets);
+}
+
+void put(const DevicesTold& told, session::Devices& out) {
+  out.Clear();
+  out.set_of_peer(told.of_peer);
+  if (const auto& hand = told.facts.hand) {
+    out.mutable_hand()->set_axes(hand->axes);
+    out.mutable_hand()->set_force_peak_n(hand->force_peak);
+    out.mutable_hand()->set_force_continuous_n(hand->force_continuous);
+    out.mutable_hand()->set_rate_hz(hand->rate);
+  }
+  if (const auto& stage = told.facts.stage) {
+    out.mutable_stage()->set_axes(stage->axes);
+    out.mutable_stage()->set_travel_min_m(stage->travel_min);
+    out.mutable_stage()->set_travel_max_m(stage->travel_max);
+    out.mutable_stage()->set_travel_side_m(stage->travel_side);
+    out.mutable_stage()->set_speed_m_per_s(stage->speed);
+    out.mutable_stage()->set_acceleration_m_per_s2(stage->acceleration);
+    out.mutable_stage()->set_rate_hz(stage->rate);
+    out.mutable_stage()->set_lag_s(stage->lag);
+    out.mutable_stage()->set_drags(stage->drags);
+  }
+  if (const auto& sensor = told.facts.sensor) {
+    out.mutable_sensor()->set_pole_hz(sensor->pole);
+    out.mutable_sensor()->set_step_n(sensor->step);
+    out.mutable_sensor()->set_range_n(sensor->range);
+    out.mutable_sensor()->set_noise_n(sensor->noise);
+    out.mutable_sensor()->set_rate_hz(sensor->rate);
+    out.mutable_sensor()->set_lag_s(sensor->lag);
+  }
 }
 
 void put(const DepthEstimate& estimate, session::DepthEstimate& out) {
@@ -200,75 +279,7 @@ void put(const link::DepthReport& report, session::DepthReport& out) {
   out.set_depth_high_m(report.depth_high);
 }
 
-/// Copies `type` and what its fields need into `file`, each once.
-void add_type(const google::protobuf::Descriptor& type,
-              std::set<std::string>& added,
-              google::protobuf::FileDescriptorProto& file) {
-  if (!added.insert(type.full_name()).second) {
-    return;
-  }
-  type.CopyTo(file.add_message_type());
-  for (int k = 0; k < type.field_count(); ++k) {
-    const auto& field = *type.field(k);
-    if (field.message_type() != nullptr) {
-      add_type(*field.message_type(), added, file);
-    }
-    const auto* enumeration = field.enum_type();
-    if (enumeration != nullptr && enumeration->containing_type() == nullptr &&
-        added.insert(enumeration->full_name()).second) {
-      enumeration->CopyTo(file.add_enum_type());
-    }
-  }
-}
-
-Bytes descriptor_set(const google::protobuf::Descriptor& type) {
-  google::protobuf::FileDescriptorSet set;
-  auto& file = *set.add_file();
-  file.set_name(type.file()->name());
-  file.set_package(type.file()->package());
-  file.set_syntax("proto3");
-  std::set<std::string> added;
-  add_type(type, added, file);
-  Bytes bytes(set.ByteSizeLong());
-  set.SerializeToArray(bytes.data(), static_cast<int>(bytes.size()));
-  return bytes;
-}
-
 }  // namespace
-
-std::string_view site_name(Role site) noexcept {
-  return site == Role::Surgeon ? "surgeon" : "patient";
-}
-
-std::vector<TopicFormat> topics_of(Role site) {
-  const bool surgeon = site == Role::Surgeon;
-  const std::string prefix{std::string{site_name(site)} + '/'};
-  const auto topic = [&](Topic which, const char* name, const google::protobuf::Descriptor* type) {
-    return TopicFormat{.topic = which,
-                       .name = prefix + name,
-                       .schema = type->full_name(),
-                       .descriptors = descriptor_set(*type)};
-  };
-  std::vector<TopicFormat> topics{
-      topic(Topic::Tick,
-            "tick",
-            surgeon ? session::SurgeonTick::descriptor() : session::PatientTick::descriptor()),
-      topic(Topic::TickView,
-            "tick_view",
-            surgeon ? session::SurgeonTickView::descriptor()
-                    : session::PatientTickView::descriptor()),
-      topic(Topic::Arrived, "arrived", session::ArrivedSample::descriptor()),
-      topic(Topic::Link, "link", session::LinkStatus::descriptor()),
-      topic(Topic::Event, "event", session::Event::descriptor())};
-  if (!surgeon) {
-    topics.push_back(topic(Topic::Contact, "contact", session::ContactSample::descriptor()));
-  }
-  topics.push_back(
-      topic(Topic::Depth,
-            "depth",
-            surgeon ? session::DepthReport::descriptor() : session::DepthEstimate::descriptor()));
-  return topics;
-}
 
 struct SessionEncoder::Messages {
   explicit Messages(Role role) : site{role} {}
@@ -290,6 +301,12 @@ struct SessionEncoder::Messages {
   session::ContactSample contact;
   session::DepthEstimate estimate;
   session::DepthReport report;
+  session::HandReading hand;
+  session::StageReading stage;
+  session::ForceReading force;
+  session::LinkHeard heard;
+  session::UserCommand user;
+  session::Devices devices;
 };
 
 SessionEncoder::SessionEncoder(Role site) : messages_{std::make_unique<Messages>(site)} {}
@@ -300,57 +317,55 @@ std::optional<Prepared> SessionEncoder::prepare(const Record& record,
   using Answer = std::optional<Prepared>;
   Messages& to = *messages_;
   const bool surgeon = to.site == Role::Surgeon;
-  return std::visit(Overloaded{[&](const SiteTick& tick) -> Answer {
-                                 if (surgeon) {
-                                   put_tick(tick, to.surgeon_tick);
-                                   return to.ready(Topic::Tick, tick.at, to.surgeon_tick);
-                                 }
-                                 put_tick(tick, to.patient_tick);
-                                 return to.ready(Topic::Tick, tick.at, to.patient_tick);
-                               },
-                               [&](const Arrived& arrived) -> Answer {
-                                 put(arrived, to.arrived);
-                                 return to.ready(Topic::Arrived, arrived.at, to.arrived);
-                               },
-                               [&](const LinkStatus& status) -> Answer {
-                                 put(status.health, records_dropped, to.link);
-                                 return to.ready(Topic::Link, status.at, to.link);
-                               },
-                               [&](const Note& note) -> Answer {
-                                 put_event(note.code, to.event);
-                                 to.event.set_detail(note.detail);
-                                 return to.ready(Topic::Event, note.at, to.event);
-                               },
-                               [&](const Transition& transition) -> Answer {
-                                 put_event(transition.reason, to.event);
-                                 to.event.set_kind(session::Event::TRANSITION);
-                                 to.event.set_from(to_wire<session::SiteState>(transition.from));
-                                 to.event.set_to(to_wire<session::SiteState>(transition.to));
-                                 return to.ready(Topic::Event, transition.at, to.event);
-                               },
-                               [&](const ContactSample& sample) -> Answer {
-                                 if (surgeon) {
-                                   return std::nullopt;
-                                 }
-                                 put(sample, to.contact);
-                                 return to.ready(Topic::Contact, sample.at, to.contact);
-                               },
-                               [&](const DepthEstimate& estimate) -> Answer {
-                                 if (surgeon) {
-                                   return std::nullopt;
-                                 }
-                                 put(estimate, to.estimate);
-                                 return to.ready(
-                                     Topic::Depth, estimate.stroke_ended_at, to.estimate);
-                               },
-                               [&](const DepthArrived& arrived) -> Answer {
-                                 if (!surgeon) {
-                                   return std::nullopt;
-                                 }
-                                 put(arrived.report, to.report);
-                                 return to.ready(Topic::Depth, arrived.at, to.report);
-                               }},
-                    record);
+  const auto plain =
+      [&to](Topic topic, TimePoint at, const auto& value, auto& message, bool here = true) {
+        if (!here) return Answer{};
+        put(value, message);
+        return Answer{to.ready(topic, at, message)};
+      };
+  const auto tick_of = [&to](const SiteTick& tick, auto& message) {
+    put_tick(tick, message);
+    return Answer{to.ready(Topic::Tick, tick.at, message)};
+  };
+  const auto event = [&to](TimePoint at) { return Answer{to.ready(Topic::Event, at, to.event)}; };
+  return std::visit(
+      Overloaded{
+          [&](const SiteTick& t) {
+            return surgeon ? tick_of(t, to.surgeon_tick) : tick_of(t, to.patient_tick);
+          },
+          [&](const Arrived& a) { return plain(Topic::Arrived, a.at, a, to.arrived); },
+          [&](const LinkStatus& status) {
+            put(status.health, records_dropped, to.link);
+            return Answer{to.ready(Topic::Link, status.at, to.link)};
+          },
+          [&](const Note& note) {
+            put_event(note.code, to.event);
+            to.event.set_detail(note.detail);
+            return event(note.at);
+          },
+          [&](const Transition& transition) {
+            put_event(transition.reason, to.event);
+            to.event.set_kind(session::Event::TRANSITION);
+            to.event.set_from(to_wire<session::SiteState>(transition.from));
+            to.event.set_to(to_wire<session::SiteState>(transition.to));
+            return event(transition.at);
+          },
+          [&](const ContactSample& c) {
+            return plain(Topic::Contact, c.at, c, to.contact, !surgeon);
+          },
+          [&](const DepthEstimate& e) {
+            return plain(Topic::Depth, e.stroke_ended_at, e, to.estimate, !surgeon);
+          },
+          [&](const DepthArrived& d) {
+            return plain(Topic::Depth, d.at, d.report, to.report, surgeon);
+          },
+          [&](const HandReading& h) { return plain(Topic::Hand, h.at, h, to.hand, surgeon); },
+          [&](const StageReading& s) { return plain(Topic::Stage, s.at, s, to.stage, !surgeon); },
+          [&](const ForceReading& f) { return plain(Topic::Force, f.at, f, to.force, !surgeon); },
+          [&](const LinkHeard& l) { return plain(Topic::Heard, l.at, l, to.heard); },
+          [&](const UserAsked& u) { return plain(Topic::User, u.at, u.command, to.user); },
+          [&](const DevicesTold& d) { return plain(Topic::Devices, d.at, d, to.devices); }},
+      record);
 }
 
 Prepared SessionEncoder::prepare(const TickView& view) {

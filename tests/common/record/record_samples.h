@@ -136,7 +136,39 @@ inline void add_fields(Fields& out, const Transition& t) {
   add_all(out, t.at, t.from, t.to, t.reason);
 }
 inline void add_fields(Fields& out, const ContactSample& c) {
-  add_all(out, c.at, c.position, c.force, c.lateral);
+  add_all(out, c.at, c.position, c.force, c.lateral, c.position_age, c.force_age);
+}
+inline void add_fields(Fields& out, const HandReading& h) {
+  add_all(out, h.at, h.sampled_at, h.position, h.velocity, h.lateral);
+  add_all(out, h.dead_man_held, h.emergency_stop, h.faulted, h.script_phase);
+}
+inline void add_fields(Fields& out, const StageReading& s) {
+  add_all(out, s.at, s.sampled_at, s.position, s.velocity, s.lateral, s.at_limit, s.faulted);
+}
+inline void add_fields(Fields& out, const ForceReading& f) {
+  add_all(out, f.at, f.fresh, f.sampled_at, f.force, f.saturated);
+}
+inline void add_fields(Fields& out, const LinkHeard& h) {
+  add_all(out, h.at, h.state, h.session_id, h.gap, h.round_trip, h.key, h.peer_heard);
+  add_all(out, h.peer_state, h.peer_epoch, h.peer_lateral, h.depth_number);
+}
+inline void add_fields(Fields& out, const UserAsked& u) {
+  add_all(out, u.at, u.command.emergency_stop, u.command.resets);
+}
+inline void add_fields(Fields& out, const DevicesTold& d) {
+  add_all(out, d.at, d.of_peer, d.facts.hand.has_value());
+  add_all(out, d.facts.stage.has_value(), d.facts.sensor.has_value());
+  if (const auto& hand = d.facts.hand) {
+    add_all(out, hand->axes, hand->force_peak, hand->force_continuous, hand->rate);
+  }
+  if (const auto& stage = d.facts.stage) {
+    add_all(out, stage->axes, stage->travel_min, stage->travel_max, stage->travel_side);
+    add_all(out, stage->speed, stage->acceleration, stage->rate, stage->lag, stage->drags);
+  }
+  if (const auto& sensor = d.facts.sensor) {
+    add_all(out, sensor->pole, sensor->step, sensor->range, sensor->noise, sensor->rate);
+    add_all(out, sensor->lag);
+  }
 }
 inline void add_fields(Fields& out, const DepthEstimate& e) {
   add_all(out,

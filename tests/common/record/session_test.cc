@@ -110,9 +110,32 @@ DepthEstimate any_estimate() {
           any_double()};
 }
 
+DevicesTold any_devices() {
+  DevicesTold told{.at = any_time(), .of_peer = any<bool>(), .facts = {}};
+  if (any<bool>()) {
+    told.facts.hand = HandFacts{any<std::uint32_t>(), any_double(), any_double(), any_double()};
+  }
+  if (any<bool>()) {
+    told.facts.stage = StageFacts{any<std::uint32_t>(),
+                                  any_double(),
+                                  any_double(),
+                                  any_double(),
+                                  any_double(),
+                                  any_double(),
+                                  any_double(),
+                                  any_double(),
+                                  any<bool>()};
+  }
+  if (any<bool>()) {
+    told.facts.sensor = ForceSensorFacts{
+        any_double(), any_double(), any_double(), any_double(), any_double(), any_double()};
+  }
+  return told;
+}
+
 Record any_record(Role site) {
   const bool surgeon = site == Role::Surgeon;
-  switch (*rc::gen::inRange(0, surgeon ? 6 : 7)) {
+  switch (*rc::gen::inRange(0, 11)) {
     case 0:
       return any_tick();
     case 1:
@@ -145,8 +168,48 @@ Record any_record(Role site) {
                              any_double()}};
       }
       return any_estimate();
+    case 6:
+      if (surgeon) {
+        return HandReading{any_time(),
+                           any_time(),
+                           any_double(),
+                           any_double(),
+                           any_double(),
+                           any<bool>(),
+                           any<bool>(),
+                           any<bool>(),
+                           any<std::uint32_t>()};
+      }
+      return StageReading{any_time(),
+                          any_time(),
+                          any_double(),
+                          any_double(),
+                          any_double(),
+                          any<bool>(),
+                          any<bool>()};
+    case 7:
+      return LinkHeard{any_time(),
+                       any_of<LinkState>(kLinkStateCount),
+                       any<std::uint64_t>(),
+                       any_span(),
+                       any_span(),
+                       any<std::uint8_t>(),
+                       any<bool>(),
+                       any_of<SiteState>(kSiteStateCount),
+                       any<std::uint32_t>(),
+                       any_double(),
+                       any<std::uint32_t>()};
+    case 8:
+      return UserAsked{any_time(), {any<bool>(), any<std::uint32_t>()}};
+    case 9:
+      return any_devices();
     default:
-      return ContactSample{any_time(), any_double(), any_double(), any_double()};
+      if (surgeon) return any_devices();
+      if (any<bool>()) {
+        return ForceReading{any_time(), any<bool>(), any_time(), any_double(), any<bool>()};
+      }
+      return ContactSample{
+          any_time(), any_double(), any_double(), any_double(), any_span(), any_span()};
   }
 }
 
