@@ -7,13 +7,14 @@
 #include <span>
 #include <string>
 
+#include "common/core/device_facts.h"
 #include "common/link/telegram.h"
 
 /// The messages that sites exchange before and after a session, as bytes (proto/link.proto).
 /// Thread: any but rt; these allocate.
 namespace palp::link {
 
-inline constexpr std::uint32_t kProtocolVersion = 3;
+inline constexpr std::uint32_t kProtocolVersion = 4;
 inline constexpr std::size_t kNameSizeMax = 40;      ///< [bytes], coupling and git
 inline constexpr std::size_t kTextSizeMax = 160;     ///< [bytes], a sentence
 inline constexpr std::size_t kControlSizeMax = 512;  ///< [bytes], any control message
@@ -27,7 +28,8 @@ struct Hello {
   std::uint32_t connection_id{};    ///< to be put into what is sent to the sender; 0: not known
   std::uint64_t settings_hash{};    ///< of everything both sites must agree on
   std::string coupling;
-  std::string git;  ///< for people
+  std::string git;        ///< for people
+  DeviceFacts devices{};  ///< the sender's; their numbers may be anything
 };
 
 enum class ByeReason : std::uint8_t { Leaving, Busy, Mismatch };

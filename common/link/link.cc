@@ -64,6 +64,7 @@ void Link::end_session() noexcept {
   counters_.lost += conversation_.received.missing();
   conversation_ = Conversation{};
   session_id_ = 0;
+  peer_devices_ = {};
 }
 
 Handover Link::adopt(Handover next, TimePoint now) noexcept {
@@ -84,6 +85,7 @@ Handover Link::adopt(Handover next, TimePoint now) noexcept {
     PALP_CHECK(next.protection != nullptr, "a new session has its own protection");
     end_session();
     session_id_ = next.session_id;
+    peer_devices_ = next.peer_devices;
     conversation_.began_at = now;
   }
   if (next.transport) retired.transport = std::exchange(transport_, std::move(next.transport));
