@@ -33,7 +33,7 @@ double smallest_seen(const fem::DepthDatabase& database,
   const std::vector<TipState> motion = motion_of(plan);
   const auto seen = [&](double radius) {
     const fem::DepthDatabase::Query query{.depth = depth, .radius = radius, .ratio = ratio};
-    return depth_bound(database, query, {}, {}, plan.sensing, motion).signal >= kSeen;
+    return depth_bound(database, query, {}, {}, plan.sensor, motion).signal >= kSeen;
   };
   double low = database.grid().radii.front();
   double high = largest(database, depth, ratio);
@@ -103,7 +103,7 @@ Ending run_visible(const VisibilityFlags& flags) {
   const TapPlan plan{.taps = static_cast<int>(flags.taps),
                      .reference_taps = static_cast<int>(flags.reference_taps),
                      .indentation = flags.indentation_mm * kMillimetre,
-                     .sensing = {}};
+                     .sensor = {}};
   const Visibility all = visibility(*database, plan);
   if (!flags.report.empty()) {
     nlohmann::ordered_json out;

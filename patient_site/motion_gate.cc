@@ -26,9 +26,11 @@ void MotionGate::begin(double tip, double lateral) noexcept {
   command_ = tip;
   lateral_ = lateral;
   velocity_ = 0;
+  co_filter_.reset(tip);
 }
 
 void MotionGate::feel(double tip, double contact_force) noexcept {
+  co_filter_.step(tip);
   felt_ += kSmoothing * (contact_force - felt_);
   if (surface_of_this_place_) return;
   const double least =
@@ -42,7 +44,7 @@ void MotionGate::feel(double tip, double contact_force) noexcept {
   }
   // Contact began where Hertz' law of the expected tissue gives no force.
   const double force = std::max(felt_, config_.contact_force / 2) / config_.contact_stiffness;
-  surface_ = tip - std::cbrt(force * force);
+  surface_ = co_filter_.value() - std::cbrt(force * force);
   surface_of_this_place_ = true;
 }
 

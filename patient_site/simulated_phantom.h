@@ -26,6 +26,9 @@ struct SimulatedPhantomConfig {
   std::uint64_t seed{1};          ///< of the force noise
 };
 
+/// What such devices say of themselves. Lags are those of the servo and of the pole, to 0.1 ms.
+[[nodiscard]] PatientDevices facts_of(const SimulatedPhantomConfig& config) noexcept;
+
 /// The plant's own state, for judges: nothing of it may reach a node.
 struct PhantomTruth {
   double position{};       ///< [m], tip
@@ -46,6 +49,10 @@ class SimulatedPhantom final : public Stage, public ForceSensor {
  public:
   SimulatedPhantom(const Phantom& phantom, const SimulatedPhantomConfig& config);
 
+  [[nodiscard]] StageFacts stage_facts() const noexcept override { return facts_of(config_).stage; }
+  [[nodiscard]] ForceSensorFacts sensor_facts() const noexcept override {
+    return facts_of(config_).sensor;
+  }
   StageState read(TimePoint now) noexcept override;
   void move_to(const StageTarget& target) noexcept override;
   void halt() noexcept override;

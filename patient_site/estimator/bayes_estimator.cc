@@ -35,8 +35,8 @@ void BayesEstimator::judge(DepthEstimate& estimate, const PaperEstimator::PlaceD
   DepthModel::Input input{.touches = place.touches,
                           .surface = place.surface,
                           .noise = place.noise,
-                          .quantum = config_.strokes.force_quantum,
-                          .cut_off = config_.strokes.sensor_cut_off,
+                          .quantum = config_.strokes.sensor.step,
+                          .cut_off = config_.strokes.sensor.pole,
                           .stiffness = config_.stiffness,
                           .expected = {}};
   Settled& settled = settled_at(place);

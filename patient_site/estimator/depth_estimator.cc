@@ -15,6 +15,11 @@ std::variant<BayesEstimator, PaperEstimator> make(const DepthEstimatorConfig& co
 
 }  // namespace
 
+DepthEstimatorConfig with_sensor(DepthEstimatorConfig config, const ForceSensorFacts& sensor) {
+  config.bayes.strokes.sensor = sensor;
+  return config;
+}
+
 DepthEstimator::DepthEstimator(const DepthEstimatorConfig& config) : estimator_{make(config)} {}
 
 std::optional<DepthEstimate> DepthEstimator::add(const ContactSample& sample) {

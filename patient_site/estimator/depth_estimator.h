@@ -22,6 +22,10 @@ struct DepthEstimatorConfig {
   std::optional<fem::DepthDatabase> database;  ///< nothing: the one in the program
 };
 
+/// `config` for strokes felt by that sensor.
+[[nodiscard]] DepthEstimatorConfig with_sensor(DepthEstimatorConfig config,
+                                               const ForceSensorFacts& sensor);
+
 /// Strokes in, a depth out, by one of two ways. Thread: estimator; allocates.
 class DepthEstimator {
  public:

@@ -77,9 +77,9 @@ Misfit compare(std::span<const ContactPoint> points, const ContactLaw& law) noex
 PaperEstimator::PaperEstimator(const PaperEstimatorConfig& config)
     : config_{config},
       cutter_{config.cutter},
+      co_filter_{config.sensor.pole, config.period},
       position_filter_{config.filter_cut_off, config.period},
       force_filter_{config.filter_cut_off, config.period},
-      pole_gain_{LowPass{config.sensor_cut_off, config.period}.gain()},
       filter_gain_{position_filter_.gain()} {
   PALP_CHECK(config.fit_range > 0 && config.indentation_min > 0, "a stroke has a length");
   places_.reserve(kPlacesMax);
@@ -123,11 +123,10 @@ std::optional<PaperEstimator::PlaceData> PaperEstimator::place() const {
 StrokeSample PaperEstimator::filter(const ContactSample& sample) noexcept {
   StrokeSample out{.measured = sample, .tip = sample.position};
   if (previous_) {
-    // The co-filter is a known first-order pole: undone exactly, it gives the encoder's reading.
-    out.tip = previous_->position + (sample.position - previous_->position) / pole_gain_;
-    out.position = position_filter_.step(sample.position);
+    out.position = position_filter_.step(co_filter_.step(sample.position));
     out.force = force_filter_.step(sample.force);
   } else {
+    co_filter_.reset(sample.position);
     position_filter_.reset(sample.position);
     force_filter_.reset(sample.force);
     out.position = sample.position;
@@ -142,7 +141,7 @@ PaperEstimator::Measured PaperEstimator::measure() const noexcept {
   measured.position_max = loading.back().position;
   for (const StrokeSample& sample : loading) {
     measured.force_max = std::max(measured.force_max, sample.force);
-    measured.saturated |= std::abs(sample.measured.force) >= config_.force_range;
+    measured.saturated |= std::abs(sample.measured.force) >= config_.sensor.range;
     if (sample.force < config_.cutter.contact_force) continue;
     if (measured.in_contact++ == 0) measured.first_contact = sample.position;
   }
@@ -322,7 +321,7 @@ Touch PaperEstimator::touch_of(const Place& place) const {
   Touch out;
   out.reserve((samples.size() - first) / stride + 1);
   for (std::size_t i = first; i < samples.size(); i += stride) {
-    if (std::abs(samples[i].measured.force) >= config_.force_range) break;
+    if (std::abs(samples[i].measured.force) >= config_.sensor.range) break;
     const std::size_t before = i < first + stride ? i - 1 : i - stride;
     out.push_back({.tip = samples[i].tip,
                    .force = samples[i].measured.force,
@@ -340,7 +339,7 @@ PaperEstimator::Branch PaperEstimator::branch_curve(const Place& place,
              .contact_squares = 0,
              .contact_count = 0};
   const std::span<const StrokeSample> samples = cutter_.samples();
-  const SensorSteps steps{noise, config_.force_quantum};
+  const SensorSteps steps{noise, config_.sensor.step};
   double sensed = 0;    // [N], the law behind the transducer's pole
   double filtered = 0;  // [N], and behind the low pass
   double bias = 0;      // [N], of the steps, behind the low pass
@@ -358,7 +357,7 @@ PaperEstimator::Branch PaperEstimator::branch_curve(const Place& place,
       const double modelled =
           law->force(sample.tip - law->surface) * (1 + law->rate_factor * tip_rate);
       // The transducer's pole is continuous: between two samples it sees the mean of both.
-      sensed += pole_gain_ * ((modelled + modelled_before) / 2 - sensed);
+      sensed += co_filter_.gain() * ((modelled + modelled_before) / 2 - sensed);
       modelled_before = modelled;
       filtered += filter_gain_ * (sensed - filtered);
       const double offset = steps.at(sensed).offset;
@@ -369,7 +368,7 @@ PaperEstimator::Branch PaperEstimator::branch_curve(const Place& place,
       const double rest = sample.measured.force - sensed - offset;
       if (loading) squares += rest * rest;
       // In the air the steps hide most of the noise.
-      if (loading && sensed > config_.force_quantum) {
+      if (loading && sensed > config_.sensor.step) {
         out.contact_squares += rest * rest;
         out.contact_count += 1;
       }

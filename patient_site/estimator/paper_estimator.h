@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "common/core/device_facts.h"
 #include "common/core/filters.h"
 #include "common/core/stroke.h"
 #include "common/core/time.h"
@@ -16,11 +17,9 @@
 namespace palp::estimator {
 
 struct PaperEstimatorConfig {
-  double sensor_cut_off{20};       ///< [Hz], the transducer's pole: force and position carry it
+  ForceSensorFacts sensor{};       ///< what the force comes from
   double filter_cut_off{20};       ///< [Hz], low pass of the paper (section III)
   double period{1e-3};             ///< [s], of the samples
-  double force_quantum{0.05};      ///< [N], resolution of the transducer (paper II.A); 0: unknown
-  double force_range{49};          ///< [N], of the transducer (5 kgf)
   double indentation_min{2.5e-3};  ///< [m], a shorter stroke says nothing on eq. (2) over 4 mm
   double fit_range{4e-3};          ///< [m], of eq. (2): reproduces the paper's hash values
   double noise_max{0.1};           ///< [N], rms of a sample: five times the transducer's
@@ -123,9 +122,9 @@ class PaperEstimator {
 
   PaperEstimatorConfig config_;
   StrokeCutter cutter_;
+  LowPass co_filter_;  ///< of the tip: the sensor's pole, which the force has passed
   LowPass position_filter_;
   LowPass force_filter_;
-  double pole_gain_;    ///< [-], of the transducer's pole, per sample
   double filter_gain_;  ///< [-], of the low pass, per sample
   std::optional<ContactSample> previous_;
   std::vector<Place> places_;

@@ -20,6 +20,10 @@ constexpr Duration kTick = std::chrono::milliseconds{1};
 class FaultySite final : public Stage, public ForceSensor {
  public:
   explicit FaultySite(SimulatedPhantom& site) : site_{site} {}
+  [[nodiscard]] StageFacts stage_facts() const noexcept override { return site_.stage_facts(); }
+  [[nodiscard]] ForceSensorFacts sensor_facts() const noexcept override {
+    return site_.sensor_facts();
+  }
   StageState read(TimePoint now) noexcept override {
     StageState state = site_.read(now);
     if (stage_gives_nan) state.position = std::nan("");

@@ -119,7 +119,7 @@ TEST(PaperEstimatorTest, AForceAtTheEndOfTheRangeIsInvalid) {
   const auto phantom = make_phantom("paper-10mm");
   ASSERT_TRUE(phantom);
   estimator::PaperEstimatorConfig config;
-  config.force_range = 0.3;
+  config.sensor.range = 0.3;
   const auto estimates = tap(*phantom, ideal_sensor(), {.taps = 1}, config);
   ASSERT_EQ(estimates.size(), 1U);
   EXPECT_EQ(estimates[0].reason, DepthReason::ForceSaturated);
@@ -157,17 +157,13 @@ TEST(PaperEstimatorTest, AStrokeThatGoesBackAndPressesOnIsNotMonotone) {
   SimulatedPhantomConfig sensor = ideal_sensor();
   sensor.start_position = -3e-3;
   SimulatedPhantom site{*phantom, sensor};
-  LowPass co_filter{20, 1e-3};
-  co_filter.reset(-3e-3);
   std::vector<DepthEstimate> estimates;
   TimePoint now{};
   for (int i = 0; i < 3000; ++i) {
     now += std::chrono::milliseconds{1};
     const StageState stage = site.read(now);
-    const auto estimate = estimator.add({.at = now,
-                                         .position = co_filter.step(stage.position),
-                                         .force = site.sample(now)->force,
-                                         .lateral = 0});
+    const auto estimate = estimator.add(
+        {.at = now, .position = stage.position, .force = site.sample(now)->force, .lateral = 0});
     if (estimate) estimates.push_back(*estimate);
     // To 3 mm, back to 2 mm, on to 4 mm, out.
     const double t = i * 1e-3;
@@ -201,13 +197,11 @@ TEST(PaperEstimatorTest, OtherTissueAtTheSamePlaceStartsAfresh) {
     config.start_position = -3e-3;
     config.start_lateral = 10e-3;
     SimulatedPhantom site{*phantom, config};
-    LowPass co_filter{20, 1e-3};
-    co_filter.reset(-3e-3);
     for (int i = 0; i < 2 * 1500; ++i) {
       now += std::chrono::milliseconds{1};
       const StageState stage = site.read(now);
-      if (const auto estimate = estimator.add(
-              {now, co_filter.step(stage.position), site.sample(now)->force, stage.lateral})) {
+      if (const auto estimate =
+              estimator.add({now, stage.position, site.sample(now)->force, stage.lateral})) {
         hashes.push_back(estimate->hash);
       }
       const double t = std::min((i % 1500) * 1e-3, 1.0);
@@ -227,15 +221,13 @@ TEST(PaperEstimatorTest, AHoldOnTheWayInIsStillOneStroke) {
   config.start_lateral = 10e-3;
   SimulatedPhantom site{*phantom, config};
   estimator::PaperEstimator estimator{{}};
-  LowPass co_filter{20, 1e-3};
-  co_filter.reset(-3e-3);
   std::vector<DepthEstimate> estimates;
   TimePoint now{};
   for (int i = 0; i < 5500; ++i) {
     now += std::chrono::milliseconds{1};
     const StageState stage = site.read(now);
-    if (const auto estimate = estimator.add(
-            {now, co_filter.step(stage.position), site.sample(now)->force, stage.lateral})) {
+    if (const auto estimate =
+            estimator.add({now, stage.position, site.sample(now)->force, stage.lateral})) {
       estimates.push_back(*estimate);
     }
     const double t = i * 1e-3;
