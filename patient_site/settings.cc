@@ -44,6 +44,7 @@ SimulatedPhantomConfig make_simulation(const proto::config::SimulatedPhantom& me
   SimulatedPhantomConfig simulation;
   simulation.servo_frequency = message.servo_hz();
   simulation.servo_damping = message.servo_damping();
+  simulation.stage_lag = from_milli(message.stage_lag_ms());
   simulation.acceleration_max = message.acceleration_max_m_per_s2();
   simulation.speed_max = message.speed_max_m_per_s();
   simulation.encoder_step = from_micro(message.encoder_um());

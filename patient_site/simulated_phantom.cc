@@ -29,8 +29,7 @@ PatientDevices facts_of(const SimulatedPhantomConfig& config) noexcept {
   PatientDevices facts;
   facts.stage.speed = config.speed_max;
   facts.stage.acceleration = config.acceleration_max;
-  facts.stage.lag =
-      to_tenth_of_millisecond(config.servo_damping / (std::numbers::pi * config.servo_frequency));
+  facts.stage.lag = config.stage_lag;
   facts.sensor.pole = config.sensor_cut_off;
   facts.sensor.step = config.force_quantum;
   facts.sensor.noise = config.force_noise;

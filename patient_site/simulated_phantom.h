@@ -11,6 +11,7 @@ namespace palp::patient {
 struct SimulatedPhantomConfig {
   double servo_frequency{20};     ///< [Hz], natural frequency of the position servo
   double servo_damping{0.9};      ///< [-], its damping ratio
+  double stage_lag{14.3e-3};      ///< [s], what the stage says of it; a servo may be otherwise
   double acceleration_max{8};     ///< [m/s^2]
   double speed_max{0.15};         ///< [m/s]
   double encoder_step{5e-6};      ///< [m]; 0: exact
@@ -26,7 +27,7 @@ struct SimulatedPhantomConfig {
   std::uint64_t seed{1};          ///< of the force noise
 };
 
-/// What such devices say of themselves. Lags are those of the servo and of the pole, to 0.1 ms.
+/// What such devices say of themselves.
 [[nodiscard]] PatientDevices facts_of(const SimulatedPhantomConfig& config) noexcept;
 
 /// The plant's own state, for judges: nothing of it may reach a node.

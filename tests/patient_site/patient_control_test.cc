@@ -121,7 +121,7 @@ TEST(PatientControlTest, ATicksRecordsEndWithWhatTheLinkSaid) {
   for (int i = 0; i < 20; ++i) bench.engaged_tick(0);
   std::size_t ticks = 0;
   for (const record::Record& record : bench.recorder.records()) {
-    ticks += std::holds_alternative<record::LinkHeard>(record) ? 1 : 0;
+    if (std::holds_alternative<record::LinkHeard>(record)) ++ticks;
   }
   EXPECT_EQ(ticks, 20U);
   EXPECT_EQ(bench.recorder.all<record::StageReading>().size(), 20U);

@@ -36,6 +36,7 @@ void add(settings_test::FieldList& list, const MotionGateConfig& gate) {
 void add(settings_test::FieldList& list, const SimulatedPhantomConfig& simulation) {
   list.add("servo_frequency", simulation.servo_frequency)
       .add("servo_damping", simulation.servo_damping)
+      .add("stage_lag", simulation.stage_lag)
       .add("acceleration_max", simulation.acceleration_max)
       .add("speed_max", simulation.speed_max)
       .add("encoder_step", simulation.encoder_step)
