@@ -12,8 +12,8 @@
 namespace palp::fem {
 namespace {
 
-using config::Ending;
 using config::ExitCode;
+using config::ExitStatus;
 
 constexpr std::size_t kRowsMax = 1000;
 
@@ -29,7 +29,7 @@ std::vector<std::string> split(const std::string& text, char mark) {
   return parts;
 }
 
-Ending bad_input(const std::string& sentence) {
+ExitStatus bad_input(const std::string& sentence) {
   return {ExitCode::BadInput, "palp-fem: " + sentence};
 }
 
@@ -137,7 +137,7 @@ std::string csv_text(const std::vector<CurveRow>& rows) {
   return text;
 }
 
-Ending run_curve(const CurveFlags& flags) {
+ExitStatus run_curve(const CurveFlags& flags) {
   const auto request = curve_request(flags);
   if (!request) return bad_input(request.error().text);
   const auto curve = solve_curve(*request);

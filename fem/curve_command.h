@@ -28,7 +28,7 @@ struct CurveFlags {
 };
 
 void declare_curve(config::CommandLine& line, CurveFlags& flags);
-[[nodiscard]] config::Ending run_curve(const CurveFlags& flags);
+[[nodiscard]] config::ExitStatus run_curve(const CurveFlags& flags);
 
 /// "0.5,1,2" or "0:4:0.25" (inclusive), in millimetre -> [m].
 [[nodiscard]] Result<std::vector<double>> parse_indentations(const std::string& text);

@@ -27,8 +27,8 @@ namespace {
 
 constexpr const char* kSchema = "palp.depth-database/1";
 
-using config::Ending;
 using config::ExitCode;
+using config::ExitStatus;
 
 constexpr int kSaveEvery = 4;  // cells
 constexpr int kStartsMax = 3;  // of one process
@@ -41,13 +41,13 @@ struct Shard {
   std::size_t count{1};
 };
 
-Ending bad_input(const std::string& sentence) {
+ExitStatus bad_input(const std::string& sentence) {
   return {ExitCode::BadInput, "palp-fem: " + sentence};
 }
-Ending cannot_open(const std::string& sentence) {
+ExitStatus cannot_open(const std::string& sentence) {
   return {ExitCode::CannotOpen, "palp-fem: " + sentence};
 }
-Ending refused(const Error& error) {
+ExitStatus refused(const Error& error) {
   return error.unreachable ? cannot_open(error.text) : bad_input(error.text);
 }
 
@@ -160,7 +160,7 @@ Result<void> start(const DepthTable& table, Share& share) {
   return {};
 }
 
-std::string ending_of(int status) {
+std::string exit_status_of(int status) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
     return "was ended by signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
@@ -192,7 +192,7 @@ Result<void> solve_on_all_cores(const DepthTable& table,
       continue;
     }
     const std::string sentence = "process " + std::to_string(share - shares.begin() + 1) + " of " +
-                                 std::to_string(shares.size()) + " " + ending_of(status);
+                                 std::to_string(shares.size()) + " " + exit_status_of(status);
     const bool refused = WIFEXITED(status) && WEXITSTATUS(status) == kRefused;
     if (!refused && share->starts < kStartsMax) {
       std::fprintf(stderr, "\npalp-fem: %s; it is started again\n", sentence.c_str());
@@ -233,7 +233,7 @@ nlohmann::ordered_json describe(const DepthTable& table) {
   return out;
 }
 
-Ending tell(const DepthTable& table, const std::string& report) {
+ExitStatus tell(const DepthTable& table, const std::string& report) {
   const std::string text = describe(table).dump(2) + "\n";
   if (!report.empty()) {
     if (const auto written = config::write_whole_file(report, text); !written) {
@@ -243,7 +243,7 @@ Ending tell(const DepthTable& table, const std::string& report) {
   return {ExitCode::Done, text};
 }
 
-Ending save(const DepthTable& table, const DatabaseFlags& flags) {
+ExitStatus save(const DepthTable& table, const DatabaseFlags& flags) {
   if (const auto written = config::write_whole_file(flags.out, table_bytes(table)); !written) {
     return cannot_open(written.error().text);
   }
@@ -275,7 +275,7 @@ void declare_info(config::CommandLine& line, DatabaseFlags& flags) {
   line.required();
 }
 
-Ending run_database(const DatabaseFlags& flags) {
+ExitStatus run_database(const DatabaseFlags& flags) {
   const auto shard = parse_shard(flags.shard);
   if (!shard) return bad_input(shard.error().text);
   auto table = start_table(flags);
@@ -295,14 +295,14 @@ Ending run_database(const DatabaseFlags& flags) {
         check_interpolation(*table, static_cast<std::uint32_t>(flags.check), kCheckSeed);
     if (!checked) return bad_input(checked.error().text);
   }
-  const Ending ending = save(*table, flags);
+  const ExitStatus exit_status = save(*table, flags);
   for (std::size_t core = 0; core < flags.cores; ++core) {
     static_cast<void>(std::remove(part_name(flags.out, core).c_str()));
   }
-  return ending;
+  return exit_status;
 }
 
-Ending run_merge(const DatabaseFlags& flags) {
+ExitStatus run_merge(const DatabaseFlags& flags) {
   std::optional<DepthTable> table;
   for (const std::string& name : flags.files) {
     auto found = load(name);
@@ -318,7 +318,7 @@ Ending run_merge(const DatabaseFlags& flags) {
   return save(*table, flags);
 }
 
-Ending run_info(const DatabaseFlags& flags) {
+ExitStatus run_info(const DatabaseFlags& flags) {
   const auto table = load(flags.file);
   if (!table) return refused(table.error());
   return tell(*table, flags.report);

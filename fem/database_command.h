@@ -25,8 +25,8 @@ void declare_info(config::CommandLine& line, DatabaseFlags& flags);
 
 /// Solves what the file does not hold yet, on all cores (a process each), with progress on standard
 /// error; interrupted and started again it goes on where it was.
-[[nodiscard]] config::Ending run_database(const DatabaseFlags& flags);
-[[nodiscard]] config::Ending run_merge(const DatabaseFlags& flags);
-[[nodiscard]] config::Ending run_info(const DatabaseFlags& flags);
+[[nodiscard]] config::ExitStatus run_database(const DatabaseFlags& flags);
+[[nodiscard]] config::ExitStatus run_merge(const DatabaseFlags& flags);
+[[nodiscard]] config::ExitStatus run_info(const DatabaseFlags& flags);
 
 }  // namespace palp::fem

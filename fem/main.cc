@@ -23,7 +23,7 @@ int run(int argc, char** argv) {
   declare_verify(line.verb("verify", "the solver against closed solutions"), verify);
   PaperFlags paper;
   declare_paper(line.verb("paper", "the paper's phantoms, hash and formula, beside ours"), paper);
-  return config::run_program(line, argc, argv, [&]() -> config::Ending {
+  return config::run_program(line, argc, argv, [&]() -> config::ExitStatus {
     const std::string verb = line.chosen_verb();
     if (verb == "database") return run_database(database);
     if (verb == "merge") return run_merge(database);

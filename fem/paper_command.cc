@@ -16,8 +16,8 @@
 namespace palp::fem {
 namespace {
 
-using config::Ending;
 using config::ExitCode;
+using config::ExitStatus;
 
 /// Paper, Table I.
 struct TableRow {
@@ -333,7 +333,7 @@ std::vector<std::string> paper_misses(const PaperStudy& study) {
   return missed;
 }
 
-Ending run_paper(const PaperFlags& flags) {
+ExitStatus run_paper(const PaperFlags& flags) {
   const auto study = study_paper(flags);
   if (!study) return {ExitCode::BadInput, "palp-fem: " + study.error().text};
   const std::vector<std::pair<std::string, std::string>> files{

@@ -23,7 +23,7 @@ struct PaperFlags {
 void declare_paper(config::CommandLine& line, PaperFlags& flags);
 /// Solves the paper's phantoms and sets its numbers beside ours. Missed if a published hash or the
 /// pole is off by more than 1 %.
-[[nodiscard]] config::Ending run_paper(const PaperFlags& flags);
+[[nodiscard]] config::ExitStatus run_paper(const PaperFlags& flags);
 
 /// One phantom.
 struct PaperPhantom {

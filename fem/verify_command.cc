@@ -10,8 +10,8 @@
 namespace palp::fem {
 namespace {
 
-using config::Ending;
 using config::ExitCode;
+using config::ExitStatus;
 
 std::size_t missed(const Checks& checks) {
   return static_cast<std::size_t>(
@@ -72,7 +72,7 @@ std::string verify_report(const Checks& checks) {
   return out.dump(2) + "\n";
 }
 
-Ending run_verify(const VerifyFlags& flags) {
+ExitStatus run_verify(const VerifyFlags& flags) {
   const Checks checks = verification(flags.quick ? Extent::Quick : Extent::Full);
   std::fputs(verify_table(checks).c_str(), stdout);
   if (!flags.report.empty()) {

@@ -15,7 +15,7 @@ struct VerifyFlags {
 
 void declare_verify(config::CommandLine& line, VerifyFlags& flags);
 /// Prints the table; TargetMissed if a row fails.
-[[nodiscard]] config::Ending run_verify(const VerifyFlags& flags);
+[[nodiscard]] config::ExitStatus run_verify(const VerifyFlags& flags);
 
 [[nodiscard]] std::string verify_table(const Checks& checks);
 [[nodiscard]] std::string verify_report(const Checks& checks);

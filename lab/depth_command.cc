@@ -17,12 +17,12 @@
 namespace palp::lab {
 namespace {
 
-using config::Ending;
 using config::ExitCode;
+using config::ExitStatus;
 
 constexpr std::uint32_t kWideShare = 5;  // so many random phantoms for a wide one
 
-Ending bad_input(const std::string& sentence) {
+ExitStatus bad_input(const std::string& sentence) {
   return {ExitCode::BadInput, "palp-lab: " + sentence};
 }
 
@@ -150,7 +150,7 @@ void declare_depth(config::CommandLine& line, DepthFlags& flags) {
   line.text("--svg", flags.svg, "FILE", "estimates, intervals and the truth");
 }
 
-Ending run_depth(const DepthFlags& flags) {
+ExitStatus run_depth(const DepthFlags& flags) {
   const auto study = study_of(flags);
   if (!study) return bad_input(study.error().text);
   if (const auto can = config::can_write_files({flags.report, flags.csv, flags.svg}); !can) {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "common/config/command_line.h"
-#include "lab/depth_study.h"
+#include "lab/plan/depth_study.h"
 
 namespace palp::lab {
 
@@ -27,6 +27,6 @@ struct DepthFlags {
 };
 
 void declare_depth(config::CommandLine& line, DepthFlags& flags);
-[[nodiscard]] config::Ending run_depth(const DepthFlags& flags);
+[[nodiscard]] config::ExitStatus run_depth(const DepthFlags& flags);
 
 }  // namespace palp::lab

@@ -10,21 +10,21 @@
 #include "common/config/exit_code.h"
 #include "common/config/program_run.h"
 #include "common/config/report.h"
-#include "common/io/parallel.h"
-#include "common/io/process_time.h"
+#include "common/io/process/parallel.h"
+#include "common/io/process/process_time.h"
 #include "lab/depth_command.h"
-#include "lab/plan.h"
-#include "lab/run_report.h"
-#include "lab/scenario_file.h"
-#include "lab/trial.h"
+#include "lab/plan/plan.h"
+#include "lab/plan/scenario_file.h"
+#include "lab/report/run_report.h"
+#include "lab/report/visibility.h"
+#include "lab/run/run.h"
 #include "lab/verbs.h"
-#include "lab/visibility.h"
 
 namespace palp::lab {
 namespace {
 
-using config::Ending;
 using config::ExitCode;
+using config::ExitStatus;
 
 struct Arguments {
   std::string scenario;
@@ -37,7 +37,7 @@ struct Arguments {
   bool bare{};
 };
 
-Ending refusal(const Error& fault) { return config::refusal("palp-lab", fault); }
+ExitStatus refusal(const Error& fault) { return config::refusal("palp-lab", fault); }
 
 Result<Scenario> scenario_of(const Arguments& arguments) {
   auto document = load_scenario(arguments.scenario);
@@ -79,7 +79,7 @@ Result<SessionFiles> open_files(const std::string& prefix) {
 
 /// A run that its duration ends is done; one that the operator gave up is not, whatever was felt
 /// until then.
-Ending ending_of(surgeon::ScriptOutcome outcome, const std::string& summary) {
+ExitStatus exit_status_of(surgeon::ScriptOutcome outcome, const std::string& summary) {
   using surgeon::ScriptOutcome;
   if (outcome == ScriptOutcome::Completed || outcome == ScriptOutcome::None) {
     return {ExitCode::Done, summary};
@@ -90,7 +90,7 @@ Ending ending_of(surgeon::ScriptOutcome outcome, const std::string& summary) {
               std::string{surgeon::to_string(outcome)}};
 }
 
-Ending run(const Arguments& arguments) {
+ExitStatus run(const Arguments& arguments) {
   const auto scenario = scenario_of(arguments);
   if (!scenario) return refusal(scenario.error());
   if (const auto can = config::can_write_files({arguments.report, arguments.trace}); !can) {
@@ -100,9 +100,9 @@ Ending run(const Arguments& arguments) {
   if (!files) return {ExitCode::CannotOpen, "palp-lab: " + files.error().text};
 
   const io::ProcessTime begin = io::process_time();
-  const TrialResult result = run_trial(*scenario,
-                                       {.surgeon = files->surgeon ? &*files->surgeon : nullptr,
-                                        .patient = files->patient ? &*files->patient : nullptr});
+  const RunResult result = simulate(*scenario,
+                                    {.surgeon = files->surgeon ? &*files->surgeon : nullptr,
+                                     .patient = files->patient ? &*files->patient : nullptr});
   const io::ProcessTime end = io::process_time();
   const RunAccount account{.scenario = arguments.scenario,
                            .cpu = seconds(end.cpu - begin.cpu),
@@ -116,7 +116,7 @@ Ending run(const Arguments& arguments) {
     const auto written = config::write_whole_file(arguments.trace, trace_csv(result));
     if (!written) return {ExitCode::CannotOpen, "palp-lab: " + written.error().text};
   }
-  return ending_of(result.outcome, run_summary(*scenario, result, account));
+  return exit_status_of(result.outcome, run_summary(*scenario, result, account));
 }
 
 Machine machine() {
@@ -157,9 +157,10 @@ int main(int argc, char** argv) {
   declare_depth(line.verb("depth", "how well a depth is estimated, over many phantoms"), depth);
   palp::lab::VisibilityFlags visible;
   declare_visible(line.verb("visible", "the smallest inclusion the sensor sees"), visible);
-  return palp::config::run_program(line, argc, argv, [&]() -> palp::config::Ending {
+  return palp::config::run_program(line, argc, argv, [&]() -> palp::config::ExitStatus {
     const std::string verb = line.chosen_verb();
-    if (auto ending = palp::lab::run_batch_verb(verb, batch, palp::lab::machine())) return *ending;
+    if (auto exit_status = palp::lab::run_batch_verb(verb, batch, palp::lab::machine()))
+      return *exit_status;
     if (verb == "scenarios") {
       return {palp::config::ExitCode::Done,
               palp::lab::describe_scenarios() + palp::lab::describe_sets()};

@@ -174,7 +174,7 @@ class SurgeonAgain {
                .position = hand.position,
                .velocity = hand.velocity,
                .lateral = hand.lateral,
-               .dead_man_held = hand.dead_man_held,
+               .pedal_held = hand.pedal_held,
                .emergency_stop = hand.emergency_stop,
                .faulted = hand.faulted};
     in.script.begun = hand.script_phase != 0;

@@ -8,10 +8,10 @@
 #include "common/config/report.h"
 #include "common/config/settings_text.h"
 #include "common/coupling/any_coupling.h"
-#include "lab/batch_report.h"
-#include "lab/metric_plot.h"
-#include "lab/metric_table.h"
-#include "lab/stability_map.h"
+#include "lab/report/batch_report.h"
+#include "lab/report/metric_plot.h"
+#include "lab/report/stability_map.h"
+#include "lab/run/metric_table.h"
 
 namespace palp::lab {
 namespace {
@@ -24,14 +24,14 @@ constexpr const char* kSweep = "palp.sweep/1";
 constexpr std::string_view kMapName = "map";
 constexpr std::string_view kSweepName = "sweep";
 
-using config::Ending;
 using config::ExitCode;
+using config::ExitStatus;
 
 constexpr std::size_t kCasesSizeMax = std::size_t{1} << 30;  // [bytes], two million rows
 
 constexpr std::uint64_t kSeedMax = 9007199254740991;  // what a JSON number holds exactly
 
-Ending refusal(const Error& fault) { return config::refusal("palp-lab", fault); }
+ExitStatus refusal(const Error& fault) { return config::refusal("palp-lab", fault); }
 
 /// One line that grows, for a person.
 void show_progress(std::size_t done, std::size_t count) {
@@ -40,21 +40,22 @@ void show_progress(std::size_t done, std::size_t count) {
 }
 
 /// Writes what was asked for; the error, if any.
-std::optional<Ending> write_files(const std::vector<std::pair<std::string, std::string>>& files) {
+std::optional<ExitStatus> write_files(
+    const std::vector<std::pair<std::string, std::string>>& files) {
   for (const auto& [path, text] : files) {
     if (path.empty()) continue;
     if (const auto written = config::write_whole_file(path, text); !written) {
-      return Ending{ExitCode::CannotOpen, "palp-lab: " + written.error().text};
+      return ExitStatus{ExitCode::CannotOpen, "palp-lab: " + written.error().text};
     }
   }
   return std::nullopt;
 }
 
 /// Before hours are spent on what nobody could write down.
-std::optional<Ending> check_files(const BatchArguments& arguments) {
+std::optional<ExitStatus> check_files(const BatchArguments& arguments) {
   const auto can = config::can_write_files({arguments.cases, arguments.report, arguments.svg});
   if (can) return std::nullopt;
-  return Ending{ExitCode::CannotOpen, "palp-lab: " + can.error().text};
+  return ExitStatus{ExitCode::CannotOpen, "palp-lab: " + can.error().text};
 }
 
 std::string set_of(const BatchArguments& arguments) {
@@ -113,7 +114,7 @@ std::string plot(const Run& done, const std::string& metric, const std::string& 
   return metric_plot(done.plan.label_names, done.results, metric, title);
 }
 
-Ending finish(const Run& done, const BatchArguments& arguments, const std::string& svg) {
+ExitStatus finish(const Run& done, const BatchArguments& arguments, const std::string& svg) {
   if (auto failed =
           write_files({{arguments.cases, cases_csv(done.plan, done.results)},
                        {arguments.report, batch_report(done.plan, done.results, done.account)},
@@ -123,7 +124,7 @@ Ending finish(const Run& done, const BatchArguments& arguments, const std::strin
   return {ExitCode::Done, batch_summary(done.plan, done.results, done.account)};
 }
 
-Ending montecarlo(const BatchArguments& arguments, const Machine& machine, bool lying) {
+ExitStatus montecarlo(const BatchArguments& arguments, const Machine& machine, bool lying) {
   auto plan = make_set(lying ? "mc-adv" : set_of(arguments), ask_of(arguments));
   if (!plan) return refusal(plan.error());
   auto done = run(std::move(*plan), arguments, machine);
@@ -132,7 +133,7 @@ Ending montecarlo(const BatchArguments& arguments, const Machine& machine, bool 
   return finish(*done, arguments, plot(*done, arguments.metric, "set " + done->plan.name));
 }
 
-Ending sweep(const BatchArguments& arguments, const Machine& machine) {
+ExitStatus sweep(const BatchArguments& arguments, const Machine& machine) {
   PlanAsk ask = ask_of(arguments);
   // What is not asked for stays as the scenario has it.
   ask.coupling = arguments.coupling;
@@ -150,7 +151,7 @@ Ending sweep(const BatchArguments& arguments, const Machine& machine) {
 }
 
 /// What a map has to say, run here or merged.
-Ending finish_map(const Run& done, const BatchArguments& arguments) {
+ExitStatus finish_map(const Run& done, const BatchArguments& arguments) {
   if (auto failed =
           write_files({{arguments.cases, cases_csv(done.plan, done.results)},
                        {arguments.report, map_report(done.plan, done.results, done.account)},
@@ -160,7 +161,7 @@ Ending finish_map(const Run& done, const BatchArguments& arguments) {
   return {ExitCode::Done, map_text(done.results)};
 }
 
-Ending map(const BatchArguments& arguments, const Machine& machine) {
+ExitStatus map(const BatchArguments& arguments, const Machine& machine) {
   if (!arguments.coupling.empty() && arguments.coupling != "direct") {
     return refusal({"the map is that of eq. (1): coupling direct"});
   }
@@ -169,7 +170,7 @@ Ending map(const BatchArguments& arguments, const Machine& machine) {
   return finish_map(*done, arguments);
 }
 
-Ending compare(const BatchArguments& arguments, const Machine& machine) {
+ExitStatus compare(const BatchArguments& arguments, const Machine& machine) {
   std::string text;
   nlohmann::ordered_json json;
   json["schema"] = kCompare;
@@ -221,7 +222,7 @@ Result<void> check_meant(const Plan& plan, const BatchArguments& arguments) {
   return {};
 }
 
-Ending merge(const BatchArguments& arguments) {
+ExitStatus merge(const BatchArguments& arguments) {
   if (auto known = check_metric(arguments); !known) return refusal(known.error());
   Run all;
   for (const std::string& path : arguments.list) {
@@ -303,9 +304,9 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   declare_common(joined, arguments, kMontecarlo);
 }
 
-std::optional<Ending> run_batch_verb(const std::string& verb,
-                                     const BatchArguments& arguments,
-                                     const Machine& machine) {
+std::optional<ExitStatus> run_batch_verb(const std::string& verb,
+                                         const BatchArguments& arguments,
+                                         const Machine& machine) {
   if (auto closed = check_files(arguments)) return closed;
   if (verb == "montecarlo") return montecarlo(arguments, machine, false);
   if (verb == "adversary") return montecarlo(arguments, machine, true);

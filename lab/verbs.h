@@ -42,8 +42,8 @@ struct BatchArguments {
 /// Declares the verbs; `arguments` outlives the command line.
 void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments);
 /// Runs the one chosen; nullopt: it is none of them.
-[[nodiscard]] std::optional<config::Ending> run_batch_verb(const std::string& verb,
-                                                           const BatchArguments& arguments,
-                                                           const Machine& machine);
+[[nodiscard]] std::optional<config::ExitStatus> run_batch_verb(const std::string& verb,
+                                                               const BatchArguments& arguments,
+                                                               const Machine& machine);
 
 }  // namespace palp::lab

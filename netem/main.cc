@@ -14,17 +14,17 @@
 #include "common/config/report.h"
 #include "common/core/printable.h"
 #include "common/core/random.h"
-#include "common/io/endpoint.h"
-#include "netem/datagram_socket.h"
-#include "netem/presets.h"
-#include "netem/relay_program.h"
-#include "netem/simulation.h"
+#include "common/io/net/endpoint.h"
+#include "netem/model/simulation.h"
+#include "netem/relay/datagram_socket.h"
+#include "netem/relay/relay_program.h"
+#include "netem/syntax/presets.h"
 
 namespace palp::netem {
 namespace {
 
-using config::Ending;
 using config::ExitCode;
+using config::ExitStatus;
 
 constexpr double kDurationMax = 1e6;  ///< [s]
 
@@ -71,10 +71,10 @@ struct Plans {
   std::string preset;  ///< of a timeline
 };
 
-Ending bad_input(const std::string& sentence) {
+ExitStatus bad_input(const std::string& sentence) {
   return {ExitCode::BadInput, "palp-netem: " + sentence};
 }
-Ending cannot_open(const std::string& sentence) {
+ExitStatus cannot_open(const std::string& sentence) {
   return {ExitCode::CannotOpen, "palp-netem: " + sentence};
 }
 
@@ -177,7 +177,7 @@ int stop_signals() {
   return ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 
-Ending serve(const Flags& flags) {
+ExitStatus serve(const Flags& flags) {
   RelayProgramConfig config;
   const auto listen = io::resolve(*flags.listen);
   if (!listen) return bad_input("--listen: " + listen.error().text);
@@ -221,7 +221,7 @@ std::string description(const std::string& name, const Timeline& preset) {
 }
 
 /// All in short, or the file of one.
-Ending show_presets(const std::string& name) {
+ExitStatus show_presets(const std::string& name) {
   std::string text;
   for (const std::string& known : preset_names()) {
     if (!name.empty() && known != name) continue;
@@ -282,7 +282,7 @@ Duration plain_draws(std::uint64_t count, std::uint64_t seed) {
   return end - begin + Duration{sum == 0 ? 1 : 0};
 }
 
-Ending run_simulate(const SimulateFlags& flags) {
+ExitStatus run_simulate(const SimulateFlags& flags) {
   const Mode mode = flags.mode == "exact" ? Mode::Exact : Mode::Netem61;
   auto impairment = parse_impairment(flags.spec, mode);
   if (!impairment) return {ExitCode::BadInput, "palp-netem: --spec: " + impairment.error().text};

@@ -9,22 +9,11 @@
 #include "common/config/command_line.h"
 #include "common/config/document.h"
 #include "common/core/histogram.h"
-#include "common/io/background_loop.h"
-#include "common/io/diagnostics.h"
-#include "common/io/steady_clock.h"
-#include "common/io/terminal.h"
+#include "common/io/process/diagnostics.h"
+#include "common/io/process/terminal.h"
+#include "common/io/realtime/background_loop.h"
+#include "common/io/realtime/steady_clock.h"
 #include "common/link/codec_wire.h"
-#include "common/site_program/build_info.h"
-#include "common/site_program/check_command.h"
-#include "common/site_program/ending.h"
-#include "common/site_program/impaired_reception.h"
-#include "common/site_program/recording.h"
-#include "common/site_program/runner.h"
-#include "common/site_program/session_info.h"
-#include "common/site_program/site_address.h"
-#include "common/site_program/site_main.h"
-#include "common/site_program/site_report.h"
-#include "common/site_program/status_line.h"
 #include "patient_site/display.h"
 #include "patient_site/estimator_worker.h"
 #include "patient_site/patient_node.h"
@@ -32,13 +21,24 @@
 #include "patient_site/settings.h"
 #include "patient_site/simulated_phantom.h"
 #include "patient_site/tissue_record.h"
+#include "site_program/build_info.h"
+#include "site_program/check_command.h"
+#include "site_program/exit_status.h"
+#include "site_program/impaired_reception.h"
+#include "site_program/recording.h"
+#include "site_program/runner.h"
+#include "site_program/session_info.h"
+#include "site_program/site_address.h"
+#include "site_program/site_main.h"
+#include "site_program/site_report.h"
+#include "site_program/status_line.h"
 
 namespace palp::patient {
 namespace {
 
 using config::ExitCode;
-using site_program::Ending;
-using site_program::ending_of;
+using site_program::exit_status_of;
+using site_program::ExitStatus;
 
 constexpr Duration kDisplayPeriod = std::chrono::milliseconds{100};
 constexpr Duration kEstimatorPause = std::chrono::milliseconds{1};  // of the 5 ms to an answer
@@ -64,8 +64,8 @@ struct Plan {
   record::SessionInfo info;
 };
 
-tl::expected<Plan, Ending> make_plan(const config::Document& document) {
-  const auto bad = [](const Error& error) { return tl::unexpected{ending_of(error)}; };
+tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
+  const auto bad = [](const Error& error) { return tl::unexpected{exit_status_of(error)}; };
   auto settings = make_settings(document);
   if (!settings) return bad(settings.error());
   const auto address =
@@ -127,14 +127,14 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   /// Shows how it goes until there is a reason to end.
-  Ending run(io::Terminal& terminal);
+  ExitStatus run(io::Terminal& terminal);
   /// Says goodbye and ends all threads; then the account is complete.
   void stop(site_program::SiteReport& report);
 
  private:
   void look(TimePoint now);
   void listen();  ///< Thread: estimator
-  [[nodiscard]] Ending end(std::string outcome);
+  [[nodiscard]] ExitStatus end(std::string outcome);
 
   const Settings settings_;
   const Phantom phantom_;
@@ -155,7 +155,7 @@ class Program {
   io::BackgroundLoop estimator_;
 };
 
-Ending Program::run(io::Terminal& terminal) {
+ExitStatus Program::run(io::Terminal& terminal) {
   std::printf("listening on %s\n", runner_.local().c_str());
   std::fflush(stdout);
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
@@ -189,7 +189,7 @@ void Program::listen() {
 
 /// A patient site waits for surgeons until it is told to stop, so that is its normal end, unless it
 /// had stopped itself. A surgeon's goodbye may still be on its way.
-Ending Program::end(std::string outcome) {
+ExitStatus Program::end(std::string outcome) {
   const PatientStatus& status = node_.status().get();
   if (status.state == SiteState::Stopped) {
     return {ExitCode::CutShort,

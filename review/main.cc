@@ -19,15 +19,17 @@
 namespace palp::review {
 namespace {
 
-using config::Ending;
 using config::ExitCode;
+using config::ExitStatus;
 
-Ending bad_input(const std::string& text) { return {ExitCode::BadInput, "palp-review: " + text}; }
-Ending cannot_open(const std::string& text) {
+ExitStatus bad_input(const std::string& text) {
+  return {ExitCode::BadInput, "palp-review: " + text};
+}
+ExitStatus cannot_open(const std::string& text) {
   return {ExitCode::CannotOpen, "palp-review: " + text};
 }
 
-Ending ending_of(const Error& error) { return config::refusal("palp-review", error); }
+ExitStatus exit_status_of(const Error& error) { return config::refusal("palp-review", error); }
 
 /// A file that may be cut off or damaged, but is a session file.
 Result<record::MappedFile> open_session(const std::string& path) {
@@ -42,19 +44,19 @@ Result<record::MappedFile> open_session(const std::string& path) {
   return file;
 }
 
-Ending run_info(const std::string& path) {
+ExitStatus run_info(const std::string& path) {
   const auto file = open_session(path);
   if (!file) {
-    return ending_of(file.error());
+    return exit_status_of(file.error());
   }
   std::cout << describe(file->bytes());
   return {};
 }
 
-Ending run_check(const std::string& path) {
+ExitStatus run_check(const std::string& path) {
   const auto file = record::MappedFile::open(path);
   if (!file) {
-    return ending_of(file.error());
+    return exit_status_of(file.error());
   }
   if (const auto fault = first_fault(file->bytes())) {
     std::cout << path << ": " << *fault << '\n';
@@ -64,10 +66,10 @@ Ending run_check(const std::string& path) {
   return {};
 }
 
-Ending run_recover(const std::string& in, const std::string& out) {
+ExitStatus run_recover(const std::string& in, const std::string& out) {
   const auto file = open_session(in);
   if (!file) {
-    return ending_of(file.error());
+    return exit_status_of(file.error());
   }
   auto sink = record::FileSink::create(out);
   if (!sink) {
@@ -101,11 +103,11 @@ struct MetricsFlags {
   Asked asked;
 };
 
-Ending run_metrics(const MetricsFlags& flags) {
+ExitStatus run_metrics(const MetricsFlags& flags) {
   const auto surgeon = load_site(flags.sessions.surgeon, link::Role::Surgeon);
   const auto patient = load_site(flags.sessions.patient, link::Role::Patient);
   if (!surgeon || !patient) {
-    return ending_of(!surgeon ? surgeon.error() : patient.error());
+    return exit_status_of(!surgeon ? surgeon.error() : patient.error());
   }
   std::optional<TissueTable> tissue;
   if (patient->tissue_csv) {

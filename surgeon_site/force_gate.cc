@@ -45,17 +45,17 @@ void ForceGate::heat_up(Duration dt) noexcept {
 ForceAnswer ForceGate::pass(const ForceRequest& asked, Duration dt) noexcept {
   heat_up(dt);
   guard_left_ = std::max(Duration{0}, guard_left_ - dt);
-  if (asked.state != state_ || asked.dead_man_held != dead_man_held_) {
+  if (asked.state != state_ || asked.pedal_held != pedal_held_) {
     fading_ = true;
     guard_left_ = config_.fade_guard;
   }
   state_ = asked.state;
-  dead_man_held_ = asked.dead_man_held;
+  pedal_held_ = asked.pedal_held;
 
   const bool finite = std::isfinite(asked.force);
   const double wanted = finite ? asked.force : 0;
   const double largest = limit();
-  const bool open = asked.dead_man_held && may_carry_force(asked.state);
+  const bool open = asked.pedal_held && may_carry_force(asked.state);
   const double target = open ? std::clamp(wanted, -largest, largest) : 0;
   if (asked.cut || !finite) {
     force_ = 0;

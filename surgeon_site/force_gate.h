@@ -21,7 +21,7 @@ struct ForceGateConfig {
 struct ForceRequest {
   double force{};  ///< [N], as the law asks; anything, also NaN
   SiteState state{};
-  bool dead_man_held{};
+  bool pedal_held{};
   bool cut{};  ///< emergency stop or a faulted device: zero at once
   /// [N] >= 0, most that may push the hand out while the gate closes.
   double fade_max{std::numeric_limits<double>::infinity()};
@@ -51,11 +51,11 @@ class ForceGate {
   void heat_up(Duration dt) noexcept;
 
   ForceGateConfig config_;
-  double force_{};        ///< [N]
-  double heat_{};         ///< [N^2], low pass of force^2, stays below force_continuous^2
-  SiteState state_{};     ///< of the last pass()
-  bool dead_man_held_{};  ///< of the last pass()
-  bool fading_{};         ///< the force has not caught up yet
+  double force_{};     ///< [N]
+  double heat_{};      ///< [N^2], low pass of force^2, stays below force_continuous^2
+  SiteState state_{};  ///< of the last pass()
+  bool pedal_held_{};  ///< of the last pass()
+  bool fading_{};      ///< the force has not caught up yet
   Duration guard_left_{};
   bool clamped_{};
   bool not_finite_{};

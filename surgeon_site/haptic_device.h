@@ -15,7 +15,7 @@ struct HandState {
   double position{};      ///< [m], device axis, + into the tissue
   double velocity{};      ///< [m/s]
   double lateral{};       ///< [m], along the surface
-  bool dead_man_held{};   ///< the pedal; up: no force
+  bool pedal_held{};      ///< the pedal; up: no force
   bool emergency_stop{};  ///< latched by the device or by the user
   bool faulted{};
 };

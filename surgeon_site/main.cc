@@ -9,23 +9,23 @@
 #include "common/config/command_line.h"
 #include "common/config/document.h"
 #include "common/config/number.h"
-#include "common/io/diagnostics.h"
-#include "common/io/steady_clock.h"
-#include "common/io/terminal.h"
+#include "common/io/process/diagnostics.h"
+#include "common/io/process/terminal.h"
+#include "common/io/realtime/steady_clock.h"
 #include "common/link/codec_wire.h"
-#include "common/site_program/build_info.h"
-#include "common/site_program/certificates_command.h"
-#include "common/site_program/check_command.h"
-#include "common/site_program/ending.h"
-#include "common/site_program/impaired_reception.h"
-#include "common/site_program/peer_watch.h"
-#include "common/site_program/recording.h"
-#include "common/site_program/runner.h"
-#include "common/site_program/session_info.h"
-#include "common/site_program/site_address.h"
-#include "common/site_program/site_main.h"
-#include "common/site_program/site_report.h"
-#include "common/site_program/status_line.h"
+#include "site_program/build_info.h"
+#include "site_program/certificates_command.h"
+#include "site_program/check_command.h"
+#include "site_program/exit_status.h"
+#include "site_program/impaired_reception.h"
+#include "site_program/peer_watch.h"
+#include "site_program/recording.h"
+#include "site_program/runner.h"
+#include "site_program/session_info.h"
+#include "site_program/site_address.h"
+#include "site_program/site_main.h"
+#include "site_program/site_report.h"
+#include "site_program/status_line.h"
 #include "surgeon_site/display.h"
 #include "surgeon_site/script_reader.h"
 #include "surgeon_site/settings.h"
@@ -36,8 +36,8 @@ namespace palp::surgeon {
 namespace {
 
 using config::ExitCode;
-using site_program::Ending;
-using site_program::ending_of;
+using site_program::exit_status_of;
+using site_program::ExitStatus;
 
 constexpr Duration kDisplayPeriod = std::chrono::milliseconds{100};
 
@@ -53,23 +53,24 @@ void declare_flags(config::CommandLine& line, config::Document& document, std::s
   line.knob("--force-engage", "engagement.forced");
 }
 
-std::optional<Ending> end_of_script(const SurgeonStatus& status) {
+std::optional<ExitStatus> end_of_script(const SurgeonStatus& status) {
   if (!status.script.finished) return std::nullopt;
   const std::string outcome{to_string(status.script.outcome)};
   switch (status.script.outcome) {
     case ScriptOutcome::None:
     case ScriptOutcome::Completed:
-      return Ending{ExitCode::Done, outcome, ""};
+      return ExitStatus{ExitCode::Done, outcome, ""};
     case ScriptOutcome::Interrupted:
-      return Ending{ExitCode::CutShort, outcome, "the link was lost and the script ends there"};
+      return ExitStatus{ExitCode::CutShort, outcome, "the link was lost and the script ends there"};
     case ScriptOutcome::Refused:
-      return Ending{ExitCode::CutShort,
-                    outcome,
-                    "the site would not engage: " + std::string{record::to_string(status.refused)}};
+      return ExitStatus{
+          ExitCode::CutShort,
+          outcome,
+          "the site would not engage: " + std::string{record::to_string(status.refused)}};
     case ScriptOutcome::Stopped:
-      return Ending{ExitCode::CutShort,
-                    outcome,
-                    "the site was stopped: " + std::string{record::to_string(status.reason)}};
+      return ExitStatus{ExitCode::CutShort,
+                        outcome,
+                        "the site was stopped: " + std::string{record::to_string(status.reason)}};
   }
   return std::nullopt;
 }
@@ -83,8 +84,8 @@ struct Plan {
   record::SessionInfo info;
 };
 
-tl::expected<Plan, Ending> make_plan(const config::Document& document) {
-  const auto bad = [](const Error& error) { return tl::unexpected{ending_of(error)}; };
+tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
+  const auto bad = [](const Error& error) { return tl::unexpected{exit_status_of(error)}; };
   auto settings = make_settings(document);
   if (!settings) return bad(settings.error());
   const auto address =
@@ -145,12 +146,12 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   /// Shows how it goes until there is a reason to end.
-  Ending run(io::Terminal& terminal);
+  ExitStatus run(io::Terminal& terminal);
   /// Says goodbye and ends all threads; then the account is complete.
   void stop(site_program::SiteReport& report);
 
  private:
-  [[nodiscard]] std::optional<Ending> look(TimePoint now);
+  [[nodiscard]] std::optional<ExitStatus> look(TimePoint now);
 
   const Settings settings_;
   SimulatedHand device_;
@@ -167,19 +168,19 @@ class Program {
   bool advised_{};
 };
 
-Ending Program::run(io::Terminal& terminal) {
+ExitStatus Program::run(io::Terminal& terminal) {
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
   line_.info("calling " + settings_.peer +
              (terminal.reads_keys() ? "; r resets a stop, any other key ends" : ""));
   while (true) {
     const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
     node_.commands().put({.emergency_stop = false, .resets = terminal.resets()});
-    if (const auto ending = look(clock_.now())) return *ending;
+    if (const auto exit_status = look(clock_.now())) return *exit_status;
     if (stop) return {ExitCode::CutShort, "aborted", "aborted by the user"};
   }
 }
 
-std::optional<Ending> Program::look(TimePoint now) {
+std::optional<ExitStatus> Program::look(TimePoint now) {
   const SurgeonStatus& status = node_.status().get();
   round_trips_.add(status.link);
   const std::optional<std::string> hopeless = runner_.tell_news(line_);
@@ -192,20 +193,20 @@ std::optional<Ending> Program::look(TimePoint now) {
     advised_ = advice.has_value();
   }
   line_.show(status_line(status), now);
-  if (hopeless) return Ending{ExitCode::CannotOpen, "refused", *hopeless};
-  if (auto ending = end_of_script(status)) return ending;
-  if (auto ending = watch_.judge(status.link, now)) return ending;
+  if (hopeless) return ExitStatus{ExitCode::CannotOpen, "refused", *hopeless};
+  if (auto exit_status = end_of_script(status)) return exit_status;
+  if (auto exit_status = watch_.judge(status.link, now)) return exit_status;
   if (settings_.duration == Duration{0} || now - began_at_ < settings_.duration) {
     return std::nullopt;
   }
-  return watch_.ever_worked() ? Ending{ExitCode::Done, "duration reached", ""}
+  return watch_.ever_worked() ? ExitStatus{ExitCode::Done, "duration reached", ""}
                               : watch_.unreachable(status.link, settings_.duration);
 }
 
 void Program::stop(site_program::SiteReport& report) {
-  runner_.stop(report.ending.reason.empty()
+  runner_.stop(report.exit_status.reason.empty()
                    ? "the surgeon site has ended"
-                   : "the surgeon site has ended: " + report.ending.reason);
+                   : "the surgeon site has ended: " + report.exit_status.reason);
   const SurgeonStatus& status = node_.status().get();
   line_.show(status_line(status), clock_.now());
   report.records = recording_.stop();

@@ -86,7 +86,7 @@ HandState SimulatedHand::read(TimePoint now) noexcept {
     state_.sampled_at = now;
   }
   state_.lateral = person_.intent().lateral;
-  state_.dead_man_held = person_.pedal_held();
+  state_.pedal_held = person_.pedal_held();
   return state_;
 }
 

@@ -75,7 +75,7 @@ void SurgeonControl::hear(const link::Arrivals& arrived) noexcept {
 SupervisorOutput SurgeonControl::supervise(const SurgeonInputs& given) noexcept {
   SupervisorInput in;
   in.now = now_.at;
-  in.pedal_held = hand_.dead_man_held;
+  in.pedal_held = hand_.pedal_held;
   in.emergency_stop = hand_.emergency_stop || given.user.emergency_stop;
   in.device_faulted = hand_.faulted;
   in.local_reset = given.user.resets != resets_;
@@ -139,7 +139,7 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
   const coupling::SurgeonOutput wanted =
       coupling::step(parts_.law, given, std::min(dt, std::max(kLawTickMax, config_.period)));
   const bool cut = hand_.faulted || hand_.emergency_stop || in.user.emergency_stop;
-  answer_ = gate_.pass({wanted.force, now_.state, hand_.dead_man_held, cut, wanted.fade_max}, dt);
+  answer_ = gate_.pass({wanted.force, now_.state, hand_.pedal_held, cut, wanted.fade_max}, dt);
   force_before_ = now_.force;
   now_.force = answer_.force;
   now_.gate_acted = answer_.acted;
@@ -191,7 +191,7 @@ void SurgeonControl::record_readings(const SurgeonInputs& in) noexcept {
                                       .position = in.hand.position,
                                       .velocity = in.hand.velocity,
                                       .lateral = in.hand.lateral,
-                                      .dead_man_held = in.hand.dead_man_held,
+                                      .pedal_held = in.hand.pedal_held,
                                       .emergency_stop = in.hand.emergency_stop,
                                       .faulted = in.hand.faulted,
                                       .script_phase = in.script.begun ? in.script.phase : 0});

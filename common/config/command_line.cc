@@ -18,7 +18,7 @@ namespace {
 
 using Values = std::vector<std::string>;
 
-Ending bad_input(std::string text) { return {ExitCode::BadInput, std::move(text)}; }
+ExitStatus bad_input(std::string text) { return {ExitCode::BadInput, std::move(text)}; }
 
 /// The last step of reading a value.
 template <class Variable>
@@ -63,9 +63,9 @@ struct CommandLine::Parts {
                       Variable& value,
                       const Range& range,
                       const std::string& said);
-  [[nodiscard]] std::optional<Ending> take_values();
-  [[nodiscard]] std::optional<Ending> take_all();
-  [[nodiscard]] std::optional<Ending> unexpected_word() const;
+  [[nodiscard]] std::optional<ExitStatus> take_values();
+  [[nodiscard]] std::optional<ExitStatus> take_all();
+  [[nodiscard]] std::optional<ExitStatus> unexpected_word() const;
 };
 
 void CommandLine::Parts::declare(const std::string& name,
@@ -115,7 +115,7 @@ void CommandLine::Parts::declare_number(const std::string& flag,
   });
 }
 
-std::optional<Ending> CommandLine::Parts::take_values() {
+std::optional<ExitStatus> CommandLine::Parts::take_values() {
   for (const Declared& one : declared) {
     const Values& values = one.option->results();
     if (values.empty()) {
@@ -140,14 +140,14 @@ std::optional<Ending> CommandLine::Parts::take_values() {
   return std::nullopt;
 }
 
-std::optional<Ending> CommandLine::Parts::take_all() {
-  if (auto ending = take_values()) {
-    return ending;
+std::optional<ExitStatus> CommandLine::Parts::take_all() {
+  if (auto exit_status = take_values()) {
+    return exit_status;
   }
   return settings.fill();
 }
 
-std::optional<Ending> CommandLine::Parts::unexpected_word() const {
+std::optional<ExitStatus> CommandLine::Parts::unexpected_word() const {
   Values names;
   for (const auto& verb : verbs) {
     names.push_back(verb->parts_->app->get_name());
@@ -321,37 +321,37 @@ void CommandLine::required() {
   parts_->declared.back().required = true;
 }
 
-std::optional<Ending> CommandLine::parse(int argc, const char* const* argv) {
+std::optional<ExitStatus> CommandLine::parse(int argc, const char* const* argv) {
   PALP_CHECK(parts_->owned != nullptr, "the program parses, not its verbs");
   CLI::App& app = *parts_->app;
-  const auto prefixed = [this](Ending ending) {
-    ending.text = parts_->program + ": " + ending.text;
-    return ending;
+  const auto prefixed = [this](ExitStatus exit_status) {
+    exit_status.text = parts_->program + ": " + exit_status.text;
+    return exit_status;
   };
   try {
     app.parse(std::max(argc, 1), argv);  // an empty argv has no program name either
   } catch (const CLI::CallForHelp&) {
-    return Ending{ExitCode::Done, app.help()};
+    return ExitStatus{ExitCode::Done, app.help()};
   } catch (const CLI::CallForVersion& version) {
-    return Ending{ExitCode::Done, std::string{version.what()} + '\n'};
+    return ExitStatus{ExitCode::Done, std::string{version.what()} + '\n'};
   } catch (const CLI::ArgumentMismatch& mismatch) {  // "--seed: 1 required N missing"
     const std::string_view what{mismatch.what()};
     return prefixed(bad_input(printable(what.substr(0, what.find(':'))) + " needs a value"));
   } catch (const CLI::ParseError& error) {
     return prefixed(bad_input(printable(error.what())));
   }
-  std::optional<Ending> ending = parts_->unexpected_word();
-  if (ending) {
+  std::optional<ExitStatus> exit_status = parts_->unexpected_word();
+  if (exit_status) {
     (void)parts_->take_values();  // who names a report gets one, also of a word too many
   } else {
-    ending = parts_->take_all();
+    exit_status = parts_->take_all();
   }
   for (const auto& verb : parts_->verbs) {
-    if (!ending && verb->parts_->app->parsed()) {
-      ending = verb->parts_->take_all();
+    if (!exit_status && verb->parts_->app->parsed()) {
+      exit_status = verb->parts_->take_all();
     }
   }
-  return ending ? std::optional{prefixed(*ending)} : std::nullopt;
+  return exit_status ? std::optional{prefixed(*exit_status)} : std::nullopt;
 }
 
 bool CommandLine::given(std::string_view flag) const {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/config/document.h"
-#include "common/config/ending.h"
+#include "common/config/exit_status.h"
 #include "common/config/flag_value.h"
 #include "common/core/host_and_port.h"
 
@@ -89,7 +89,7 @@ class CommandLine {
 
   /// Once, on the program. Nothing: go on, all variables are set. Else --help or --version (Done),
   /// BadInput or CannotOpen with one sentence; variables may then be half set.
-  [[nodiscard]] std::optional<Ending> parse(int argc, const char* const* argv);
+  [[nodiscard]] std::optional<ExitStatus> parse(int argc, const char* const* argv);
 
   /// After parse().
   [[nodiscard]] bool given(std::string_view flag) const;

@@ -12,6 +12,6 @@ enum class ExitCode : int {
 };
 
 /// What main() returns.
-[[nodiscard]] constexpr int exit_status(ExitCode code) noexcept { return static_cast<int>(code); }
+[[nodiscard]] constexpr int exit_value(ExitCode code) noexcept { return static_cast<int>(code); }
 
 }  // namespace palp::config

@@ -9,24 +9,25 @@ namespace palp::config {
 int run_program(CommandLine& line,
                 int argc,
                 const char* const* argv,
-                const std::function<Ending()>& body) {
-  std::optional<Ending> ending = line.parse(argc, argv);
+                const std::function<ExitStatus()>& body) {
+  std::optional<ExitStatus> exit_status = line.parse(argc, argv);
   try {
-    if (!ending) ending = body();
+    if (!exit_status) exit_status = body();
   } catch (const std::exception& failure) {
-    ending = refusal(line.program(), {.text = failure.what(), .unreachable = true});
+    exit_status = refusal(line.program(), {.text = failure.what(), .unreachable = true});
   }
-  return leave(line, *ending);
+  return leave(line, *exit_status);
 }
 
-int leave(const CommandLine& line, const Ending& ending) {
-  const bool failed = ending.code == ExitCode::BadInput || ending.code == ExitCode::CannotOpen;
+int leave(const CommandLine& line, const ExitStatus& exit_status) {
+  const bool failed =
+      exit_status.code == ExitCode::BadInput || exit_status.code == ExitCode::CannotOpen;
   const CommandLine::AskedReport asked = line.asked_report();
   if (failed && !asked.file.empty()) {
     // That it cannot be written either is not worth a second sentence.
-    (void)write_whole_file(asked.file, failure_report(asked.schema, ending));
+    (void)write_whole_file(asked.file, failure_report(asked.schema, exit_status));
   }
-  return leave(ending);
+  return leave(exit_status);
 }
 
 }  // namespace palp::config

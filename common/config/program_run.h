@@ -11,9 +11,9 @@ namespace palp::config {
 [[nodiscard]] int run_program(CommandLine& line,
                               int argc,
                               const char* const* argv,
-                              const std::function<Ending()>& body);
+                              const std::function<ExitStatus()>& body);
 
 /// leave(); bad input and what cannot be opened go into the report that was asked for too.
-[[nodiscard]] int leave(const CommandLine& line, const Ending& ending);
+[[nodiscard]] int leave(const CommandLine& line, const ExitStatus& exit_status);
 
 }  // namespace palp::config

@@ -128,11 +128,11 @@ Result<void> write_whole_file(const std::string& path, std::string_view text) {
   return {};
 }
 
-std::string failure_report(const std::string& schema, const Ending& ending) {
+std::string failure_report(const std::string& schema, const ExitStatus& exit_status) {
   nlohmann::ordered_json json;
   json["schema"] = schema;
-  json["outcome"] = ending.code == ExitCode::BadInput ? "bad input" : "cannot start";
-  json["reason"] = ending.text;
+  json["outcome"] = exit_status.code == ExitCode::BadInput ? "bad input" : "cannot start";
+  json["reason"] = exit_status.text;
   // What people typed need not be UTF-8.
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/config/ending.h"
+#include "common/config/exit_status.h"
 #include "common/core/result.h"
 
 /// Writing what scripts read.
@@ -22,7 +22,7 @@ namespace palp::config {
 [[nodiscard]] Result<void> can_write_files(const std::vector<std::string>& paths);
 
 /// Of a run that came to nothing, as JSON: schema, outcome ("bad input" or "cannot start"), reason.
-[[nodiscard]] std::string failure_report(const std::string& schema, const Ending& ending);
+[[nodiscard]] std::string failure_report(const std::string& schema, const ExitStatus& exit_status);
 
 /// A JSON number that reads back as the same double, or "null" where it is not finite.
 [[nodiscard]] std::string json_number(double value);

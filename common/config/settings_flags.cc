@@ -5,37 +5,37 @@
 namespace palp::config {
 namespace {
 
-std::optional<Ending> as_ending(const Result<void>& result) {
-  return result ? std::nullopt : std::optional{Ending{ExitCode::BadInput, result.error().text}};
+std::optional<ExitStatus> as_exit_status(const Result<void>& result) {
+  return result ? std::nullopt : std::optional{ExitStatus{ExitCode::BadInput, result.error().text}};
 }
 
 }  // namespace
 
-std::optional<Ending> SettingsFlags::fill() const {
+std::optional<ExitStatus> SettingsFlags::fill() const {
   if (document == nullptr) {
     return std::nullopt;
   }
   if (!config_file.empty()) {
     const auto text = read_whole_file(config_file);
     if (!text) {
-      return Ending{ExitCode::CannotOpen, "--config: " + text.error().text};
+      return ExitStatus{ExitCode::CannotOpen, "--config: " + text.error().text};
     }
-    if (auto ending = as_ending(document->merge(*text, config_file))) {
-      return ending;
+    if (auto exit_status = as_exit_status(document->merge(*text, config_file))) {
+      return exit_status;
     }
   }
   for (const std::string& assignment : overrides) {
-    if (auto ending = as_ending(document->set(assignment))) {
-      ending->text = "--set " + ending->text;
-      return ending;
+    if (auto exit_status = as_exit_status(document->set(assignment))) {
+      exit_status->text = "--set " + exit_status->text;
+      return exit_status;
     }
   }
   for (const auto& [path, value, flag] : knobs) {
-    if (auto ending = as_ending(document->set(path, value, flag))) {
-      return ending;
+    if (auto exit_status = as_exit_status(document->set(path, value, flag))) {
+      return exit_status;
     }
   }
-  return as_ending(document->check());
+  return as_exit_status(document->check());
 }
 
 }  // namespace palp::config

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/config/document.h"
-#include "common/config/ending.h"
+#include "common/config/exit_status.h"
 
 namespace palp::config {
 
@@ -18,7 +18,7 @@ struct SettingsFlags {
   std::vector<std::array<std::string, 3>> knobs;  ///< given: path, value, flag
 
   /// Knobs beat --set, which beats the file. @returns what was wrong.
-  [[nodiscard]] std::optional<Ending> fill() const;
+  [[nodiscard]] std::optional<ExitStatus> fill() const;
 };
 
 }  // namespace palp::config

@@ -102,7 +102,7 @@ void ContactEstimator::new_place() noexcept {
 /// A wrong breath and a wrong tissue confirm each other, and the surface walks away. Then both are
 /// forgotten.
 void ContactEstimator::begin_again() noexcept {
-  swing_ = SurfaceSwing{config_.period};
+  swing_ = BreathingEstimator{config_.period};
   expected_ = expected_here_;
   tip_.reset(raw_tip_);
   tip_mean_ = raw_tip_mean_;

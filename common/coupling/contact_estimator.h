@@ -8,7 +8,7 @@
 #include "common/core/filters.h"
 #include "common/core/port_sample.h"
 #include "common/core/time.h"
-#include "common/coupling/surface_swing.h"
+#include "common/coupling/breathing_estimator.h"
 
 /// The patient's half of `mmt` at work: finds the contact model behind positions and forces.
 namespace palp::coupling {
@@ -113,7 +113,7 @@ class ContactEstimator {
   Terms expected_here_{};      ///< [N], before anything was felt at this place
   double surface_expected_{};  ///< [m]
   ModelPayload model_;
-  SurfaceSwing swing_;
+  BreathingEstimator swing_;
   double raw_tip_mean_{};      ///< [m], as tip_mean_, in a frame that does not swing
   double raw_tip_{};           ///< [m], behind the transducer's pole
   double deepest_{};           ///< [m], tip in contact at this place

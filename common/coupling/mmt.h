@@ -6,10 +6,10 @@
 #include "common/core/device_facts.h"
 #include "common/core/filters.h"
 #include "common/core/limits.h"
+#include "common/coupling/breathing_estimator.h"
 #include "common/coupling/contact_estimator.h"
 #include "common/coupling/contact_model.h"
 #include "common/coupling/coupling.h"
-#include "common/coupling/surface_swing.h"
 
 /// Coupling `mmt`: the patient site says what the tissue is like, not what it just did. The
 /// surgeon site renders that model at the device's rate, behind a tank that pays for every change

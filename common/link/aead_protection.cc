@@ -143,12 +143,12 @@ void AeadProtection::Generation::touch() noexcept {
 
 AeadProtection::AeadProtection(const TrafficKeys& keys)
     : present_{std::make_unique<Generation>(keys)},
-      rehearsal_{std::make_unique<Generation>(TrafficKeys{})} {}
+      warm_up_{std::make_unique<Generation>(TrafficKeys{})} {}
 
 AeadProtection::AeadProtection(const TrafficKeys& present, const TrafficKeys& next, Lead lead)
     : present_{std::make_unique<Generation>(present)},
       next_{std::make_unique<Generation>(next)},
-      rehearsal_{std::make_unique<Generation>(TrafficKeys{})},
+      warm_up_{std::make_unique<Generation>(TrafficKeys{})},
       seals_with_next_{lead == Lead::Own} {
   PALP_CHECK(present.id != next.id, "two generations have two ids");
 }
@@ -194,19 +194,18 @@ tl::expected<std::size_t, Rejection> AeadProtection::open(std::span<const std::b
   return size;
 }
 
-void AeadProtection::rehearse(std::span<const std::byte> plain,
-                              std::span<std::byte> room) noexcept {
+void AeadProtection::warm_up(std::span<const std::byte> plain, std::span<std::byte> room) noexcept {
   present_->touch();
   if (next_ != nullptr) next_->touch();
   const std::size_t size = plain.size() + kTagSize;
   if (room.size() < kHeaderSize + size + plain.size()) return;
-  const std::uint64_t number = rehearsal_->sealed++;
+  const std::uint64_t number = warm_up_->sealed++;
   pack_header({.length = static_cast<std::uint16_t>(size), .number = number},
               room.first<kHeaderSize>());
   const auto header = room.first(kHeaderSize);
   const auto sealed = room.subspan(kHeaderSize, size);
-  (void)rehearsal_->seal(number, header, plain, sealed);
-  (void)rehearsal_->open(number, header, sealed, room.subspan(kHeaderSize + size, plain.size()));
+  (void)warm_up_->seal(number, header, plain, sealed);
+  (void)warm_up_->open(number, header, sealed, room.subspan(kHeaderSize + size, plain.size()));
 }
 
 }  // namespace palp::link

@@ -44,14 +44,14 @@ class AeadProtection final : public PacketProtection {
                    std::span<std::byte> out) noexcept override;
   tl::expected<std::size_t, Rejection> open(std::span<const std::byte> datagram,
                                             std::span<std::byte> plain) noexcept override;
-  void rehearse(std::span<const std::byte> plain, std::span<std::byte> room) noexcept override;
+  void warm_up(std::span<const std::byte> plain, std::span<std::byte> room) noexcept override;
 
  private:
   struct Generation;
 
   std::unique_ptr<Generation> present_;
-  std::unique_ptr<Generation> next_;       ///< null: no changeover
-  std::unique_ptr<Generation> rehearsal_;  ///< of keys that everybody knows
+  std::unique_ptr<Generation> next_;     ///< null: no changeover
+  std::unique_ptr<Generation> warm_up_;  ///< of keys that everybody knows
   bool seals_with_next_{};
   std::uint64_t number_least_{};  ///< that may be sealed next
 };

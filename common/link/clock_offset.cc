@@ -243,11 +243,11 @@ void ClockOffsetEstimator::add_here(Duration way, TimePoint tick, TimePoint arri
   here_.add(way, tick.time_since_epoch(), arrived_at, seconds(arrived_at - origin_));
 }
 
-Duration ClockOffsetEstimator::way_there() const noexcept {
+Duration ClockOffsetEstimator::delay_out() const noexcept {
   return estimate_ ? there_.smoothed - estimate_->offset_at(newest_at_) : Duration{};
 }
 
-Duration ClockOffsetEstimator::way_here() const noexcept {
+Duration ClockOffsetEstimator::delay_in() const noexcept {
   return estimate_ ? here_.smoothed + estimate_->offset_at(newest_at_) : Duration{};
 }
 

@@ -51,8 +51,8 @@ class ClockOffsetEstimator {
   [[nodiscard]] const std::optional<ClockOffset>& estimate() const noexcept { return estimate_; }
 
   /// How long the ways take, smoothed (1/8), if the least of both are equal; 0 without an estimate.
-  [[nodiscard]] Duration way_there() const noexcept;
-  [[nodiscard]] Duration way_here() const noexcept;
+  [[nodiscard]] Duration delay_out() const noexcept;
+  [[nodiscard]] Duration delay_in() const noexcept;
 
  private:
   struct Way {

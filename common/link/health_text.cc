@@ -8,8 +8,8 @@ std::string health_text(const LinkHealth& health) {
   if (health.state == LinkState::Down) return "no link";
   std::string text = number_text("rtt ", seconds(health.round_trip) * 1e3, 1, " ms");
   if (health.peer_clock) {
-    text += number_text(" (there ", seconds(health.way_there) * 1e3, 1, "") +
-            number_text(", here ", seconds(health.way_here) * 1e3, 1, ")");
+    text += number_text(" (there ", seconds(health.delay_out) * 1e3, 1, "") +
+            number_text(", here ", seconds(health.delay_in) * 1e3, 1, ")");
   }
   const std::uint64_t all = health.accepted + health.late + health.lost;
   const double lost =

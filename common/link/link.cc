@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/core/check.h"
-#include "common/link/rehearsed_telegram.h"
+#include "common/link/warm_up_telegram.h"
 
 namespace palp::link {
 namespace {
@@ -61,20 +61,20 @@ Link::Link(const LinkConfig& config, std::unique_ptr<Codec> codec)
 }
 
 void Link::end_session() noexcept {
-  counters_.lost += conversation_.received.missing();
-  conversation_ = Conversation{};
+  counters_.lost += session_state_.received.missing();
+  session_state_ = SessionState{};
   session_id_ = 0;
   peer_devices_ = {};
 }
 
-Handover Link::adopt(Handover next, TimePoint now) noexcept {
+LinkUpdate Link::adopt(LinkUpdate next, TimePoint now) noexcept {
   // Its numbers would start at 0 again, under keys that have sealed such numbers.
   if (next.continues && next.session_id != session_id_) return next;
-  Handover retired{.transport = nullptr,
-                   .protection = nullptr,
-                   .send_connection = send_connection_,
-                   .receive_connection = receive_connection_,
-                   .session_id = session_id_};
+  LinkUpdate retired{.transport = nullptr,
+                     .protection = nullptr,
+                     .send_connection = send_connection_,
+                     .receive_connection = receive_connection_,
+                     .session_id = session_id_};
   if (next.session_id == 0) {
     end_session();
     retired.transport = std::exchange(transport_, nullptr);
@@ -86,7 +86,7 @@ Handover Link::adopt(Handover next, TimePoint now) noexcept {
     end_session();
     session_id_ = next.session_id;
     peer_devices_ = next.peer_devices;
-    conversation_.began_at = now;
+    session_state_.began_at = now;
   }
   if (next.transport) retired.transport = std::exchange(transport_, std::move(next.transport));
   if (next.protection) retired.protection = std::exchange(protection_, std::move(next.protection));
@@ -97,11 +97,11 @@ Handover Link::adopt(Handover next, TimePoint now) noexcept {
 }
 
 void Link::attach_older(WireTelegram& wire, TimePoint now) const noexcept {
-  const std::uint64_t number = conversation_.next_number;
+  const std::uint64_t number = session_state_.next_number;
   for (std::size_t i = 0; i < kOlder; ++i) {
     const std::uint64_t distance = older_distance_ * (i + 1);
     if (number < distance) return;
-    const Sent& sent = conversation_.history[(number - distance) % kHistory];
+    const Sent& sent = session_state_.history[(number - distance) % kHistory];
     if (!sent.used || sent.number != number - distance) return;
     // Its receiver derives the send time from ours, and books it under our epoch.
     if (sent.epoch != wire.telegram.site.epoch) return;
@@ -113,14 +113,14 @@ void Link::attach_older(WireTelegram& wire, TimePoint now) const noexcept {
 }
 
 WireTelegram Link::compose(const Telegram& telegram, TimePoint now) const noexcept {
-  const Conversation& conversation = conversation_;
+  const SessionState& state = session_state_;
   WireTelegram wire;
-  wire.sent_at_ns = nanoseconds_since(conversation.began_at, now);
-  if (conversation.heard) {
-    wire.echo_ns = conversation.newest_sent_at_ns;
-    wire.hold_us = hold_us(now - conversation.newest_arrived_at);
-    wire.newest_number = conversation.received.newest();
-    wire.before_newest = conversation.received.before_newest();
+  wire.sent_at_ns = nanoseconds_since(state.began_at, now);
+  if (state.heard) {
+    wire.echo_ns = state.newest_sent_at_ns;
+    wire.hold_us = hold_us(now - state.newest_arrived_at);
+    wire.newest_number = state.received.newest();
+    wire.before_newest = state.received.before_newest();
   }
   wire.telegram = telegram;
   attach_older(wire, now);
@@ -129,7 +129,7 @@ WireTelegram Link::compose(const Telegram& telegram, TimePoint now) const noexce
 
 void Link::send(const Telegram& telegram, TimePoint now) noexcept {
   if (session_id_ == 0) return;
-  Conversation& conversation = conversation_;
+  SessionState& state = session_state_;
   const WireTelegram wire = compose(telegram, now);
   const std::size_t size = codec_->encode(wire, std::span{plain_}.first<kTelegramSizeMax>());
   if (size == 0) {  // a node that says what no peer would take
@@ -140,7 +140,7 @@ void Link::send(const Telegram& telegram, TimePoint now) noexcept {
                       .key = 0,
                       .length = 0,
                       .connection = send_connection_,
-                      .number = conversation.next_number};
+                      .number = state.next_number};
   const std::size_t sealed = protection_->seal(header, std::span{plain_}.first(size), datagram_);
   if (sealed == 0) {  // the keys are used up: their replacement has failed for days
     ++counters_.unsent;
@@ -149,10 +149,10 @@ void Link::send(const Telegram& telegram, TimePoint now) noexcept {
   if (!transport_->send(std::span{datagram_}.first(sealed), now)) ++counters_.unsent;
   // What follows may take its time: the telegram is on its way.
   const std::uint32_t epoch = telegram.site.epoch;
-  conversation.history[header.number % kHistory] = {
+  state.history[header.number % kHistory] = {
       true, header.number, epoch, now, for_repetition(telegram.port)};
-  conversation.epoch_sent = std::max(conversation.epoch_sent, epoch);
-  ++conversation.next_number;
+  state.epoch_sent = std::max(state.epoch_sent, epoch);
+  ++state.next_number;
   ++counters_.sent;
   note_ways(now);
 }
@@ -176,8 +176,8 @@ Arrivals Link::receive(TimePoint now) noexcept {
   }
   for (const Incoming& incoming : samples_) counters_.repaired += incoming.repaired ? 1 : 0;
   return {.samples = samples_,
-          .peer = conversation_.peer,
-          .peer_heard = conversation_.heard,
+          .peer = session_state_.peer,
+          .peer_heard = session_state_.heard,
           .accepted = accepted_now_};
 }
 
@@ -196,11 +196,11 @@ void Link::drain(TimePoint now) noexcept {
       continue;
     }
     // From here on the datagram is authentic.
-    conversation_.received.mark(opened->number);
-    if (conversation_.received.newest() > opened->number) {
+    session_state_.received.mark(opened->number);
+    if (session_state_.received.newest() > opened->number) {
       ++counters_.reordered;
     } else {
-      conversation_.newest_key = opened->key;
+      session_state_.newest_key = opened->key;
     }
     const auto wire = codec_->decode(std::span{plain_}.first(opened->size));
     if (!wire) {
@@ -218,7 +218,7 @@ tl::expected<Link::Opened, Rejection> Link::open(std::span<const std::byte> data
       header->connection != receive_connection_) {
     return tl::unexpected(Rejection::Foreign);
   }
-  switch (conversation_.received.judge(header->number)) {
+  switch (session_state_.received.judge(header->number)) {
     case ReplayWindow::Verdict::Seen:
       return tl::unexpected(Rejection::Replayed);
     case ReplayWindow::Verdict::TooOld:
@@ -252,13 +252,13 @@ void Link::count(Rejection rejection) noexcept {
 }
 
 void Link::take(const WireTelegram& wire, std::uint64_t number, TimePoint arrived_at) noexcept {
-  Conversation& conversation = conversation_;
+  SessionState& state = session_state_;
   const Duration sent_at = as_duration(wire.sent_at_ns);
   const Duration excess =
-      conversation.clock.add_one_way(arrived_at - conversation.began_at - sent_at, arrived_at);
-  const bool newer = !conversation.heard || number > conversation.newest_number;
+      state.clock.add_one_way(arrived_at - state.began_at - sent_at, arrived_at);
+  const bool newer = !state.heard || number > state.newest_number;
   if (newer) {
-    const Duration limit = std::max(config_.stale_after, conversation.clock.least(arrived_at) / 2);
+    const Duration limit = std::max(config_.stale_after, state.clock.least(arrived_at) / 2);
     if (excess > limit) {
       ++counters_.stale;
       return;
@@ -291,55 +291,55 @@ void Link::take(const WireTelegram& wire, std::uint64_t number, TimePoint arrive
 }
 
 void Link::accept(const WireTelegram& wire, std::uint64_t number, TimePoint arrived_at) noexcept {
-  Conversation& conversation = conversation_;
+  SessionState& state = session_state_;
   ++counters_.accepted;
   ++accepted_now_;
-  if (!conversation.heard) conversation.first_accepted_at = arrived_at;
-  conversation.heard = true;
-  conversation.newest_number = number;
-  conversation.newest_sent_at_ns = wire.sent_at_ns;
-  conversation.newest_arrived_at = arrived_at;
+  if (!state.heard) state.first_accepted_at = arrived_at;
+  state.heard = true;
+  state.newest_number = number;
+  state.newest_sent_at_ns = wire.sent_at_ns;
+  state.newest_arrived_at = arrived_at;
 
   const std::uint32_t wanted_before = epoch_wanted();
-  conversation.peer = wire.telegram.site;
+  state.peer = wire.telegram.site;
   if (epoch_wanted() > wanted_before) {  // what came just before belongs to a finished account
     counters_.old_epoch += samples_.size();
     samples_.clear();
   }
 
   const Duration sent_at = as_duration(wire.sent_at_ns);
-  conversation.ways.here = {arrived_at - conversation.began_at - sent_at, sent_at, arrived_at};
+  state.ways.here = {arrived_at - state.began_at - sent_at, sent_at, arrived_at};
   if (wire.echo_ns == kNothingHeard) return;
-  const TimePoint echo = conversation.began_at + as_duration(wire.echo_ns);
+  const TimePoint echo = state.began_at + as_duration(wire.echo_ns);
   const microseconds hold{wire.hold_us};
-  if (!conversation.clock.add_round_trip(echo, hold, arrived_at)) return;
-  if (conversation.echo_ns != kNothingHeard && wire.echo_ns <= conversation.echo_ns) return;
-  conversation.echo_ns = wire.echo_ns;
-  ++conversation.exchanges;
-  WaysTaken& ways = conversation.ways;
+  if (!state.clock.add_round_trip(echo, hold, arrived_at)) return;
+  if (state.echo_ns != kNothingHeard && wire.echo_ns <= state.echo_ns) return;
+  state.echo_ns = wire.echo_ns;
+  ++state.exchanges;
+  WaysTaken& ways = state.ways;
   if (ways.count == WaysTaken::kMax) return;
   ways.there[ways.count++] = {sent_at - hold - as_duration(wire.echo_ns), sent_at, arrived_at};
 }
 
 /// The peer's echo tells of the newest telegram that it had in a tick; of ours it is the same.
 void Link::note_ways(TimePoint now) noexcept {
-  WaysTaken& ways = conversation_.ways;
+  WaysTaken& ways = session_state_.ways;
   for (const WayTaken& one : std::span{ways.there}.first(ways.count)) {
-    conversation_.offset.add_there(one.way, one.tick, one.arrived_at);
+    session_state_.offset.add_there(one.way, one.tick, one.arrived_at);
   }
-  if (ways.here) conversation_.offset.add_here(ways.here->way, now, ways.here->arrived_at);
+  if (ways.here) session_state_.offset.add_here(ways.here->way, now, ways.here->arrived_at);
   ways.count = 0;
   ways.here.reset();
 }
 
 /// The newest epoch that either side is known to be in.
 std::uint32_t Link::epoch_wanted() const noexcept {
-  return std::max(conversation_.epoch_sent, conversation_.heard ? conversation_.peer.epoch : 0);
+  return std::max(session_state_.epoch_sent, session_state_.heard ? session_state_.peer.epoch : 0);
 }
 
 void Link::hand_over(const Incoming& incoming, std::uint32_t epoch) noexcept {
-  if (conversation_.handed_over.judge(incoming.number) != ReplayWindow::Verdict::New) return;
-  conversation_.handed_over.mark(incoming.number);
+  if (session_state_.handed_over.judge(incoming.number) != ReplayWindow::Verdict::New) return;
+  session_state_.handed_over.mark(incoming.number);
   if (epoch < epoch_wanted()) {
     ++counters_.old_epoch;
     return;
@@ -348,35 +348,35 @@ void Link::hand_over(const Incoming& incoming, std::uint32_t epoch) noexcept {
 }
 
 void Link::synchronise(TimePoint now) noexcept {
-  Conversation& conversation = conversation_;
-  if (conversation.synchronised || !conversation.clock.measured()) return;
-  if (conversation.clock.least(now) > config_.round_trip_max) return;
-  conversation.synchronised = conversation.exchanges >= config_.sync_exchanges ||
-                              now - conversation.first_accepted_at >= config_.sync_time;
+  SessionState& state = session_state_;
+  if (state.synchronised || !state.clock.measured()) return;
+  if (state.clock.least(now) > config_.round_trip_max) return;
+  state.synchronised = state.exchanges >= config_.sync_exchanges ||
+                       now - state.first_accepted_at >= config_.sync_time;
 }
 
 Duration Link::gap(TimePoint now) const noexcept {
   if (session_id_ == 0) return Duration{0};
   return std::max(
       Duration{0},
-      now - (conversation_.heard ? conversation_.newest_arrived_at : conversation_.began_at));
+      now - (session_state_.heard ? session_state_.newest_arrived_at : session_state_.began_at));
 }
 
-void Link::rehearse() noexcept {
+void Link::warm_up() noexcept {
   if (session_id_ == 0) return;
-  transport_->rehearse();
+  transport_->warm_up();
   // What the next one repeats and acknowledges has to come into the caches as well.
-  const Sent& last = conversation_.history[(conversation_.next_number + kHistory - 1) % kHistory];
-  Telegram telegram = kRehearsed;
+  const Sent& last = session_state_.history[(session_state_.next_number + kHistory - 1) % kHistory];
+  Telegram telegram = kWarmUpTelegram;
   telegram.site.epoch = last.epoch;
   const WireTelegram wire = compose(telegram, last.at + config_.period);
   const std::size_t size = codec_->encode(wire, std::span{plain_}.first<kTelegramSizeMax>());
-  protection_->rehearse(std::span{plain_}.first(size), datagram_);
+  protection_->warm_up(std::span{plain_}.first(size), datagram_);
   (void)codec_->decode(std::span{plain_}.first(size));
 }
 
 LinkState Link::judge(TimePoint now) const noexcept {
-  if (session_id_ == 0 || !conversation_.synchronised) return LinkState::Down;
+  if (session_id_ == 0 || !session_state_.synchronised) return LinkState::Down;
   if (gap(now) > config_.closed_after) return LinkState::Down;
   return judge_gap(config_.watchdog, gap(now));
 }
@@ -386,15 +386,15 @@ LinkHealth Link::health(TimePoint now) const noexcept {
   health.state = judge(now);
   health.session_id = session_id_;
   health.gap = gap(now);
-  health.newest_number = conversation_.received.newest();
-  health.key = conversation_.newest_key;
-  health.round_trip = conversation_.clock.smoothed();
-  health.round_trip_min = conversation_.clock.least(now);
-  health.jitter = conversation_.clock.deviation();
-  health.peer_clock = conversation_.offset.estimate();
-  health.way_there = conversation_.offset.way_there();
-  health.way_here = conversation_.offset.way_here();
-  health.lost += conversation_.received.missing();
+  health.newest_number = session_state_.received.newest();
+  health.key = session_state_.newest_key;
+  health.round_trip = session_state_.clock.smoothed();
+  health.round_trip_min = session_state_.clock.least(now);
+  health.jitter = session_state_.clock.deviation();
+  health.peer_clock = session_state_.offset.estimate();
+  health.delay_out = session_state_.offset.delay_out();
+  health.delay_in = session_state_.offset.delay_in();
+  health.lost += session_state_.received.missing();
   return health;
 }
 

@@ -12,7 +12,7 @@
 #include "common/core/watchdog.h"
 #include "common/link/clock_offset.h"
 #include "common/link/codec.h"
-#include "common/link/handover.h"
+#include "common/link/link_update.h"
 #include "common/link/peer_clock.h"
 #include "common/link/replay_window.h"
 #include "common/link/telegram.h"
@@ -42,7 +42,7 @@ class Link {
   /// begin anew, counters go on. The same id replaces only what is not null. Id 0 ends the session.
   /// A new session needs its own protection.
   /// @returns what was retired, to be freed off the rt thread.
-  [[nodiscard]] Handover adopt(Handover next, TimePoint now) noexcept;
+  [[nodiscard]] LinkUpdate adopt(LinkUpdate next, TimePoint now) noexcept;
   /// Once per period. Without a session nothing happens.
   void send(const Telegram& telegram, TimePoint now) noexcept;
   /// Once per period, before send(): drains the transport within its budget.
@@ -53,7 +53,7 @@ class Link {
   /// In spare time before a tick: walks once through what sending and receiving do, with a telegram
   /// that nobody gets, because code that was not run for a millisecond runs slowly. Changes
   /// nothing.
-  void rehearse() noexcept;
+  void warm_up() noexcept;
 
  private:
   static constexpr std::size_t kHistory = 64;  ///< > the number distance of 10 ms
@@ -83,7 +83,7 @@ class Link {
   };
 
   /// All that begins anew with a session.
-  struct Conversation {
+  struct SessionState {
     TimePoint began_at{};
     std::uint64_t next_number{};
     std::uint32_t epoch_sent{};  ///< newest
@@ -136,7 +136,7 @@ class Link {
   std::uint32_t receive_connection_{};
   std::uint64_t session_id_{};
   DeviceFacts peer_devices_;
-  Conversation conversation_;
+  SessionState session_state_;
   LinkHealth counters_;  ///< its counters only; `lost` of former sessions
   std::uint32_t accepted_now_{};
   std::vector<Incoming> samples_;                       ///< never beyond the reserved size

@@ -37,8 +37,8 @@ class PacketProtection {
                                                     std::span<std::byte> plain) noexcept = 0;
   /// Seals `plain` and opens it again under keys that protect nothing, in `room`: only so that code
   /// and tables are in the processor's caches when they are needed. Changes nothing that counts.
-  virtual void rehearse(std::span<const std::byte> /*plain*/,
-                        std::span<std::byte> /*room*/) noexcept {}
+  virtual void warm_up(std::span<const std::byte> /*plain*/,
+                       std::span<std::byte> /*room*/) noexcept {}
 };
 
 /// Header and payload, nothing else: anybody on the path can read, change and forge.

@@ -29,7 +29,7 @@ struct SessionConfig {
   double repeat_growth{1.5};  ///< [-], of the wait after each
 };
 
-/// Both sites know each other: make a Handover of this. Numbers start at 0.
+/// Both sites know each other: make a LinkUpdate of this. Numbers start at 0.
 struct Established {
   std::uint64_t session_id{};          ///< the same at both sites, never used before
   std::uint32_t send_connection{};     ///< of the peer
@@ -43,7 +43,7 @@ struct Refused {
   std::string text;
   bool final{};
 };
-/// The session is over: hand over an empty Handover.
+/// The session is over: hand over an empty LinkUpdate.
 struct Closed {
   std::string text;
 };
@@ -57,7 +57,7 @@ struct SessionOutput {
 
 struct SessionCounters {
   std::uint64_t malformed{};  ///< breaks a rule of form
-  std::uint64_t foreign{};    ///< nothing that belongs to a conversation of ours
+  std::uint64_t foreign{};    ///< nothing that belongs to a session of ours
 };
 
 /// Finds the peer and agrees on a session (STATES.md): the surgeon asks, the patient answers and

@@ -52,13 +52,13 @@ struct Arrivals {
 struct LinkHealth {
   LinkState state{};
   std::uint64_t session_id{};  ///< as handed over; 0: none, or ended by a gap of 30 s
-  Duration gap{};         ///< since the newest accepted datagram arrived; first since the handover
+  Duration gap{};  ///< since the newest accepted datagram arrived; first since the link update
   Duration round_trip{};  ///< smoothed (1/8); 0: not measured yet
   Duration round_trip_min{};
   Duration jitter{};                        ///< smoothed mean deviation of the round trip (1/4)
   std::optional<ClockOffset> peer_clock{};  ///< from the second second on
-  Duration way_there{};  ///< smoothed (1/8), if the least both ways are equal; 0: not known yet
-  Duration way_here{};
+  Duration delay_out{};  ///< smoothed (1/8), if the least both ways are equal; 0: not known yet
+  Duration delay_in{};
   std::uint64_t newest_number{};  ///< highest authentic number of the session
   std::uint8_t key{};             ///< id of the keys under which the newest telegram came
   std::uint64_t sent{};

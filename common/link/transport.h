@@ -27,7 +27,7 @@ class Transport {
   virtual std::optional<Datagram> receive(std::span<std::byte, kDatagramSizeMax> buffer,
                                           TimePoint now) noexcept = 0;
   /// In spare time: touches what receive() and send() will need. Takes nothing, sends nothing.
-  virtual void rehearse() noexcept {}
+  virtual void warm_up() noexcept {}
 };
 
 }  // namespace palp::link

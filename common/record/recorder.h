@@ -75,7 +75,7 @@ struct HandReading {
   double position{};  ///< [m], device axis; not a number where the device gave none
   double velocity{};  ///< [m/s]
   double lateral{};   ///< [m]
-  bool dead_man_held{};
+  bool pedal_held{};
   bool emergency_stop{};
   bool faulted{};
   std::uint32_t script_phase{};  ///< of a scripted operator, 1, 2, ...; 0: none has begun

@@ -135,8 +135,8 @@ void put(const link::LinkHealth& health, std::uint64_t records_dropped, session:
     out.set_clock_uncertainty_ns(0);
     out.set_clock_at_ns(0);
   }
-  out.set_way_there_ns(health.way_there.count());
-  out.set_way_here_ns(health.way_here.count());
+  out.set_delay_out_ns(health.delay_out.count());
+  out.set_delay_in_ns(health.delay_in.count());
   out.set_sent(health.sent);
   out.set_accepted(health.accepted);
   out.set_late(health.late);
@@ -179,7 +179,7 @@ void put(const HandReading& hand, session::HandReading& out) {
   out.set_position_m(hand.position);
   out.set_velocity_m_per_s(hand.velocity);
   out.set_lateral_m(hand.lateral);
-  out.set_dead_man_held(hand.dead_man_held);
+  out.set_dead_man_held(hand.pedal_held);
   out.set_emergency_stop(hand.emergency_stop);
   out.set_faulted(hand.faulted);
   out.set_age_ns(age_ns(hand.at, hand.sampled_at));

@@ -76,7 +76,7 @@ BayesEstimator::Settled& BayesEstimator::settled_at(const PaperEstimator::PlaceD
     if (one.generation != place.generation) {
       one.generation = place.generation;
       one.count = one.weight = 0;
-      one.sums = TouchSums{place.surface};
+      one.sums = NormalEquations{place.surface};
       one.best.reset();
     }
     return one;
@@ -84,7 +84,7 @@ BayesEstimator::Settled& BayesEstimator::settled_at(const PaperEstimator::PlaceD
   if (settled_.size() == kPlacesMax) settled_.erase(settled_.begin());
   return settled_.emplace_back(Settled{.lateral = place.lateral,
                                        .generation = place.generation,
-                                       .sums = TouchSums{place.surface},
+                                       .sums = NormalEquations{place.surface},
                                        .best = {}});
 }
 

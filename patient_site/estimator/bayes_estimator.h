@@ -45,7 +45,7 @@ class BayesEstimator {
     std::uint64_t generation{};
     std::size_t count{};   ///< of the generation's touches, settled or too early for it
     std::size_t weight{};  ///< [touches], in the sums
-    TouchSums sums{0};
+    NormalEquations sums{0};
     std::optional<TouchModel> best;  ///< nothing: no answer yet
   };
 

@@ -6,7 +6,9 @@ namespace palp::estimator {
 
 /// Scale e and rate factor v are known with their covariance; of (e, e v) that is, to first order,
 /// what the product makes of it.
-CurveMatcher::CurveMatcher(const TouchSums& sums, const StiffnessPrior& stiffness, double surface)
+CurveMatcher::CurveMatcher(const NormalEquations& sums,
+                           const StiffnessPrior& stiffness,
+                           double surface)
     : sums_{sums}, scale_{stiffness.scale} {
   const double e = stiffness.scale;
   const double v = stiffness.rate_factor;
@@ -31,9 +33,9 @@ CurveMatcher::CurveMatcher(const TouchSums& sums, const StiffnessPrior& stiffnes
 Matrix3 CurveMatcher::normal_matrix(const CurveTerms& curve) const noexcept {
   Matrix3 normal = known_;
   for (std::size_t i = 0; i < 3; ++i) {
-    const TouchSums::Columns rows = sums_.rows(i, curve);
+    const NormalEquations::Columns rows = sums_.rows(i, curve);
     for (std::size_t j = i; j < 3; ++j) {
-      normal[i][j] += TouchSums::between(rows, j, curve);
+      normal[i][j] += NormalEquations::between(rows, j, curve);
       normal[j][i] = normal[i][j];
     }
   }
@@ -72,16 +74,16 @@ CurveMatcher::Information CurveMatcher::information(
     const CurveTerms& curve, const std::array<CurveTerms, 3>& along) const noexcept {
   const Matrix3 covariance = inverse(normal_matrix(curve)).matrix;
   std::array<Vector3, 3> cross{};  // by coordinate and unknown
-  std::array<TouchSums::Columns, 3> rows{};
+  std::array<NormalEquations::Columns, 3> rows{};
   for (std::size_t i = 0; i < 3; ++i) {
     rows[i] = sums_.rows(0, along[i]);
-    for (std::size_t j = 0; j < 3; ++j) cross[i][j] = TouchSums::between(rows[i], j, curve);
+    for (std::size_t j = 0; j < 3; ++j) cross[i][j] = NormalEquations::between(rows[i], j, curve);
   }
   const double square = scale_ * scale_;
   Information out{};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
-      double sum = TouchSums::between(rows[i], 0, along[j]);
+      double sum = NormalEquations::between(rows[i], 0, along[j]);
       for (std::size_t m = 0; m < 3; ++m) {
         for (std::size_t n = 0; n < 3; ++n) sum -= cross[i][m] * covariance[m][n] * cross[j][n];
       }

@@ -4,7 +4,7 @@
 
 #include "common/core/matrix3.h"
 #include "patient_site/estimator/curve_lattice.h"
-#include "patient_site/estimator/touch_sums.h"
+#include "patient_site/estimator/normal_equations.h"
 
 namespace palp::estimator {
 
@@ -33,7 +33,7 @@ struct CurveMatch {
 class CurveMatcher {
  public:
   /// `surface`: where it is expected [m].
-  CurveMatcher(const TouchSums& sums, const StiffnessPrior& stiffness, double surface);
+  CurveMatcher(const NormalEquations& sums, const StiffnessPrior& stiffness, double surface);
 
   [[nodiscard]] CurveMatch match(const CurveTerms& curve) const noexcept;
 
@@ -48,7 +48,7 @@ class CurveMatcher {
  private:
   [[nodiscard]] Matrix3 normal_matrix(const CurveTerms& curve) const noexcept;
 
-  TouchSums sums_;
+  NormalEquations sums_;
   double scale_;         ///< [-]
   Matrix3 known_{};      ///< of (e, e s, e v) beforehand: information
   Vector3 right_{};      ///< and that times the mean

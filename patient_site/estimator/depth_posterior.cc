@@ -302,11 +302,11 @@ double DepthModel::log_prior_total() const {
   return std::log(total);
 }
 
-TouchSums DepthModel::sums(const Input& input,
-                           double surface,
-                           const std::optional<TouchModel>& expected) const {
+NormalEquations DepthModel::sums(const Input& input,
+                                 double surface,
+                                 const std::optional<TouchModel>& expected) const {
   const SensorSteps steps{input.noise, input.quantum};
-  TouchSums out{surface};
+  NormalEquations out{surface};
   if (input.settled != nullptr) {
     out = *input.settled;
     out.move_to(surface);
@@ -322,7 +322,7 @@ TouchSums DepthModel::sums(const Input& input,
   return out;
 }
 
-void DepthModel::settle(const Input& input, const TouchModel& expected, TouchSums& to) const {
+void DepthModel::settle(const Input& input, const TouchModel& expected, NormalEquations& to) const {
   to.move_to(expected.surface);
   to.add(sums(input, expected.surface, expected));
 }

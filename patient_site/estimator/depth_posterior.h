@@ -51,12 +51,12 @@ class DepthModel {
     double cut_off{};                    ///< [Hz], of its pole; 0: none
     StiffnessPrior stiffness;            ///< before this place was touched
     std::optional<TouchModel> expected;  ///< what the touches will show, if that is known
-    const TouchSums* settled{};          ///< earlier touches, nullptr: none
+    const NormalEquations* settled{};    ///< earlier touches, nullptr: none
   };
   [[nodiscard]] DepthPosterior update(const Input& input) const;
 
   /// What the touches leave of themselves once the surface is known.
-  void settle(const Input& input, const TouchModel& expected, TouchSums& to) const;
+  void settle(const Input& input, const TouchModel& expected, NormalEquations& to) const;
 
  private:
   /// A range of radius and ratio, and the best depth at its middle.
@@ -89,9 +89,9 @@ class DepthModel {
   void spread(const Cell& cell, std::vector<DepthMass>& out) const;
   void integrate(const CurveMatcher& points, const Cell& cell, std::vector<DepthMass>& out) const;
   [[nodiscard]] double log_prior_total() const;
-  [[nodiscard]] TouchSums sums(const Input& input,
-                               double surface,
-                               const std::optional<TouchModel>& expected) const;
+  [[nodiscard]] NormalEquations sums(const Input& input,
+                                     double surface,
+                                     const std::optional<TouchModel>& expected) const;
   [[nodiscard]] double excluded(const CurveMatcher& points, double plain) const;
 
   DepthPrior prior_;

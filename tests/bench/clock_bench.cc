@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "common/core/random.h"
-#include "netem/delay_curve.h"
-#include "netem/presets.h"
+#include "netem/model/delay_curve.h"
+#include "netem/syntax/presets.h"
 #include "tests/common/link/network_couple.h"
 
 namespace palp::bench {

@@ -10,9 +10,9 @@
 #include <thread>
 #include <vector>
 
-#include "common/io/background_loop.h"
-#include "common/io/periodic_thread.h"
-#include "common/io/steady_clock.h"
+#include "common/io/realtime/background_loop.h"
+#include "common/io/realtime/periodic_thread.h"
+#include "common/io/realtime/steady_clock.h"
 #include "patient_site/estimator_worker.h"
 #include "tests/bench/two_sites.h"
 

@@ -16,10 +16,10 @@
 
 #include <unistd.h>
 
-#include "common/io/steady_clock.h"
+#include "common/io/realtime/steady_clock.h"
 #include "tests/bench/raw_loop.h"
 #include "tests/bench/secure_site.h"
-#include "tests/common/io/keys_folder.h"
+#include "tests/common/io/secure/keys_folder.h"
 
 namespace palp::bench {
 namespace {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "common/core/random.h"
-#include "common/io/process_time.h"
-#include "netem/simulation.h"
-#include "tests/netem/impairment_builders.h"
+#include "common/io/process/process_time.h"
+#include "netem/model/simulation.h"
+#include "tests/netem/model/impairment_builders.h"
 
 namespace palp::bench {
 namespace {

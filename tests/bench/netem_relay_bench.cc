@@ -21,9 +21,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "common/io/realtime.h"
-#include "netem/data_files.h"
-#include "netem/relay.h"
+#include "common/io/realtime/realtime.h"
+#include "netem/relay/relay.h"
+#include "netem/syntax/data_files.h"
 #include "tests/bench/raw_relays.h"
 
 namespace palp::bench {

@@ -3,7 +3,7 @@
 #include <atomic>
 
 #include "common/core/time.h"
-#include "common/io/endpoint.h"
+#include "common/io/net/endpoint.h"
 
 /// The plainest relays there are, one way, for comparison: plain sockets, nothing of ours. Each
 /// reads from `in` and sends to the connected `out` until `stop` is set.

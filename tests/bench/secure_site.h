@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "common/core/mailbox.h"
-#include "common/io/handover_desk.h"
-#include "common/io/periodic_thread.h"
-#include "common/io/session_server.h"
+#include "common/io/net/link_update_desk.h"
+#include "common/io/realtime/periodic_thread.h"
+#include "common/io/secure/session_server.h"
 #include "common/link/codec_wire.h"
 #include "common/link/link.h"
 
@@ -38,10 +38,10 @@ struct SecureSite {
           exchange(now);
           health.put(link.health(now));
         },
-        [this] { link.rehearse(); });
+        [this] { link.warm_up(); });
   }
 
-  io::HandoverDesk desk;
+  io::LinkUpdateDesk desk;
   link::Link link{{}, std::make_unique<link::WireCodec>()};
   io::SessionServer server;
   Mailbox<link::LinkHealth> health;  ///< writer: rt, reader: main

@@ -21,14 +21,14 @@
 #include <unistd.h>
 
 #include "common/core/random.h"
-#include "common/io/associations.h"
-#include "common/io/process_time.h"
-#include "common/io/steady_clock.h"
+#include "common/io/process/process_time.h"
+#include "common/io/realtime/steady_clock.h"
+#include "common/io/secure/associations.h"
 #include "common/link/aead_protection.h"
 #include "tests/bench/raw_loop.h"
 #include "tests/bench/secure_site.h"
-#include "tests/common/io/keys_folder.h"
-#include "tests/common/io/loopback.h"
+#include "tests/common/io/net/loopback.h"
+#include "tests/common/io/secure/keys_folder.h"
 #include "tests/common/link/some_keys.h"
 
 namespace palp::bench {

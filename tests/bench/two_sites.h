@@ -7,10 +7,10 @@
 #include "common/core/spsc_queue.h"
 #include "common/link/codec_wire.h"
 #include "common/record/queue_recorder.h"
-#include "lab/meeting.h"
-#include "lab/scenario_file.h"
-#include "netem/impairment.h"
-#include "netem/pipe.h"
+#include "lab/plan/scenario_file.h"
+#include "lab/run/session_setup.h"
+#include "netem/model/impairment.h"
+#include "netem/model/pipe.h"
 #include "patient_site/patient_node.h"
 #include "surgeon_site/surgeon_node.h"
 
@@ -37,8 +37,8 @@ class TwoSites {
         pipe_{scenario.up, scenario.down, 1, kQueue, now},
         surgeon_link_{scenario.link, std::make_unique<link::WireCodec>()},
         patient_link_{scenario.link, std::make_unique<link::WireCodec>()},
-        surgeon_meeting_{scenario_, link::Role::Surgeon, pipe_.surgeon_end()},
-        patient_meeting_{scenario_, link::Role::Patient, pipe_.patient_end()},
+        surgeon_setup_{scenario_, link::Role::Surgeon, pipe_.surgeon_end()},
+        patient_setup_{scenario_, link::Role::Patient, pipe_.patient_end()},
         hand_{scenario_.hand, scenario_.script},
         surgeon_law_{coupling::make_surgeon_coupling(scenario.coupling).value()},
         surgeon_{scenario_.surgeon, {hand_, surgeon_law_, surgeon_link_, surgeon_records_}},
@@ -47,8 +47,8 @@ class TwoSites {
         patient_{
             scenario_.patient,
             {tissue_, tissue_, patient_law_, patient_link_, patient_records_, contact_, depth_}} {
-    surgeon_meeting_.start(surgeon_link_, now);
-    patient_meeting_.start(patient_link_, now);
+    surgeon_setup_.start(surgeon_link_, now);
+    patient_setup_.start(patient_link_, now);
   }
 
   void tick_surgeon(TimePoint now) { surgeon_.tick(now); }
@@ -71,8 +71,8 @@ class TwoSites {
   netem::Pipe pipe_;
   link::Link surgeon_link_;
   link::Link patient_link_;
-  lab::Meeting surgeon_meeting_;
-  lab::Meeting patient_meeting_;
+  lab::SessionSetup surgeon_setup_;
+  lab::SessionSetup patient_setup_;
   record::QueueRecorder surgeon_records_{kQueue};
   record::QueueRecorder patient_records_{kQueue};
   surgeon::SimulatedHand hand_;

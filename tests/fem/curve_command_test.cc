@@ -75,9 +75,9 @@ TEST(CurveCommandTest, AStepThatDoesNotConvergeNamesHowFarItWent) {
 
 TEST(CurveCommandTest, NoFileIsLeftWhereOneCannotBeWritten) {
   const std::string vtu = testing::TempDir() + "curve_command_test.vtu";
-  const auto ending = run_curve(
+  const auto exit_status = run_curve(
       {.model = "l1", .indentations_mm = "1", .csv = "/nonexistent/curve.csv", .vtu = vtu});
-  EXPECT_EQ(ending.code, config::ExitCode::CannotOpen);
+  EXPECT_EQ(exit_status.code, config::ExitCode::CannotOpen);
   EXPECT_FALSE(std::ifstream{vtu});
 }
 

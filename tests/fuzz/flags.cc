@@ -72,10 +72,10 @@ void program_laws(const std::vector<std::string>& arguments) {
 
   std::vector<const char*> words{"fuzz"};
   for (const std::string& argument : arguments) words.push_back(argument.c_str());
-  const auto ending = program.parse(static_cast<int>(words.size()), words.data());
-  if (ending) {
-    PALP_CHECK(!ending->text.empty(), "an ending says why");
-    PALP_CHECK(ending->code == ExitCode::Done || ending->code == ExitCode::BadInput,
+  const auto exit_status = program.parse(static_cast<int>(words.size()), words.data());
+  if (exit_status) {
+    PALP_CHECK(!exit_status->text.empty(), "an ending says why");
+    PALP_CHECK(exit_status->code == ExitCode::Done || exit_status->code == ExitCode::BadInput,
                "nothing was opened");
     return;
   }

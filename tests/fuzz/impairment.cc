@@ -1,14 +1,14 @@
 // Input: an impairment as text, the text of a timeline, and lines of live control, which are done
 // to a path under traffic.
-#include "netem/impairment.h"
+#include "netem/model/impairment.h"
 
 #include <algorithm>
 #include <array>
 
 #include "common/core/check.h"
-#include "netem/channel.h"
-#include "netem/fate.h"
-#include "netem/timeline.h"
+#include "netem/model/channel.h"
+#include "netem/model/impairment_model.h"
+#include "netem/syntax/timeline.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace palp::netem {
@@ -32,11 +32,11 @@ void limits(const Impairment& impairment) {
   }
   PALP_CHECK(impairment.swap_depth <= kSwapDepthMax, "few are overtaken");
   // Whatever can be said can be decided about.
-  FateSequence fates{impairment, 1, Direction::Up, TimePoint{}};
+  ImpairmentModel outcomes{impairment, 1, Direction::Up, TimePoint{}};
   for (int i = 0; i < 8; ++i) {
     const auto copies =
-        fates.next({.at = TimePoint{std::chrono::milliseconds{i}}, .length = 100, .room = 10});
-    for (const CopyFate& copy : copies) {
+        outcomes.next({.at = TimePoint{std::chrono::milliseconds{i}}, .length = 100, .room = 10});
+    for (const CopyOutcome& copy : copies) {
       PALP_CHECK(copy.verdict != Verdict::Delivered || copy.release >= TimePoint{},
                  "nothing leaves before it came");
     }

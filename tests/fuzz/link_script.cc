@@ -94,7 +94,7 @@ class Witness {
 class Mischief {
  public:
   explicit Mischief(Lane& lane) : lane_{lane} {
-    lane.fate = [this](std::uint64_t, const Bytes& bytes) { return act(bytes); };
+    lane.outcome = [this](std::uint64_t, const Bytes& bytes) { return act(bytes); };
   }
 
   void plan(ByteSource& input) {
@@ -263,7 +263,7 @@ class Play {
     const auto id = static_cast<std::uint32_t>(2 * session_id);
     auto transport = surgeon ? couple_.pipe.surgeon_end() : couple_.pipe.patient_end();
     (void)side.link.adopt(
-        Couple::handover(
+        Couple::link_update(
             std::move(transport), surgeon ? id + 1 : id, surgeon ? id : id + 1, session_id),
         couple_.now);
   }

@@ -13,8 +13,8 @@
 #include "common/config/flag_value.h"
 #include "common/config/number.h"
 #include "common/core/check.h"
-#include "lab/scenario_file.h"
-#include "lab/trial.h"
+#include "lab/plan/scenario_file.h"
+#include "lab/run/run.h"
 #include "surgeon_site/script_reader.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -100,8 +100,8 @@ class Choices {
  private:
   /// No fraction is taken: the default itself is refused with one.
   static bool whole(const std::string& path) {
-    config::Document trial = config::scenario_document();
-    const auto refused = trial.set(path + "=0.5");
+    config::Document run = config::scenario_document();
+    const auto refused = run.set(path + "=0.5");
     return !refused && refused.error().text.find("whole number") != std::string::npos;
   }
   void set(const std::string& assignment) {
@@ -125,9 +125,9 @@ Scenario shortened(Scenario scenario) {
   return scenario;
 }
 
-void trial_laws(const Scenario& scenario) {
-  const TrialResult first = run_trial(scenario);
-  const TrialResult second = run_trial(scenario);
+void run_laws(const Scenario& scenario) {
+  const RunResult first = simulate(scenario);
+  const RunResult second = simulate(scenario);
   PALP_CHECK(first.digest == second.digest, "equal scenarios give equal bits");
   PALP_CHECK(first.virtual_span <= kSpan + std::chrono::milliseconds{100}, "a run ends in time");
   PALP_CHECK(first.surgeon_link.malformed == 0 && first.patient_link.malformed == 0 &&
@@ -151,6 +151,6 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   }
   auto scenario = palp::lab::make_scenario("fuzz", choices.document());
   PALP_CHECK(scenario.has_value(), "what passes its check makes a scenario");
-  palp::lab::trial_laws(palp::lab::shortened(std::move(*scenario)));
+  palp::lab::run_laws(palp::lab::shortened(std::move(*scenario)));
   return 0;
 }

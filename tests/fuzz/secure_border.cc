@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 #include "common/core/check.h"
-#include "common/io/certificates.h"
-#include "common/io/credentials.h"
-#include "common/io/secure_conversation.h"
+#include "common/io/secure/certificates.h"
+#include "common/io/secure/credentials.h"
+#include "common/io/secure/dtls_session.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace palp::io {
@@ -40,7 +40,7 @@ struct Keys {
   std::unique_ptr<Credentials> patient;
 };
 
-void check(const ConversationOutput& out) {
+void check(const SessionEndpointOutput& out) {
   PALP_CHECK(!out.event || std::holds_alternative<link::Refused>(*out.event),
              "no stranger begins or ends a session");
   PALP_CHECK(out.protection == nullptr, "no stranger changes keys");
@@ -55,9 +55,8 @@ void run(ByteSource input) {
     return link::SessionConfig{
         .role = role, .settings_hash = 77, .coupling = "direct", .git = "abc"};
   };
-  SecureConversation patient{
-      {.session = session_of(Role::Patient), .callee = {}}, *keys.patient, 1};
-  SecureConversation surgeon{
+  DtlsSession patient{{.session = session_of(Role::Patient), .callee = {}}, *keys.patient, 1};
+  DtlsSession surgeon{
       {.session = session_of(Role::Surgeon), .callee = patient_at}, *keys.surgeon, 2};
   TimePoint now{};
   check(surgeon.tick(now, {}));  // calls
@@ -66,7 +65,7 @@ void run(ByteSource input) {
         input.take<std::uint8_t>() * std::size_t{256} + input.take<std::uint8_t>();
     const auto datagram = input.take_bytes(size);
     now += std::chrono::milliseconds{5};
-    const ConversationOutput answer = patient.hear(datagram, stranger_at, now);
+    const SessionEndpointOutput answer = patient.hear(datagram, stranger_at, now);
     check(answer);
     std::size_t answered = 0;
     for (const Letter& letter : answer.letters) {

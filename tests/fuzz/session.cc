@@ -196,7 +196,8 @@ class Play {
       case 6:
         return restart(to_patient);
       case 7:
-        way.fate = input_.below(2) == 0 ? after(milliseconds{input_.take<std::uint8_t>()}) : kCut;
+        way.outcome =
+            input_.below(2) == 0 ? after(milliseconds{input_.take<std::uint8_t>()}) : kCut;
         return;
       case 8:
         if (input_.below(8) == 0) party.leave(now_);
@@ -254,8 +255,8 @@ class Play {
   void heal() {
     while (up_.pop(TimePoint::max())) continue;
     while (down_.pop(TimePoint::max())) continue;
-    up_.fate = after(milliseconds{10});
-    down_.fate = after(milliseconds{10});
+    up_.outcome = after(milliseconds{10});
+    down_.outcome = after(milliseconds{10});
     surgeon_->link_is(LinkState::Down);
     patient_->link_is(LinkState::Down);
     tick(500);

@@ -49,7 +49,7 @@ const std::vector<Arrow>& arrows() {
       {"common/io/*", {"common/link"}},
       {"common/plot/*", {}},
       // What the two programs of a session do alike: it puts parts together, as their main.cc does.
-      {"common/site_program/*",
+      {"site_program/*",
        {"common/config", "common/settings", "common/link", "common/record", "common/io", "netem"}},
       // The emulator as a program; its library sees nothing but the seam.
       {"netem/relay*", {"common/link/transport.h", "common/io", "common/config"}},
@@ -103,7 +103,8 @@ const std::vector<Arrow>& arrows() {
         "common/coupling",
         "common/link",
         "common/record"}},
-      {"lab/main.cc", {"common/config", "common/io/process_time.h", "common/io/parallel.h"}},
+      {"lab/main.cc",
+       {"common/config", "common/io/process/process_time.h", "common/io/process/parallel.h"}},
       {"lab/*",
        {"surgeon_site",
         "patient_site",
@@ -136,7 +137,7 @@ const std::vector<std::string_view>& protobuf_files() {
                                                    "surgeon_site/settings*.cc",
                                                    "patient_site/settings*.cc",
                                                    "lab/scenario*.cc",
-                                                   "netem/timeline.cc",
+                                                   "netem/syntax/timeline.cc",
                                                    "fem/depth_table.cc"};
   return files;
 }
@@ -149,20 +150,20 @@ const std::vector<Fence>& fences() {
       {"zlib.h", {"common/record/mcap_*.cc"}},
       // Programs without a schema of their own have flags of their own.
       {"CLI/", {"common/config/command_line.cc"}},
-      {"spdlog/", {"common/io/diagnostics.cc", "*/main.cc"}},
-      {"fmt/", {"common/io/diagnostics.cc", "*/main.cc"}},
+      {"spdlog/", {"common/io/process/diagnostics.cc", "*/main.cc"}},
+      {"fmt/", {"common/io/process/diagnostics.cc", "*/main.cc"}},
       {"openssl/",
        {"common/link/aead_protection.cc",
-        "common/io/credentials.cc",
+        "common/io/secure/credentials.cc",
         "common/io/dtls_*.cc",
-        "common/io/certificates.cc",
+        "common/io/secure/certificates.cc",
         "common/io/openssl_*.h"}},
       {"readerwriterqueue/", {"common/core/spsc_queue.h"}},
       // link answers with reasons of its own, not with sentences.
       {"tl/expected.hpp", {"common/core/result.h"}},
       {"nlohmann/",
        {"common/config/report.cc",
-        "common/site_program/*.cc",
+        "site_program/*.cc",
         "netem/*.cc",
         "lab/*.cc",
         "review/*.cc",

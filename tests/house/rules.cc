@@ -146,8 +146,8 @@ Violations clocks_and_sleeps(const Source& source) {
                           "sleep_until"},
                          "only common/io asks a clock or sleeps; take `now` as an argument",
                          {"common/io/*",
-                          "netem/relay.cc",
-                          "netem/datagram_socket.cc",  // the relay's
+                          "netem/relay/relay.cc",
+                          "netem/relay/datagram_socket.cc",  // the relay's
                           "tests/common/io/*",
                           "tests/system/*",
                           "tests/bench/*",
@@ -168,7 +168,7 @@ Violations randomness(const Source& source) {
                           "getrandom",
                           "random_shuffle"},
                          "the only randomness is common/core/random.h",
-                         {"common/io/entropy.cc"});
+                         {"common/io/process/entropy.cc"});
 }
 
 Violations threads(const Source& source) {

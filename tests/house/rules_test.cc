@@ -51,28 +51,28 @@ TEST(ArrowsTest, WhatTheTableDoesNotNameIsForbidden) {
   EXPECT_FALSE(allowed("common/coupling/direct.h", "common/link/link.h"));
   EXPECT_TRUE(allowed("common/record/recorder.h", "common/link/telegram.h"));
   EXPECT_FALSE(allowed("common/link/telegram.h", "common/record/recorder.h"));
-  EXPECT_TRUE(allowed("netem/pipe.h", "common/link/transport.h"));
-  EXPECT_FALSE(allowed("netem/pipe.h", "common/link/telegram.h"));
-  EXPECT_FALSE(allowed("netem/pipe.cc", "common/io/udp_socket.h"));
-  EXPECT_TRUE(allowed("netem/relay.cc", "common/io/udp_socket.h"));
-  EXPECT_TRUE(allowed("netem/datagram_socket.h", "common/io/endpoint.h"));
+  EXPECT_TRUE(allowed("netem/model/pipe.h", "common/link/transport.h"));
+  EXPECT_FALSE(allowed("netem/model/pipe.h", "common/link/telegram.h"));
+  EXPECT_FALSE(allowed("netem/model/pipe.cc", "common/io/net/udp_socket.h"));
+  EXPECT_TRUE(allowed("netem/relay/relay.cc", "common/io/net/udp_socket.h"));
+  EXPECT_TRUE(allowed("netem/relay/datagram_socket.h", "common/io/net/endpoint.h"));
   EXPECT_FALSE(allowed("surgeon_site/surgeon_node.h", "patient_site/stage.h"));
-  EXPECT_FALSE(allowed("surgeon_site/surgeon_node.cc", "common/io/udp_socket.h"));
+  EXPECT_FALSE(allowed("surgeon_site/surgeon_node.cc", "common/io/net/udp_socket.h"));
   EXPECT_FALSE(allowed("surgeon_site/surgeon_node.cc", "common/config/config.h"));
   EXPECT_TRUE(allowed("surgeon_site/settings.cc", "common/config/config.h"));
-  EXPECT_TRUE(allowed("surgeon_site/main.cc", "common/io/udp_socket.h"));
-  EXPECT_TRUE(allowed("surgeon_site/main.cc", "netem/impaired_transport.h"));
+  EXPECT_TRUE(allowed("surgeon_site/main.cc", "common/io/net/udp_socket.h"));
+  EXPECT_TRUE(allowed("surgeon_site/main.cc", "netem/model/impaired_transport.h"));
   EXPECT_FALSE(allowed("surgeon_site/main.cc", "patient_site/stage.h"));
   EXPECT_TRUE(allowed("patient_site/devices/x.cc", "patient_site/stage.h"));
   EXPECT_FALSE(allowed("patient_site/devices/x.cc", "patient_site/patient_node.h"));
   EXPECT_TRUE(allowed("patient_site/patient_node.h", "patient_site/estimator/estimator.h"));
   EXPECT_FALSE(allowed("patient_site/estimator/fit.h", "patient_site/stage.h"));
-  EXPECT_TRUE(allowed("lab/world.h", "surgeon_site/surgeon_node.h"));
-  EXPECT_FALSE(allowed("lab/world.h", "surgeon_site/devices/x.h"));
-  EXPECT_FALSE(allowed("lab/world.h", "common/io/steady_clock.h"));
-  EXPECT_FALSE(allowed("review/check.cc", "lab/world.h"));
+  EXPECT_TRUE(allowed("lab/run/simulator.h", "surgeon_site/surgeon_node.h"));
+  EXPECT_FALSE(allowed("lab/run/simulator.h", "surgeon_site/devices/x.h"));
+  EXPECT_FALSE(allowed("lab/run/simulator.h", "common/io/realtime/steady_clock.h"));
+  EXPECT_FALSE(allowed("review/check.cc", "lab/run/simulator.h"));
   EXPECT_FALSE(allowed("common/core/time.h", "tests/support/realtime_guard.h"));
-  EXPECT_TRUE(allowed("tests/lab/a_test.cc", "lab/world.h"));
+  EXPECT_TRUE(allowed("tests/lab/a_test.cc", "lab/run/simulator.h"));
   EXPECT_FALSE(allowed("common/link/link.cc", "link.h"));
 }
 
@@ -84,31 +84,31 @@ TEST(FencesTest, LibraryIsSeenOnlyBehindItsFence) {
   const auto allowed = [](const std::string& from, const std::string& include) {
     return fires(broken_fences, from, "#include " + include + "\n").empty();
   };
-  EXPECT_TRUE(allowed("common/io/udp_socket.cc", "<boost/asio.hpp>"));
-  EXPECT_FALSE(allowed("common/io/udp_socket.h", "<boost/asio.hpp>"));
+  EXPECT_TRUE(allowed("common/io/net/udp_socket.cc", "<boost/asio.hpp>"));
+  EXPECT_FALSE(allowed("common/io/net/udp_socket.h", "<boost/asio.hpp>"));
   EXPECT_TRUE(allowed("common/link/codec.cc", "\"proto/link.pb.h\""));
   EXPECT_FALSE(allowed("common/link/codec.h", "\"proto/link.pb.h\""));
   EXPECT_FALSE(allowed("common/link/link.cc", "\"proto/link.pb.h\""));
-  EXPECT_FALSE(allowed("lab/world.cc", "<google/protobuf/message.h>"));
+  EXPECT_FALSE(allowed("lab/run/simulator.cc", "<google/protobuf/message.h>"));
   EXPECT_TRUE(allowed("common/record/mcap_writer.cc", "<zstd.h>"));
   EXPECT_FALSE(allowed("common/record/queue_recorder.cc", "<zlib.h>"));
   EXPECT_FALSE(allowed("lab/main.cc", "<CLI/CLI.hpp>"));
   EXPECT_TRUE(allowed("lab/main.cc", "<spdlog/spdlog.h>"));
-  EXPECT_FALSE(allowed("lab/world.cc", "<fmt/format.h>"));
+  EXPECT_FALSE(allowed("lab/run/simulator.cc", "<fmt/format.h>"));
   EXPECT_FALSE(allowed("common/io/a.cc", "<readerwriterqueue/readerwriterqueue.h>"));
   EXPECT_FALSE(allowed("common/link/a.h", "<tl/expected.hpp>"));
   EXPECT_TRUE(allowed("lab/report.cc", "<nlohmann/json.hpp>"));
   EXPECT_FALSE(allowed("lab/report.h", "<nlohmann/json.hpp>"));
   EXPECT_FALSE(allowed("common/core/check.cc", "<gtest/gtest.h>"));
-  EXPECT_FALSE(allowed("lab/world.cc", "<curl/curl.h>"));
-  EXPECT_TRUE(allowed("lab/world.cc", "<vector>"));
+  EXPECT_FALSE(allowed("lab/run/simulator.cc", "<curl/curl.h>"));
+  EXPECT_TRUE(allowed("lab/run/simulator.cc", "<vector>"));
   EXPECT_TRUE(allowed("common/io/a.cc", "<sys/socket.h>"));
   EXPECT_TRUE(allowed("tests/lab/a.cc", "<gtest/gtest.h>"));
 }
 
 TEST(RulesTest, ClocksAndSleepsAreFoundOutsideIo) {
   EXPECT_EQ(fires(clocks_and_sleeps,
-                  "lab/world.cc",
+                  "lab/run/simulator.cc",
                   "auto a = std::chrono::steady_clock::now();\n"
                   "clock_gettime(CLOCK_MONOTONIC, &b);\n"
                   "std::this_thread::sleep_for(c);\n"
@@ -117,7 +117,8 @@ TEST(RulesTest, ClocksAndSleepsAreFoundOutsideIo) {
                   "sleep (1);\n"
                   "int sleep = 0;  // sleep(1)\n"),
             "1 2 3 4 5 6");
-  EXPECT_EQ(fires(clocks_and_sleeps, "common/io/steady_clock.cc", "clock_gettime(a, &b);"), "");
+  EXPECT_EQ(fires(clocks_and_sleeps, "common/io/realtime/steady_clock.cc", "clock_gettime(a, &b);"),
+            "");
   EXPECT_EQ(fires(clocks_and_sleeps, "tests/lab/a_test.cc", "usleep(1);"), "1");
 }
 
@@ -130,10 +131,11 @@ TEST(RulesTest, RandomnessIsFoundEverywhere) {
 }
 
 TEST(RulesTest, ThreadsAreFoundOutsideIo) {
-  EXPECT_EQ(fires(threads, "lab/world.h", "std::jthread a;\nstd::thread b;\nstd::async(c);\n"),
-            "1 2 3");
-  EXPECT_EQ(fires(threads, "lab/world.h", "std::this_thread::yield();"), "");
-  EXPECT_EQ(fires(threads, "common/io/background_loop.h", "std::jthread a;"), "");
+  EXPECT_EQ(
+      fires(threads, "lab/run/simulator.h", "std::jthread a;\nstd::thread b;\nstd::async(c);\n"),
+      "1 2 3");
+  EXPECT_EQ(fires(threads, "lab/run/simulator.h", "std::this_thread::yield();"), "");
+  EXPECT_EQ(fires(threads, "common/io/realtime/background_loop.h", "std::jthread a;"), "");
   EXPECT_EQ(fires(threads, "tests/common/core/queues_test.cc", "std::thread a;"), "");
 }
 
@@ -254,26 +256,29 @@ TEST(RulesTest, UnwantedWordsAreFoundInEveryText) {
 }
 
 TEST(TreeRulesTest, HeaderThatNoTestReadsIsFound) {
-  const Source header = make_source("netem/fate.h", "#pragma once\n");
+  const Source header = make_source("netem/model/impairment_model.h", "#pragma once\n");
   const Source list = make_source("netem/CMakeLists.txt", "");
-  const Source test = make_source("tests/netem/a_test.cc", "#include \"netem/pipe.h\"\n");
-  const Source other = make_source("tests/lab/a_test.cc", "#include \"netem/pipe.h\"\n");
-  const Source pipe = make_source("netem/pipe.h", "#include \"netem/fate.h\"\n");
+  const Source test = make_source("tests/netem/a_test.cc", "#include \"netem/model/pipe.h\"\n");
+  const Source other = make_source("tests/lab/a_test.cc", "#include \"netem/model/pipe.h\"\n");
+  const Source pipe =
+      make_source("netem/model/pipe.h", "#include \"netem/model/impairment_model.h\"\n");
   EXPECT_EQ(untested_headers({header, list}).size(), 1U);
   EXPECT_TRUE(untested_headers({header}).empty());                    // no such room yet
   EXPECT_TRUE(untested_headers({header, list, test, pipe}).empty());  // through pipe.h
-  const Source beside = make_source("netem/pipe.cc", "#include \"netem/fate.h\"\n");
-  const Source bare_pipe = make_source("netem/pipe.h", "");
+  const Source beside =
+      make_source("netem/model/pipe.cc", "#include \"netem/model/impairment_model.h\"\n");
+  const Source bare_pipe = make_source("netem/model/pipe.h", "");
   EXPECT_TRUE(untested_headers({header, list, test, bare_pipe, beside}).empty());
   EXPECT_EQ(untested_headers({header, list, other, pipe}).size(), 1U);  // of another room
 }
 
 TEST(TreeRulesTest, SourceInNoListIsFound) {
-  const Source source = make_source("netem/fate.cc", "");
+  const Source source = make_source("netem/model/impairment_model.cc", "");
   const auto list = [](const std::string& text) {
     return make_source("netem/CMakeLists.txt", text);
   };
-  EXPECT_TRUE(unlisted_sources({source, list("palp_library(a SOURCES pipe.cc fate.cc)")}).empty());
+  EXPECT_TRUE(
+      unlisted_sources({source, list("palp_library(a SOURCES pipe.cc outcome.cc)")}).empty());
   EXPECT_EQ(unlisted_sources({source, list("palp_library(a SOURCES my_fate.cc)")}).size(), 1U);
   EXPECT_TRUE(unlisted_sources({source}).empty());  // no such room yet
 }

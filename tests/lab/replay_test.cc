@@ -8,8 +8,8 @@
 #include "common/config/document.h"
 #include "common/record/session_reader.h"
 #include "common/record/session_writer.h"
-#include "lab/scenario_file.h"
-#include "lab/trial.h"
+#include "lab/plan/scenario_file.h"
+#include "lab/run/run.h"
 
 // Goal: a session file holds all that decided a session. Method: whole sessions in virtual time,
 // with jitter, loss, a blackout and devices that fail, are written to files in memory; from a file
@@ -45,7 +45,7 @@ struct Files {
 
 Files session_of(const Scenario& scenario) {
   Files files;
-  (void)run_trial(scenario, {.surgeon = &files.surgeon, .patient = &files.patient});
+  (void)simulate(scenario, {.surgeon = &files.surgeon, .patient = &files.patient});
   return files;
 }
 

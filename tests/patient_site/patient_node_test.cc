@@ -98,8 +98,8 @@ struct World {
   bool silent{};
 
   World() {
-    (void)surgeon_link.adopt(link::Couple::handover(pipe.surgeon_end(), 3, 2, 1), now);
-    (void)patient_link.adopt(link::Couple::handover(pipe.patient_end(), 2, 3, 1), now);
+    (void)surgeon_link.adopt(link::Couple::link_update(pipe.surgeon_end(), 3, 2, 1), now);
+    (void)patient_link.adopt(link::Couple::link_update(pipe.patient_end(), 2, 3, 1), now);
     say.port.position = -10e-3;
   }
   void tick() {

@@ -81,11 +81,11 @@ TEST(PatientRealtimeTest, ATickNeitherAllocatesNorWaits) {
   Mailbox<DepthEstimate> depth;
   TimePoint now{};
   const auto hand_over = [](Lane& out, Lane& in, std::uint32_t send, std::uint32_t receive) {
-    return link::Handover{.transport = std::make_unique<LaneEnd>(out, in),
-                          .protection = std::make_unique<link::PlainProtection>(),
-                          .send_connection = send,
-                          .receive_connection = receive,
-                          .session_id = 1};
+    return link::LinkUpdate{.transport = std::make_unique<LaneEnd>(out, in),
+                            .protection = std::make_unique<link::PlainProtection>(),
+                            .send_connection = send,
+                            .receive_connection = receive,
+                            .session_id = 1};
   };
   (void)surgeon.adopt(hand_over(up, down, 3, 2), now);
   (void)patient.adopt(hand_over(down, up, 2, 3), now);

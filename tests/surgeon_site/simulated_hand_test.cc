@@ -115,7 +115,7 @@ TEST(SimulatedHandTest, PerformsItsScriptAgainstASpring) {
   Duration t{};
   for (; t < 60s && !hand.finished(); t += 1ms) {
     const HandState state = hand.read(at(t));
-    session.step(state.dead_man_held);
+    session.step(state.pedal_held);
     hand.show(session.view());
     hand.apply(plain_force(std::max(0.0, hand.truth().position)));
     deepest = std::max(deepest, hand.truth().position);

@@ -142,7 +142,7 @@ TEST(SurgeonNodeTest, EngagementMovesNothingHoweverFarTheHandIsFromTheTip) {
   Bench bench{device};
   bench.run(1s);
   ASSERT_EQ(bench.status().state, SiteState::Clutched);
-  device.state.dead_man_held = true;
+  device.state.pedal_held = true;
   bench.run(1s);
   EXPECT_EQ(bench.status().state, SiteState::Engaged);
   EXPECT_DOUBLE_EQ(bench.status().offset, 25e-3);
@@ -158,7 +158,7 @@ TEST(SurgeonNodeTest, SamplesSentBeforeTheEngagementCauseNoForce) {
   bench.patient.follows = false;
   bench.patient.position = 3e-3;  // in contact: its samples carry force
   bench.run(1s);
-  device.state.dead_man_held = true;
+  device.state.pedal_held = true;
   device.state.position += 5e-3;
   bench.run(1s);
   ASSERT_EQ(bench.status().state, SiteState::Engaged);
@@ -171,12 +171,12 @@ TEST(SurgeonNodeTest, NoForceWhileThePedalIsUp) {
   HeldDevice device;
   Bench bench{device};
   bench.run(1s);
-  device.state.dead_man_held = true;
+  device.state.pedal_held = true;
   bench.run(500ms);
   device.state.position = 3e-3 + bench.status().offset;
   bench.run(500ms);
   ASSERT_GT(device.force_applied, 0.1);
-  device.state.dead_man_held = false;
+  device.state.pedal_held = false;
   bench.run(1ms);
   EXPECT_EQ(bench.status().state, SiteState::Clutched);
   bench.run(100ms);
@@ -261,7 +261,7 @@ TEST(SurgeonNodeTest, UsersStopIsImmediateAndLatched) {
   HeldDevice device;
   Bench bench{device};
   bench.run(1s);
-  device.state.dead_man_held = true;
+  device.state.pedal_held = true;
   bench.run(500ms);
   device.state.position = 3e-3 + bench.status().offset;
   bench.run(500ms);
@@ -282,7 +282,7 @@ TEST(SurgeonNodeTest, DeviceWithoutNumbersStopsTheSite) {
   HeldDevice device;
   Bench bench{device};
   bench.run(1s);
-  device.state.dead_man_held = true;
+  device.state.pedal_held = true;
   bench.run(500ms);
   device.state.position = std::numeric_limits<double>::quiet_NaN();
   bench.run(10ms);
@@ -304,7 +304,7 @@ TEST(SurgeonNodeTest, LongRoundTripIsRefusedAndShown) {
   Bench bench{device, config};
   bench.up.delay = bench.down.delay = 12ms;
   bench.run(1s);
-  device.state.dead_man_held = true;
+  device.state.pedal_held = true;
   bench.run(1s);
   EXPECT_EQ(bench.status().state, SiteState::Clutched);
   EXPECT_EQ(bench.status().refused, NoteCode::RoundTripTooLong);

@@ -60,13 +60,13 @@ class WireEnd final : public link::Transport {
 };
 
 inline void open_session(link::Link& link, Wire& out, Wire& in, std::uint64_t id, TimePoint now) {
-  link::Handover handover;
-  handover.transport = std::make_unique<WireEnd>(out, in);
-  handover.protection = std::make_unique<link::PlainProtection>();
-  handover.send_connection = 1;
-  handover.receive_connection = 1;
-  handover.session_id = id;
-  static_cast<void>(link.adopt(std::move(handover), now));
+  link::LinkUpdate link_update;
+  link_update.transport = std::make_unique<WireEnd>(out, in);
+  link_update.protection = std::make_unique<link::PlainProtection>();
+  link_update.send_connection = 1;
+  link_update.receive_connection = 1;
+  link_update.session_id = id;
+  static_cast<void>(link.adopt(std::move(link_update), now));
 }
 
 /// Keeps all that is recorded.

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "common/io/steady_clock.h"
+#include "common/io/realtime/steady_clock.h"
 #include "tests/system/process.h"
 #include "tests/system/session_files.h"
 

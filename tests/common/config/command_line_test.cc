@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::optional<Ending> parse(CommandLine& line, const std::vector<std::string>& words) {
+std::optional<ExitStatus> parse(CommandLine& line, const std::vector<std::string>& words) {
   std::vector<const char*> argv{"program"};
   for (const std::string& word : words) {
     argv.push_back(word.c_str());
@@ -50,13 +50,13 @@ struct Program {
 /// The sentence that `words` get, without the program's name; the code must be BadInput.
 std::string refusal(const std::vector<std::string>& words) {
   Program program;
-  const auto ending = parse(program.line, words);
-  if (!ending) {
+  const auto exit_status = parse(program.line, words);
+  if (!exit_status) {
     return "";
   }
-  EXPECT_EQ(ending->code, ExitCode::BadInput);
-  EXPECT_EQ(ending->text.rfind("palp-x: ", 0), 0U) << ending->text;
-  return ending->text.substr(8);
+  EXPECT_EQ(exit_status->code, ExitCode::BadInput);
+  EXPECT_EQ(exit_status->text.rfind("palp-x: ", 0), 0U) << exit_status->text;
+  return exit_status->text.substr(8);
 }
 
 TEST(CommandLineTest, ReadsFlagsOfEveryKind) {
@@ -147,27 +147,27 @@ TEST(CommandLineTest, RefusesUnknownMissingAndRepeated) {
 
 TEST(CommandLineTest, HelpSaysMeaningUnitRangeAndDefault) {
   Program program;
-  const auto ending = parse(program.line, {"--help"});
-  ASSERT_TRUE(ending);
-  EXPECT_EQ(ending->code, ExitCode::Done);
-  EXPECT_THAT(ending->text, HasSubstr("does x"));
-  EXPECT_THAT(ending->text, HasSubstr("how often [Hz], 0.5 to 50, default 1"));
-  EXPECT_THAT(ending->text, HasSubstr("--peer HOST:PORT"));
+  const auto exit_status = parse(program.line, {"--help"});
+  ASSERT_TRUE(exit_status);
+  EXPECT_EQ(exit_status->code, ExitCode::Done);
+  EXPECT_THAT(exit_status->text, HasSubstr("does x"));
+  EXPECT_THAT(exit_status->text, HasSubstr("how often [Hz], 0.5 to 50, default 1"));
+  EXPECT_THAT(exit_status->text, HasSubstr("--peer HOST:PORT"));
 }
 
 TEST(CommandLineTest, HelpWinsOverMistakes) {
   Program program;
-  const auto ending = parse(program.line, {"--help", "--nothing", "--rate-hz", "x"});
-  ASSERT_TRUE(ending);
-  EXPECT_EQ(ending->code, ExitCode::Done);
+  const auto exit_status = parse(program.line, {"--help", "--nothing", "--rate-hz", "x"});
+  ASSERT_TRUE(exit_status);
+  EXPECT_EQ(exit_status->code, ExitCode::Done);
 }
 
 TEST(CommandLineTest, VersionNamesTheProgram) {
   Program program;
-  const auto ending = parse(program.line, {"--version"});
-  ASSERT_TRUE(ending);
-  EXPECT_EQ(ending->code, ExitCode::Done);
-  EXPECT_EQ(ending->text.rfind("palp-x (palp) 0.", 0), 0U) << ending->text;
+  const auto exit_status = parse(program.line, {"--version"});
+  ASSERT_TRUE(exit_status);
+  EXPECT_EQ(exit_status->code, ExitCode::Done);
+  EXPECT_EQ(exit_status->text.rfind("palp-x (palp) 0.", 0), 0U) << exit_status->text;
 }
 
 /// A program with verbs, each with flags and arguments of its own.
@@ -189,8 +189,8 @@ struct VerbProgram {
 
 std::string verb_refusal(const std::vector<std::string>& words) {
   VerbProgram program;
-  const auto ending = parse(program.line, words);
-  return ending ? ending->text : "";
+  const auto exit_status = parse(program.line, words);
+  return exit_status ? exit_status->text : "";
 }
 
 TEST(CommandLineTest, ReadsVerbsAndArguments) {
@@ -233,10 +233,10 @@ TEST(CommandLineTest, RefusesWrongVerbsAndArguments) {
 
 TEST(CommandLineTest, HelpOfAVerbIsItsOwn) {
   VerbProgram program;
-  const auto ending = parse(program.line, {"run", "--help"});
-  ASSERT_TRUE(ending);
-  EXPECT_EQ(ending->code, ExitCode::Done);
-  EXPECT_THAT(ending->text, HasSubstr("SCENARIO"));
+  const auto exit_status = parse(program.line, {"run", "--help"});
+  ASSERT_TRUE(exit_status);
+  EXPECT_EQ(exit_status->code, ExitCode::Done);
+  EXPECT_THAT(exit_status->text, HasSubstr("SCENARIO"));
 }
 
 TEST(CommandLineTest, VerbsMayBeOptional) {
@@ -290,50 +290,50 @@ TEST_F(SettingsFlagsTest, FlagsBeatSetWhichBeatsTheFileWhichBeatsDefaults) {
 }
 
 TEST_F(SettingsFlagsTest, NamesTheFlagOfABadKnob) {
-  const auto ending = parse(line_, {"--delay-ms", "nan"});
-  ASSERT_TRUE(ending);
-  EXPECT_EQ(ending->code, ExitCode::BadInput);
-  EXPECT_EQ(ending->text,
+  const auto exit_status = parse(line_, {"--delay-ms", "nan"});
+  ASSERT_TRUE(exit_status);
+  EXPECT_EQ(exit_status->code, ExitCode::BadInput);
+  EXPECT_EQ(exit_status->text,
             "palp-patient: --delay-ms = nan is not a number: one-way delay [ms], 0 to 5000, "
             "default 0");
 }
 
 TEST_F(SettingsFlagsTest, NamesThePathOfABadSetting) {
-  const auto ending = parse(line_, {"--set", "motion_gate.force_limit_n=12"});
-  ASSERT_TRUE(ending);
-  EXPECT_EQ(ending->code, ExitCode::BadInput);
-  EXPECT_EQ(ending->text,
+  const auto exit_status = parse(line_, {"--set", "motion_gate.force_limit_n=12"});
+  ASSERT_TRUE(exit_status);
+  EXPECT_EQ(exit_status->code, ExitCode::BadInput);
+  EXPECT_EQ(exit_status->text,
             "palp-patient: --set motion_gate.force_limit_n = 12 is out of range: 0.1 to 10 N");
 }
 
 TEST_F(SettingsFlagsTest, NamesThePlaceInABadFile) {
   ASSERT_TRUE(write_whole_file(file_, "seed: 1\nseed: x\n"));
-  const auto ending = parse(line_, {"--config", file_});
-  ASSERT_TRUE(ending);
-  EXPECT_EQ(ending->code, ExitCode::BadInput);
-  EXPECT_THAT(ending->text, HasSubstr(":2:"));
+  const auto exit_status = parse(line_, {"--config", file_});
+  ASSERT_TRUE(exit_status);
+  EXPECT_EQ(exit_status->code, ExitCode::BadInput);
+  EXPECT_THAT(exit_status->text, HasSubstr(":2:"));
 }
 
 TEST_F(SettingsFlagsTest, AFileThatCannotBeReadIsCannotOpen) {
-  const auto ending = parse(line_, {"--config", "/nowhere/a.conf"});
-  ASSERT_TRUE(ending);
-  EXPECT_EQ(ending->code, ExitCode::CannotOpen);
-  EXPECT_EQ(ending->text,
+  const auto exit_status = parse(line_, {"--config", "/nowhere/a.conf"});
+  ASSERT_TRUE(exit_status);
+  EXPECT_EQ(exit_status->code, ExitCode::CannotOpen);
+  EXPECT_EQ(exit_status->text,
             "palp-patient: --config: cannot read /nowhere/a.conf: No such file or directory");
 }
 
 TEST_F(SettingsFlagsTest, ChecksRelationsWhenAllIsTogether) {
-  const auto ending = parse(line_, {"--set", "link.hold_after_ms=600"});
-  ASSERT_TRUE(ending);
-  EXPECT_THAT(ending->text, HasSubstr("is above link.lost_after_ms = 500 ms"));
+  const auto exit_status = parse(line_, {"--set", "link.hold_after_ms=600"});
+  ASSERT_TRUE(exit_status);
+  EXPECT_THAT(exit_status->text, HasSubstr("is above link.lost_after_ms = 500 ms"));
 }
 
 TEST_F(SettingsFlagsTest, HelpListsFlagsAndEverySetting) {
-  const auto ending = parse(line_, {"--help"});
-  ASSERT_TRUE(ending);
-  EXPECT_THAT(ending->text, HasSubstr("one-way delay [ms], 0 to 5000, default 0"));
-  EXPECT_THAT(ending->text, HasSubstr("motion_gate.force_limit_n"));
-  EXPECT_THAT(ending->text, HasSubstr("simulated_phantom.sensor_noise_mn"));
+  const auto exit_status = parse(line_, {"--help"});
+  ASSERT_TRUE(exit_status);
+  EXPECT_THAT(exit_status->text, HasSubstr("one-way delay [ms], 0 to 5000, default 0"));
+  EXPECT_THAT(exit_status->text, HasSubstr("motion_gate.force_limit_n"));
+  EXPECT_THAT(exit_status->text, HasSubstr("simulated_phantom.sensor_noise_mn"));
 }
 
 RC_GTEST_PROP(CommandLineTest, GarbageGetsOneSentence, (const std::vector<std::string>& noise)) {
@@ -345,18 +345,19 @@ RC_GTEST_PROP(CommandLineTest, GarbageGetsOneSentence, (const std::vector<std::s
     }
   }
   Program program;
-  const auto ending = parse(program.line, words);
-  RC_ASSERT(!ending || ending->code == ExitCode::Done ||
-            (ending->code == ExitCode::BadInput && ending->text.find('\n') == std::string::npos));
+  const auto exit_status = parse(program.line, words);
+  RC_ASSERT(!exit_status || exit_status->code == ExitCode::Done ||
+            (exit_status->code == ExitCode::BadInput &&
+             exit_status->text.find('\n') == std::string::npos));
 }
 
 TEST(FooterTest, StandsInTheHelpOfItsVerb) {
   CommandLine line{"palp-x", "does x"};
   line.verb("go", "goes").footer("Words of a path: straight, round.");
-  const auto ending = parse(line, {"go", "--help"});
-  ASSERT_TRUE(ending);
-  EXPECT_EQ(ending->code, ExitCode::Done);
-  EXPECT_THAT(ending->text, HasSubstr("Words of a path: straight, round."));
+  const auto exit_status = parse(line, {"go", "--help"});
+  ASSERT_TRUE(exit_status);
+  EXPECT_EQ(exit_status->code, ExitCode::Done);
+  EXPECT_THAT(exit_status->text, HasSubstr("Words of a path: straight, round."));
 }
 
 }  // namespace

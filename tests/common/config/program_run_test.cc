@@ -25,7 +25,7 @@ class ProgramRunTest : public testing::Test {
   }
   ~ProgramRunTest() override { std::filesystem::remove(file_); }
 
-  int run(std::vector<std::string> words, const std::function<Ending()>& body) {
+  int run(std::vector<std::string> words, const std::function<ExitStatus()>& body) {
     words.insert(words.end(), {"--report", file_});
     std::vector<const char*> argv{"palp-x", "try"};
     for (const std::string& word : words) argv.push_back(word.c_str());
@@ -41,7 +41,7 @@ class ProgramRunTest : public testing::Test {
 };
 
 TEST_F(ProgramRunTest, AFailedRunIsReportedToo) {
-  EXPECT_EQ(run({}, [] { return Ending{ExitCode::CannotOpen, "the door is \"shut\""}; }), 3);
+  EXPECT_EQ(run({}, [] { return ExitStatus{ExitCode::CannotOpen, "the door is \"shut\""}; }), 3);
   EXPECT_THAT(written(),
               AllOf(HasSubstr(R"("schema": "palp.try/1")"),
                     HasSubstr(R"("outcome": "cannot start")"),
@@ -49,7 +49,7 @@ TEST_F(ProgramRunTest, AFailedRunIsReportedToo) {
 }
 
 TEST_F(ProgramRunTest, WhatIsThrownIsReported) {
-  EXPECT_EQ(run({}, []() -> Ending { throw std::runtime_error{"no such thing"}; }), 3);
+  EXPECT_EQ(run({}, []() -> ExitStatus { throw std::runtime_error{"no such thing"}; }), 3);
   EXPECT_THAT(written(), HasSubstr("palp-x: no such thing"));
 }
 
@@ -57,7 +57,7 @@ TEST_F(ProgramRunTest, AWrongFlagIsReportedAndNothingRuns) {
   bool ran = false;
   const auto body = [&] {
     ran = true;
-    return Ending{};
+    return ExitStatus{};
   };
   EXPECT_EQ(run({"--rate", "2"}, body), 2);
   EXPECT_THAT(written(), AllOf(HasSubstr(R"("outcome": "bad input")"), HasSubstr("--rate")));
@@ -65,12 +65,12 @@ TEST_F(ProgramRunTest, AWrongFlagIsReportedAndNothingRuns) {
 }
 
 TEST_F(ProgramRunTest, AnUnknownFlagIsReported) {
-  EXPECT_EQ(run({"--speed", "2"}, [] { return Ending{}; }), 2);
+  EXPECT_EQ(run({"--speed", "2"}, [] { return ExitStatus{}; }), 2);
   EXPECT_THAT(written(), HasSubstr("--speed"));
 }
 
 TEST_F(ProgramRunTest, OfARunThatDidNotFailOnlyTheVerbReports) {
-  EXPECT_EQ(run({}, [] { return Ending{ExitCode::Missed, "short of the target"}; }), 1);
+  EXPECT_EQ(run({}, [] { return ExitStatus{ExitCode::Missed, "short of the target"}; }), 1);
   EXPECT_EQ(written(), "");
 }
 

@@ -2,11 +2,11 @@
 // Method: RealtimeGuard around ticks under traffic, with noise, a full inbox and path errors.
 #include <gtest/gtest.h>
 
-#include "common/io/handover_desk.h"
-#include "common/io/udp_socket.h"
+#include "common/io/net/link_update_desk.h"
+#include "common/io/net/udp_socket.h"
 #include "common/link/aead_protection.h"
 #include "common/link/codec_wire.h"
-#include "tests/common/io/loopback.h"
+#include "tests/common/io/net/loopback.h"
 #include "tests/common/link/some_keys.h"
 #include "tests/support/realtime_guard.h"
 
@@ -52,7 +52,7 @@ TEST(RealtimeSafetyTest, SocketIsCleanUnderTrafficNoiseAndPathErrors) {
 TEST(RealtimeSafetyTest, DeskIsCleanWhileSessionsComeAndGo) {
   const SteadyClock clock;
   test::PlainSocket peer;
-  HandoverDesk desk;
+  LinkUpdateDesk desk;
   link::Link link{{}, std::make_unique<link::WireCodec>()};
   const auto offer = [&](std::uint64_t id) {
     const RealtimeGuard::Pause pause;
@@ -72,7 +72,7 @@ TEST(RealtimeSafetyTest, DeskIsCleanWhileSessionsComeAndGo) {
     }
     const TimePoint now = clock.now();
     desk.serve(link, now);
-    link.rehearse();
+    link.warm_up();
     (void)link.receive(now);
     link.send({}, now);
   }
@@ -104,7 +104,7 @@ TEST(RealtimeSafetyTest, SealingAndOpeningIsCleanAlsoWhereTagsAreRefusedAndKeysA
       opened += receiver.open(std::span{datagram}.first(size), room) ? 1U : 0U;
       datagram[20] ^= std::byte{1};
       opened += receiver.open(std::span{datagram}.first(size), room) ? 1U : 0U;
-      sender->rehearse(plain, room);
+      sender->warm_up(plain, room);
     }
   }
   guard.release();

@@ -125,21 +125,21 @@ class EchoingTransport final : public Transport {
 
 TEST(AllocationTest, LinkAllocatesNothingUnderGoodAndBadTraffic) {
   Link link{LinkConfig{}, std::make_unique<WireCodec>()};
-  Handover handover{.transport = std::make_unique<EchoingTransport>(),
-                    .protection = std::make_unique<PlainProtection>(),
-                    .send_connection = 5,
-                    .receive_connection = 5,
-                    .session_id = 1};
-  Handover next{.transport = std::make_unique<EchoingTransport>(),
-                .protection = std::make_unique<PlainProtection>(),
-                .send_connection = 6,
-                .receive_connection = 6,
-                .session_id = 2};
-  Handover retired;
+  LinkUpdate link_update{.transport = std::make_unique<EchoingTransport>(),
+                         .protection = std::make_unique<PlainProtection>(),
+                         .send_connection = 5,
+                         .receive_connection = 5,
+                         .session_id = 1};
+  LinkUpdate next{.transport = std::make_unique<EchoingTransport>(),
+                  .protection = std::make_unique<PlainProtection>(),
+                  .send_connection = 6,
+                  .receive_connection = 6,
+                  .session_id = 2};
+  LinkUpdate retired;
   LinkHealth health;
   EXPECT_EQ(allocations_of([&] {
               TimePoint now{};
-              retired = link.adopt(std::move(handover), now);
+              retired = link.adopt(std::move(link_update), now);
               for (std::uint64_t tick = 0; tick < 2000; ++tick, now += 1ms) {
                 if (tick == 1000) retired = link.adopt(std::move(next), now);
                 (void)link.receive(now);

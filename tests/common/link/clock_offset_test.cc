@@ -42,7 +42,7 @@ TEST(ClockOffsetTest, SaysNothingBeforeTheFirstWholeSecond) {
   Peer peer{5s, 0};
   for (auto at = 0ms; at < 990ms; at += 10ms) peer.exchange(estimator, TimePoint{at}, 1ms, 1ms);
   EXPECT_FALSE(estimator.estimate());
-  EXPECT_EQ(estimator.way_here(), Duration{});
+  EXPECT_EQ(estimator.delay_in(), Duration{});
   peer.exchange(estimator, TimePoint{1s}, 1ms, 1ms);
   EXPECT_TRUE(estimator.estimate());
 }
@@ -65,7 +65,7 @@ RC_GTEST_PROP(ClockOffsetTest, IsExactOverEqualConstantWays, ()) {
   const double error = seconds(estimator.estimate()->offset_at(now) - peer.ahead(now));
   RC_ASSERT(std::abs(error) <= drift + (length > 8s ? 1e-6 : 20e-6));
   RC_ASSERT(std::abs(seconds(estimator.estimate()->uncertainty - way)) <= drift + 2e-6);
-  RC_ASSERT(std::abs(seconds(estimator.way_here() - way)) <= drift + (length > 8s ? 5e-6 : 25e-6));
+  RC_ASSERT(std::abs(seconds(estimator.delay_in() - way)) <= drift + (length > 8s ? 5e-6 : 25e-6));
 }
 
 TEST(ClockOffsetTest, AnUnequalWayShowsAsHalfItsDifferenceWhichIsWithinTheUncertainty) {

@@ -25,8 +25,8 @@ TEST(HealthTextTest, SaysRoundTripAndLoss) {
 TEST(HealthTextTest, SaysTheWaysOnceTheClockIsKnown) {
   LinkHealth health = live();
   health.peer_clock = ClockOffset{};
-  health.way_there = 37'900us;
-  health.way_here = 37'230us;
+  health.delay_out = 37'900us;
+  health.delay_in = 37'230us;
   EXPECT_EQ(health_text(health), "rtt 75.1 ms (there 37.9, here 37.2)  loss 1.0 %");
 }
 

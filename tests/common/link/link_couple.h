@@ -43,14 +43,14 @@ class Couple {
   /// As two Sessions would: ids of the surgeon are even.
   void connect(std::uint64_t session_id = 1) {
     const auto id = static_cast<std::uint32_t>(2 * session_id);
-    (void)surgeon.link.adopt(handover(pipe.surgeon_end(), id + 1, id, session_id), now);
-    (void)patient.link.adopt(handover(pipe.patient_end(), id, id + 1, session_id), now);
+    (void)surgeon.link.adopt(link_update(pipe.surgeon_end(), id + 1, id, session_id), now);
+    (void)patient.link.adopt(link_update(pipe.patient_end(), id, id + 1, session_id), now);
   }
 
-  static Handover handover(std::unique_ptr<Transport> transport,
-                           std::uint32_t send,
-                           std::uint32_t receive,
-                           std::uint64_t session_id) {
+  static LinkUpdate link_update(std::unique_ptr<Transport> transport,
+                                std::uint32_t send,
+                                std::uint32_t receive,
+                                std::uint64_t session_id) {
     return {.transport = std::move(transport),
             .protection = std::make_unique<PlainProtection>(),
             .send_connection = send,

@@ -23,7 +23,8 @@ double chance(std::uint64_t seed, Stream stream, std::uint64_t index) {
 }
 
 /// 5 % lost, 5 % doubled, 4 % spoiled, 0 to 8 ms late; `spoil` changes the bytes.
-Fate bad_path(std::uint64_t seed, const std::function<void(std::uint64_t, Bytes&)>& spoil) {
+PacketOutcome bad_path(std::uint64_t seed,
+                       const std::function<void(std::uint64_t, Bytes&)>& spoil) {
   return [=](std::uint64_t index, const Bytes& bytes) {
     std::vector<Release> releases;
     if (chance(seed, Stream::Loss, index) < 0.05) return releases;
@@ -52,8 +53,8 @@ RC_GTEST_PROP(LinkLossTest, EveryArrivalIsCountedOnceWhateverWasFlipped, (std::u
     }
   };
   Couple couple;
-  couple.pipe.up->fate = bad_path(seed, flip_or_cut);
-  couple.pipe.down->fate = bad_path(seed + 1, flip_or_cut);
+  couple.pipe.up->outcome = bad_path(seed, flip_or_cut);
+  couple.pipe.down->outcome = bad_path(seed + 1, flip_or_cut);
   couple.connect();
   couple.run(300ms);
   RC_ASSERT(arrivals_counted(couple.patient_health()) == couple.pipe.up->popped());
@@ -63,13 +64,13 @@ RC_GTEST_PROP(LinkLossTest, EveryArrivalIsCountedOnceWhateverWasFlipped, (std::u
 RC_GTEST_PROP(LinkLossTest, NumbersSentAreAcceptedLateStaleOrLost, (std::uint64_t seed)) {
   Couple couple;
   // Flips in the first 8 bytes only: without a tag nobody notices a flipped number.
-  couple.pipe.up->fate = bad_path(seed, [=](std::uint64_t index, Bytes& bytes) {
+  couple.pipe.up->outcome = bad_path(seed, [=](std::uint64_t index, Bytes& bytes) {
     const std::uint64_t place = random_bits(seed, 99, index) % 64;
     bytes[place / 8] ^= static_cast<std::byte>(1U << place % 8);
   });
   couple.connect();
   couple.run(300ms);
-  couple.pipe.up->fate = after(0ms);  // the last one arrives
+  couple.pipe.up->outcome = after(0ms);  // the last one arrives
   couple.run(20ms);
   couple.surgeon.sending = false;
   couple.run(20ms);
@@ -95,7 +96,7 @@ RC_GTEST_PROP(LinkLossTest, NumbersSentAreAcceptedLateStaleOrLost, (std::uint64_
 
 RC_GTEST_PROP(LinkLossTest, EachCallHandsOverSortedSamples, (std::uint64_t seed)) {
   Couple couple;
-  couple.pipe.up->fate = bad_path(seed, [](std::uint64_t, Bytes&) {});
+  couple.pipe.up->outcome = bad_path(seed, [](std::uint64_t, Bytes&) {});
   couple.connect();
   std::uint64_t newest = 0;
   for (int tick = 0; tick < 300; ++tick) {
@@ -118,7 +119,7 @@ RC_GTEST_PROP(LinkLossTest,
               (std::uint64_t seed)) {
   const Duration period = *rc::gen::element<Duration>(250us, 500us, 1ms, 2ms, 4ms, 7ms);
   Couple couple{{.period = period}};
-  couple.pipe.up->fate = bad_path(seed, [](std::uint64_t, Bytes& bytes) { bytes.clear(); });
+  couple.pipe.up->outcome = bad_path(seed, [](std::uint64_t, Bytes& bytes) { bytes.clear(); });
   couple.connect();
   const TimePoint began = couple.now;
   std::map<std::uint64_t, std::pair<double, TimePoint>> sent;  // by number
@@ -150,7 +151,7 @@ RC_GTEST_PROP(LinkLossTest,
 
 TEST(LinkLossTest, RepetitionLeavesNextToNothingMissingAtRandomLoss) {
   Couple couple{LinkConfig{}, true};
-  couple.pipe.up->fate = [](std::uint64_t index, const Bytes& bytes) {
+  couple.pipe.up->outcome = [](std::uint64_t index, const Bytes& bytes) {
     if (chance(3, Stream::Loss, index) < 0.05) return std::vector<Release>{};
     return std::vector<Release>{{2ms, bytes}};
   };
@@ -166,7 +167,7 @@ TEST(LinkLossTest, RepetitionLeavesNextToNothingMissingAtRandomLoss) {
 
 TEST(LinkLossTest, ACleanStreamWithKnownLossesCountsThemExactly) {
   Couple couple;
-  couple.pipe.up->fate = [](std::uint64_t index, const Bytes& bytes) {
+  couple.pipe.up->outcome = [](std::uint64_t index, const Bytes& bytes) {
     if (index % 10 == 3) return std::vector<Release>{};
     return std::vector<Release>{{Duration{0}, bytes}};
   };
@@ -180,10 +181,10 @@ TEST(LinkLossTest, ABlackoutIsLostAtOnceWhenItEnds) {
   Couple couple;
   couple.connect();
   couple.run(100ms);
-  couple.pipe.up->fate = [](std::uint64_t, const Bytes&) { return std::vector<Release>{}; };
+  couple.pipe.up->outcome = [](std::uint64_t, const Bytes&) { return std::vector<Release>{}; };
   couple.run(2s);
   EXPECT_EQ(couple.patient_health().lost, 0U);  // not known yet
-  couple.pipe.up->fate = after(0ms);
+  couple.pipe.up->outcome = after(0ms);
   couple.run(2ms);
   EXPECT_EQ(couple.patient_health().lost, 2000U);
 }
@@ -191,7 +192,7 @@ TEST(LinkLossTest, ABlackoutIsLostAtOnceWhenItEnds) {
 TEST(LinkLossTest, OneSeedTwiceGivesTheSame) {
   const auto run = [](std::uint64_t seed) {
     Couple couple;
-    couple.pipe.up->fate = bad_path(seed, [](std::uint64_t, Bytes& bytes) { bytes.pop_back(); });
+    couple.pipe.up->outcome = bad_path(seed, [](std::uint64_t, Bytes& bytes) { bytes.pop_back(); });
     couple.connect();
     couple.run(500ms);
     std::vector<std::pair<std::uint64_t, TimePoint>> handed;

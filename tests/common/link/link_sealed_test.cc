@@ -77,21 +77,21 @@ TEST(SealedLinkTest, TelegramsFlow) {
   EXPECT_EQ(couple.patient_health().forged, 0U);
 }
 
-TEST(SealedLinkTest, RehearsalsChangeNothingThatIsSentOrCounted) {
+TEST(SealedLinkTest, WarmUpsChangeNothingThatIsSentOrCounted) {
   std::array<std::vector<Bytes>, 2> sent;
   std::array<LinkHealth, 2> health;
-  for (const std::size_t rehearses : {0U, 1U}) {
+  for (const std::size_t warms_up : {0U, 1U}) {
     SealedCouple couple;
-    couple.pipe.up->fate = [&](std::uint64_t, const Bytes& bytes) {
-      sent[rehearses].push_back(bytes);
+    couple.pipe.up->outcome = [&](std::uint64_t, const Bytes& bytes) {
+      sent[warms_up].push_back(bytes);
       return std::vector<Release>{{2ms, bytes}};
     };
     couple.before_send = [&] {
-      for (std::size_t i = 0; i < rehearses; ++i) couple.surgeon.link.rehearse();
-      for (std::size_t i = 0; i < rehearses; ++i) couple.patient.link.rehearse();
+      for (std::size_t i = 0; i < warms_up; ++i) couple.surgeon.link.warm_up();
+      for (std::size_t i = 0; i < warms_up; ++i) couple.patient.link.warm_up();
     };
     couple.run(50ms);
-    health[rehearses] = couple.patient_health();
+    health[warms_up] = couple.patient_health();
   }
   EXPECT_EQ(sent[0], sent[1]);
   EXPECT_EQ(health[0].accepted, health[1].accepted);
@@ -104,7 +104,7 @@ TEST(SealedLinkTest, ManyRekeysCostNoTelegramAndNoNonceComesTwice) {
   std::set<std::tuple<bool, std::uint64_t, std::uint64_t>> nonces;
   std::uint64_t sealed = 0;
   for (const bool up : {true, false}) {
-    (up ? couple.pipe.up : couple.pipe.down)->fate = [&, up](std::uint64_t, const Bytes& bytes) {
+    (up ? couple.pipe.up : couple.pipe.down)->outcome = [&, up](std::uint64_t, const Bytes& bytes) {
       const Header header = *parse_header(bytes);
       std::uint64_t handshake = couple.handshake();
       if (header.key != handshake % 4) --handshake;
@@ -130,7 +130,7 @@ TEST(SealedLinkTest, ManyRekeysCostNoTelegramAndNoNonceComesTwice) {
 TEST(SealedLinkTest, AWholeRecordedSessionPlayedAgainIsRefused) {
   SealedCouple couple;
   std::vector<Bytes> recorded;
-  couple.pipe.up->fate = [&](std::uint64_t, const Bytes& bytes) {
+  couple.pipe.up->outcome = [&](std::uint64_t, const Bytes& bytes) {
     recorded.push_back(bytes);
     return std::vector<Release>{{Duration{0}, bytes}};
   };
@@ -139,7 +139,7 @@ TEST(SealedLinkTest, AWholeRecordedSessionPlayedAgainIsRefused) {
   const std::size_t samples = couple.patient.samples.size();
   couple.surgeon.sending = false;
   const std::vector<Bytes> all = recorded;
-  couple.pipe.up->fate = after(Duration{0});
+  couple.pipe.up->outcome = after(Duration{0});
   for (std::size_t i = 0; i < all.size(); ++i) {
     couple.pipe.up->push(all[i], couple.now);
     if (i % 100 == 99) couple.tick();
@@ -156,7 +156,7 @@ TEST(SealedLinkTest, SpoiledTelegramsCountAsForgedAndChangeNothing) {
   SealedCouple couple;
   couple.run(1s);
   const LinkHealth before = couple.patient_health();
-  couple.pipe.up->fate = [](std::uint64_t index, const Bytes& bytes) {
+  couple.pipe.up->outcome = [](std::uint64_t index, const Bytes& bytes) {
     Bytes spoiled = bytes;
     spoiled[kHeaderSize + index % (bytes.size() - kHeaderSize)] ^= std::byte{1};
     return std::vector<Release>{{Duration{0}, spoiled}};
@@ -173,11 +173,11 @@ TEST(SealedLinkTest, SpoiledTelegramsCountAsForgedAndChangeNothing) {
 TEST(SealedLinkTest, KeysForASessionThatHasEndedComeBackUnused) {
   SealedCouple couple;
   couple.run(100ms);
-  couple.pipe.up->fate = kCut;
-  couple.pipe.down->fate = kCut;
+  couple.pipe.up->outcome = kCut;
+  couple.pipe.down->outcome = kCut;
   couple.run(31s);
   ASSERT_EQ(couple.patient_health().session_id, 0U);
-  const Handover retired = couple.patient.link.adopt(
+  const LinkUpdate retired = couple.patient.link.adopt(
       {.transport = nullptr,
        .protection = std::make_unique<AeadProtection>(some_keys(1, Role::Patient, 1).data),
        .send_connection = 2,
@@ -193,7 +193,7 @@ TEST(SealedLinkTest, KeysForASessionThatHasEndedComeBackUnused) {
 TEST(SealedLinkTest, AForgedJumpAheadDoesNotMoveTheWindow) {
   SealedCouple couple;
   couple.run(100ms);
-  couple.pipe.up->fate = [](std::uint64_t, const Bytes& bytes) {
+  couple.pipe.up->outcome = [](std::uint64_t, const Bytes& bytes) {
     Bytes forged = bytes;
     forged[11] = std::byte{1};  // number + 2^32
     return std::vector<Release>{{Duration{0}, forged}, {Duration{0}, bytes}};

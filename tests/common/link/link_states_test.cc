@@ -18,7 +18,7 @@ TEST(LinkStatesTest, WatchdogIsExactToTheTick) {
   couple.connect();
   couple.run(1s);
   ASSERT_EQ(couple.patient_health().state, LinkState::Live);
-  couple.pipe.up->fate = kCut;
+  couple.pipe.up->outcome = kCut;
   couple.tick();                             // takes what was sent in the tick before
   const TimePoint heard = couple.now - 2ms;  // the pipe has no delay: it arrived when it was sent
   ASSERT_EQ(couple.patient_health().gap, couple.now - 1ms - heard);
@@ -43,16 +43,16 @@ TEST(LinkStatesTest, OutOfHoldAndLostWithTheFirstAcceptedTelegram) {
     Couple couple;
     couple.connect();
     couple.run(1s);
-    couple.pipe.up->fate = kCut;
+    couple.pipe.up->outcome = kCut;
     couple.run(blackout);
     ASSERT_NE(couple.patient_health().state, LinkState::Live);
-    couple.pipe.up->fate = after(0ms);
+    couple.pipe.up->outcome = after(0ms);
     couple.run(2ms);
     EXPECT_EQ(couple.patient_health().state, LinkState::Live);
   }
 }
 
-TEST(LinkStatesTest, AfterThirtySecondsOnlyAnotherHandoverHelps) {
+TEST(LinkStatesTest, AfterThirtySecondsOnlyAnotherLinkUpdateHelps) {
   Couple couple;
   couple.connect();
   couple.run(1s);
@@ -89,8 +89,8 @@ TEST(LinkStatesTest, WithoutASessionTheTransportIsStillDrained) {
 
 TEST(LinkStatesTest, DownUntilEightExchanges) {
   Couple couple;
-  couple.pipe.up->fate = after(25ms);
-  couple.pipe.down->fate = after(25ms);
+  couple.pipe.up->outcome = after(25ms);
+  couple.pipe.down->outcome = after(25ms);
   couple.connect();
   // The surgeon's telegram of 0 ms is echoed in the patient's of 25 ms, which arrives at 50 ms.
   couple.run(57ms);
@@ -102,7 +102,7 @@ TEST(LinkStatesTest, DownUntilEightExchanges) {
 
 TEST(LinkStatesTest, DownAtMostTwoSecondsWhereEchoesAreRare) {
   Couple couple{LinkConfig{.sync_exchanges = 1'000'000}};
-  couple.pipe.up->fate = after(25ms);
+  couple.pipe.up->outcome = after(25ms);
   couple.connect();
   couple.run(2000ms);  // the first one arrived at 0 ms
   EXPECT_EQ(couple.surgeon_health().state, LinkState::Down);
@@ -112,7 +112,7 @@ TEST(LinkStatesTest, DownAtMostTwoSecondsWhereEchoesAreRare) {
 
 TEST(LinkStatesTest, NeverLiveWithoutAWayBack) {
   Couple couple;
-  couple.pipe.up->fate = kCut;
+  couple.pipe.up->outcome = kCut;
   couple.connect();
   couple.run(20s);
   EXPECT_EQ(couple.surgeon_health().state, LinkState::Down);
@@ -123,8 +123,8 @@ TEST(LinkStatesTest, NeverLiveWhereTheRoundTripIsTooLong) {
   for (const auto& [each_way, state] :
        {std::pair{Duration{1250ms}, LinkState::Live}, {Duration{1251ms}, LinkState::Down}}) {
     Couple couple;
-    couple.pipe.up->fate = after(each_way);
-    couple.pipe.down->fate = after(each_way);
+    couple.pipe.up->outcome = after(each_way);
+    couple.pipe.down->outcome = after(each_way);
     couple.connect();
     couple.run(8s);
     EXPECT_EQ(couple.surgeon_health().state, state);
@@ -133,15 +133,15 @@ TEST(LinkStatesTest, NeverLiveWhereTheRoundTripIsTooLong) {
 
 TEST(LinkStatesTest, ATelegramThatTookTooLongIsStaleAndFeedsNothing) {
   Couple couple;
-  couple.pipe.up->fate = after(10ms);
+  couple.pipe.up->outcome = after(10ms);
   couple.connect();
   couple.run(1s);
-  couple.pipe.up->fate = after(210ms);  // 200 ms more: just allowed
+  couple.pipe.up->outcome = after(210ms);  // 200 ms more: just allowed
   couple.run(300ms);
   EXPECT_EQ(couple.patient_health().stale, 0U);
   EXPECT_EQ(couple.patient_health().state, LinkState::Live);
   const std::uint64_t accepted = couple.patient_health().accepted;
-  couple.pipe.up->fate = after(211ms);
+  couple.pipe.up->outcome = after(211ms);
   couple.surgeon.telegram.site.state = SiteState::Stopped;
   couple.run(350ms);
   EXPECT_NEAR(static_cast<double>(couple.patient_health().stale), 138, 1);
@@ -154,11 +154,11 @@ TEST(LinkStatesTest, ATelegramThatTookTooLongIsStaleAndFeedsNothing) {
 
 TEST(LinkStatesTest, OnLongLinksHalfTheRoundTripIsAllowed) {
   Couple couple;
-  couple.pipe.up->fate = after(300ms);
-  couple.pipe.down->fate = after(300ms);
+  couple.pipe.up->outcome = after(300ms);
+  couple.pipe.down->outcome = after(300ms);
   couple.connect();
   couple.run(2s);
-  couple.pipe.up->fate = after(600ms);
+  couple.pipe.up->outcome = after(600ms);
   couple.run(2s);
   EXPECT_EQ(couple.patient_health().stale, 0U);
   EXPECT_EQ(couple.patient_health().state, LinkState::Live);
@@ -166,7 +166,7 @@ TEST(LinkStatesTest, OnLongLinksHalfTheRoundTripIsAllowed) {
 
 TEST(LinkStatesTest, ANewSessionStartsAnewAndCountersGoOn) {
   Couple couple;
-  couple.pipe.up->fate = losing({5, 6});
+  couple.pipe.up->outcome = losing({5, 6});
   couple.connect(1);
   couple.surgeon.telegram.site.epoch = 4;
   couple.run(1s);
@@ -196,12 +196,12 @@ TEST(LinkStatesTest, ANewWayForTheSameSessionResetsNothing) {
   couple.connect();
   couple.run(1s);
   const LinkHealth before = couple.patient_health();
-  Handover way{.transport = couple.pipe.patient_end(),
-               .protection = nullptr,
-               .send_connection = 2,
-               .receive_connection = 3,
-               .session_id = 1};
-  const Handover retired = couple.patient.link.adopt(std::move(way), couple.now);
+  LinkUpdate way{.transport = couple.pipe.patient_end(),
+                 .protection = nullptr,
+                 .send_connection = 2,
+                 .receive_connection = 3,
+                 .session_id = 1};
+  const LinkUpdate retired = couple.patient.link.adopt(std::move(way), couple.now);
   EXPECT_TRUE(retired.transport);
   EXPECT_FALSE(retired.protection);
   couple.run(10ms);
@@ -210,11 +210,11 @@ TEST(LinkStatesTest, ANewWayForTheSameSessionResetsNothing) {
   EXPECT_EQ(couple.patient.samples.back().number, 1008U);
 }
 
-TEST(LinkStatesTest, AnEmptyHandoverEndsTheSessionAndGivesEverythingBack) {
+TEST(LinkStatesTest, AnEmptyLinkUpdateEndsTheSessionAndGivesEverythingBack) {
   Couple couple;
   couple.connect();
   couple.run(1s);
-  const Handover retired = couple.patient.link.adopt({}, couple.now);
+  const LinkUpdate retired = couple.patient.link.adopt({}, couple.now);
   EXPECT_TRUE(retired.transport);
   EXPECT_TRUE(retired.protection);
   EXPECT_EQ(retired.session_id, 1U);

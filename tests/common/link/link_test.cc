@@ -32,7 +32,7 @@ TEST(LinkTest, WithoutASessionNothingHappens) {
 
 TEST(LinkTest, SamplesArriveInOrderWithNumberAndStamps) {
   Couple couple;
-  couple.pipe.up->fate = after(10ms);
+  couple.pipe.up->outcome = after(10ms);
   couple.now += 5s;
   couple.connect();
   couple.before_send = [&] {
@@ -54,7 +54,7 @@ TEST(LinkTest, SamplesArriveInOrderWithNumberAndStamps) {
 
 TEST(LinkTest, RepairsALostSampleFromTheTelegramFiveMillisecondsLater) {
   Couple couple;
-  couple.pipe.up->fate = losing({20});
+  couple.pipe.up->outcome = losing({20});
   couple.connect();
   couple.before_send = [&] {
     couple.surgeon.telegram.port.force = seconds(couple.now.time_since_epoch());
@@ -80,7 +80,7 @@ TEST(LinkTest, RepairsALostSampleFromTheTelegramFiveMillisecondsLater) {
 
 TEST(LinkTest, RepairsABurstOfTenMilliseconds) {
   Couple couple;
-  couple.pipe.up->fate = losing({20, 21, 22, 23, 24, 25, 26, 27, 28, 29});
+  couple.pipe.up->outcome = losing({20, 21, 22, 23, 24, 25, 26, 27, 28, 29});
   couple.connect();
   couple.run(60ms);
   EXPECT_EQ(couple.patient.samples.size(), 59U);
@@ -89,7 +89,7 @@ TEST(LinkTest, RepairsABurstOfTenMilliseconds) {
 
 TEST(LinkTest, OnlyWaveSumsAreRepeated) {
   Couple couple;
-  couple.pipe.up->fate = losing({20});
+  couple.pipe.up->outcome = losing({20});
   couple.connect();
   couple.surgeon.telegram.port.payload = TdpaPayload{3};
   couple.run(40ms);
@@ -103,7 +103,7 @@ TEST(LinkTest, OnlyWaveSumsAreRepeated) {
 
 TEST(LinkTest, ASkippedPeriodLeavesOutSamplesWhoseTimeWouldBeWrong) {
   Couple couple;
-  couple.pipe.up->fate = losing({19, 22});
+  couple.pipe.up->outcome = losing({19, 22});
   couple.connect();
   couple.run(20ms);   // numbers 0 to 19
   couple.now += 1ms;  // an overrun: 24 would date 19 one period too late
@@ -118,7 +118,7 @@ TEST(LinkTest, ASkippedPeriodLeavesOutSamplesWhoseTimeWouldBeWrong) {
 
 TEST(LinkTest, ALateTelegramFillsItsGapAndIsNotFresh) {
   Couple couple;
-  couple.pipe.up->fate = [](std::uint64_t index, const Bytes& bytes) {
+  couple.pipe.up->outcome = [](std::uint64_t index, const Bytes& bytes) {
     return std::vector<Release>{{index == 20 ? 3500us : 500us, bytes}};
   };
   couple.connect();
@@ -144,7 +144,7 @@ TEST(LinkTest, ALateTelegramFillsItsGapAndIsNotFresh) {
 
 TEST(LinkTest, TheTelegramAfterAGapIsTheNewest) {
   Couple couple;
-  couple.pipe.up->fate = losing({20, 21, 22});
+  couple.pipe.up->outcome = losing({20, 21, 22});
   couple.connect();
   couple.run(25ms);
   EXPECT_EQ(couple.patient.samples.back().number, 23U);
@@ -154,7 +154,7 @@ TEST(LinkTest, TheTelegramAfterAGapIsTheNewest) {
 
 TEST(LinkTest, SamplesOfAnOldEpochAreDroppedAndTheReportIsUsed) {
   Couple couple;
-  couple.pipe.down->fate = after(20ms);
+  couple.pipe.down->outcome = after(20ms);
   couple.connect();
   couple.run(50ms);
   couple.surgeon.telegram.site.epoch = 1;  // engages
@@ -174,7 +174,7 @@ TEST(LinkTest, SamplesOfAnOldEpochAreDroppedAndTheReportIsUsed) {
 
 TEST(LinkTest, NoSampleIsRepeatedIntoAnotherEpoch) {
   Couple couple;
-  couple.pipe.up->fate = losing({28, 29});
+  couple.pipe.up->outcome = losing({28, 29});
   couple.connect();
   couple.run(30ms);
   couple.surgeon.telegram.site.epoch = 1;
@@ -201,8 +201,8 @@ TEST(LinkTest, SamplesBeforeAnEngagementInTheSameTickAreDropped) {
 
 TEST(LinkTest, RoundTripIsThatOfThePipe) {
   Couple couple;
-  couple.pipe.up->fate = after(30ms);
-  couple.pipe.down->fate = after(12'345us);
+  couple.pipe.up->outcome = after(30ms);
+  couple.pipe.down->outcome = after(12'345us);
   couple.connect();
   couple.run(1s);
   for (const LinkHealth& health : {couple.surgeon_health(), couple.patient_health()}) {
@@ -214,7 +214,7 @@ TEST(LinkTest, RoundTripIsThatOfThePipe) {
 
 TEST(LinkTest, JitterShowsInTheDeviationAndNotInTheLeast) {
   Couple couple;
-  couple.pipe.up->fate = [](std::uint64_t index, const Bytes& bytes) {
+  couple.pipe.up->outcome = [](std::uint64_t index, const Bytes& bytes) {
     return std::vector<Release>{{index / 20 % 2 == 0 ? 10ms : 14ms, bytes}};
   };
   couple.connect();
@@ -242,7 +242,7 @@ TEST(LinkTest, OneBudgetPerTick) {
 TEST(LinkTest, OverlongDatagramsAreMalformed) {
   Couple couple;
   couple.connect();
-  couple.pipe.up->fate = [](std::uint64_t, Bytes bytes) {
+  couple.pipe.up->outcome = [](std::uint64_t, Bytes bytes) {
     bytes.resize(kDatagramSizeMax + 1);
     return std::vector<Release>{{Duration{0}, bytes}};
   };
@@ -257,7 +257,7 @@ TEST(LinkTest, OtherTypesKeysAndConnectionsAreForeign) {
   couple.run(5ms);
   const LinkHealth before = couple.patient_health();
   for (const auto& [byte, change] : {std::pair{0U, 1U}, {1U, 0x40U}, {7U, 1U}}) {
-    couple.pipe.up->fate = [byte = byte, change = change](std::uint64_t, Bytes bytes) {
+    couple.pipe.up->outcome = [byte = byte, change = change](std::uint64_t, Bytes bytes) {
       bytes[byte] ^= static_cast<std::byte>(change);
       return std::vector<Release>{{Duration{0}, bytes}};
     };
@@ -271,7 +271,7 @@ TEST(LinkTest, OtherTypesKeysAndConnectionsAreForeign) {
 TEST(LinkTest, ADuplicateIsReplayedAndAVeryOldOneTooOld) {
   Couple couple;
   Bytes first;
-  couple.pipe.up->fate = [&](std::uint64_t index, const Bytes& bytes) {
+  couple.pipe.up->outcome = [&](std::uint64_t index, const Bytes& bytes) {
     if (index == 0) first = bytes;
     return std::vector<Release>{{Duration{0}, index == 50 ? first : bytes}};
   };
@@ -280,7 +280,7 @@ TEST(LinkTest, ADuplicateIsReplayedAndAVeryOldOneTooOld) {
   EXPECT_EQ(couple.patient_health().replayed, 1U);
   couple.run(1s);
   couple.pipe.up->push(Bytes{}, couple.now);
-  couple.pipe.up->fate = [&](std::uint64_t, const Bytes&) {
+  couple.pipe.up->outcome = [&](std::uint64_t, const Bytes&) {
     return std::vector<Release>{{Duration{0}, first}};
   };
   couple.tick();
@@ -329,15 +329,15 @@ TEST(LinkTest, AForgedDatagramLeavesNoTraceButItsCounter) {
   Couple couple;
   couple.connect();
   for (Side* side : {&couple.surgeon, &couple.patient}) {
-    Handover keys{.transport = nullptr,
-                  .protection = std::make_unique<TaggedProtection>(),
-                  .send_connection = side == &couple.surgeon ? 3U : 2U,
-                  .receive_connection = side == &couple.surgeon ? 2U : 3U,
-                  .session_id = 1};
+    LinkUpdate keys{.transport = nullptr,
+                    .protection = std::make_unique<TaggedProtection>(),
+                    .send_connection = side == &couple.surgeon ? 3U : 2U,
+                    .receive_connection = side == &couple.surgeon ? 2U : 3U,
+                    .session_id = 1};
     (void)side->link.adopt(std::move(keys), couple.now);
   }
   // Before each genuine datagram a forged one, same number or far ahead.
-  couple.pipe.up->fate = [](std::uint64_t index, const Bytes& bytes) {
+  couple.pipe.up->outcome = [](std::uint64_t index, const Bytes& bytes) {
     Bytes forged = bytes;
     forged[index % 2 == 0 ? kHeaderSize : 10] ^= std::byte{0x10};
     return std::vector<Release>{{Duration{0}, forged}, {Duration{0}, bytes}};
@@ -352,7 +352,7 @@ TEST(LinkTest, AForgedDatagramLeavesNoTraceButItsCounter) {
 TEST(LinkTest, AnAuthenticTelegramThatIsNotWellFormedIsMalformed) {
   Couple couple;
   couple.connect();
-  couple.pipe.up->fate = [](std::uint64_t index, Bytes bytes) {
+  couple.pipe.up->outcome = [](std::uint64_t index, Bytes bytes) {
     if (index == 5) bytes[kHeaderSize] = std::byte{0x7F};
     return std::vector<Release>{{Duration{0}, bytes}};
   };
@@ -382,7 +382,7 @@ TEST(LinkTest, ARefusedSendIsCountedAndCostsANumber) {
     }
   };
   Link link{LinkConfig{}, std::make_unique<RawCodec>()};
-  (void)link.adopt(Couple::handover(std::make_unique<Refusing>(), 1, 2, 3), TimePoint{});
+  (void)link.adopt(Couple::link_update(std::make_unique<Refusing>(), 1, 2, 3), TimePoint{});
   link.send({}, TimePoint{});
   EXPECT_EQ(link.health(TimePoint{}).unsent, 1U);
   EXPECT_EQ(link.health(TimePoint{}).sent, 1U);

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "tests/common/link/network_couple.h"
-#include "tests/netem/impairment_builders.h"
+#include "tests/netem/model/impairment_builders.h"
 
 namespace palp::link {
 

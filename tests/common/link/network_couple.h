@@ -7,7 +7,7 @@
 #include "common/link/aead_protection.h"
 #include "common/link/codec_wire.h"
 #include "common/link/link.h"
-#include "netem/pipe.h"
+#include "netem/model/pipe.h"
 #include "tests/common/link/some_keys.h"
 
 /// Two Links under keys over the emulated network, each on a clock of its own, in virtual time.

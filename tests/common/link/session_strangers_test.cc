@@ -174,7 +174,7 @@ TEST(SessionStrangersTest, APatientDoesNotAnswerAPatient) {
 TEST(SessionStrangersTest, AMirrorIsNotTakenForAPeer) {
   Town town;
   std::vector<Bytes> answers;
-  town.down.fate = [&](std::uint64_t, const Bytes& bytes) {
+  town.down.outcome = [&](std::uint64_t, const Bytes& bytes) {
     answers.push_back(bytes);
     return std::vector<Release>{{Duration{0}, bytes}};
   };
@@ -203,10 +203,10 @@ TEST(SessionStrangersTest, AnotherPatientDoesNotDisturbASurgeonWhoseLinkWorks) {
   }
 }
 
-TEST(SessionStrangersTest, AReplayOfAWholeConversationStartsNothing) {
+TEST(SessionStrangersTest, AReplayOfAWholeSessionStartsNothing) {
   Town town;
   std::vector<Bytes> said;
-  town.up.fate = [&](std::uint64_t, const Bytes& bytes) {
+  town.up.outcome = [&](std::uint64_t, const Bytes& bytes) {
     said.push_back(bytes);
     return std::vector<Release>{{Duration{0}, bytes}};
   };
@@ -241,7 +241,7 @@ TEST(SessionStrangersTest, AStrangerLeavesNoTrace) {
 
 RC_GTEST_PROP(SessionStrangersTest, SurvivesSpoiledDatagrams, (std::uint64_t seed)) {
   Town town;
-  const auto spoil = [seed](std::uint64_t stream) -> Fate {
+  const auto spoil = [seed](std::uint64_t stream) -> PacketOutcome {
     return [=](std::uint64_t index, const Bytes& bytes) {
       Bytes spoiled = bytes;
       const std::uint64_t place = random_bits(seed, stream, index);
@@ -251,8 +251,8 @@ RC_GTEST_PROP(SessionStrangersTest, SurvivesSpoiledDatagrams, (std::uint64_t see
                                   {Duration{2ms}, spoiled}};
     };
   };
-  town.up.fate = spoil(1);
-  town.down.fate = spoil(2);
+  town.up.outcome = spoil(1);
+  town.down.outcome = spoil(2);
   town.run(5s);
   (void)town.surgeon->session.close("enough");
 }

@@ -15,8 +15,8 @@ using std::chrono_literals::operator""s;
 
 TEST(SessionTest, TwoSitesAgreeInOneRoundTripAndAHalf) {
   Town town;
-  town.up.fate = after(20ms);
-  town.down.fate = after(20ms);
+  town.up.outcome = after(20ms);
+  town.down.outcome = after(20ms);
   town.run(41ms);
   EXPECT_EQ(town.surgeon->established.size(), 1U);
   EXPECT_EQ(town.patient->established.size(), 0U);
@@ -29,7 +29,7 @@ TEST(SessionTest, TwoSitesAgreeInOneRoundTripAndAHalf) {
 TEST(SessionTest, AsksAgainEverMoreSlowlyUpToASecond) {
   Town town;
   std::vector<std::int64_t> asked;
-  town.up.fate = [&](std::uint64_t, const Bytes&) {
+  town.up.outcome = [&](std::uint64_t, const Bytes&) {
     asked.push_back(
         std::chrono::duration_cast<std::chrono::milliseconds>(town.now.time_since_epoch()).count());
     return std::vector<Release>{};
@@ -54,7 +54,7 @@ TEST(SessionTest, QuietWhileTheLinkWorks) {
 
 RC_GTEST_PROP(SessionTest, ComesTogetherThroughAPathThatLosesAndRepeats, (std::uint64_t seed)) {
   Town town;
-  const auto bad = [seed](std::uint64_t stream) -> Fate {
+  const auto bad = [seed](std::uint64_t stream) -> PacketOutcome {
     return [=](std::uint64_t index, const Bytes& bytes) {
       std::vector<Release> releases;
       if (random_uniform(seed, stream, index) < 0.2) return releases;
@@ -64,8 +64,8 @@ RC_GTEST_PROP(SessionTest, ComesTogetherThroughAPathThatLosesAndRepeats, (std::u
       return releases;
     };
   };
-  town.up.fate = bad(1);
-  town.down.fate = bad(11);
+  town.up.outcome = bad(1);
+  town.down.outcome = bad(11);
   town.run(60s);
   RC_ASSERT(town.surgeon->session.established());
   RC_ASSERT(town.surgeon->session.session_id() == town.patient->session.session_id());
@@ -156,7 +156,7 @@ TEST(SessionTest, WhatTheLinkSaysOfAnotherSessionDoesNotCount) {
   town.run(50ms);
   ASSERT_TRUE(town.surgeon->session.established());
   const std::uint64_t asked = town.up.pushed();
-  town.surgeon->link_session = 12345;  // a word from before the handover
+  town.surgeon->link_session = 12345;  // a word from before the link update
   town.surgeon->state = LinkState::Live;
   town.run(5s);
   EXPECT_TRUE(town.surgeon->session.established());
@@ -186,7 +186,7 @@ TEST(SessionTest, ByeIsSaidThreeTimesAndClosesTheOther) {
   EXPECT_EQ(town.surgeon->established.size(), 2U);
 }
 
-TEST(SessionTest, BeforeTheHandoverIsDoneTheSessionIsNotTakenForEnded) {
+TEST(SessionTest, BeforeTheLinkUpdateIsDoneTheSessionIsNotTakenForEnded) {
   Town town;
   town.surgeon->hands_over = false;
   town.run(50ms);

@@ -21,31 +21,33 @@ struct Release {
 };
 
 /// What becomes of the datagram with this index: nothing, one or several releases.
-using Fate = std::function<std::vector<Release>(std::uint64_t index, const Bytes& bytes)>;
+using PacketOutcome = std::function<std::vector<Release>(std::uint64_t index, const Bytes& bytes)>;
 
-inline Fate after(Duration delay) {
+inline PacketOutcome after(Duration delay) {
   return [delay](std::uint64_t, const Bytes& bytes) {
     return std::vector<Release>{Release{delay, bytes}};
   };
 }
 
 /// Loses the datagrams with these indices, delays the others.
-inline Fate losing(std::vector<std::uint64_t> lost, Duration delay = Duration{0}) {
+inline PacketOutcome losing(std::vector<std::uint64_t> lost, Duration delay = Duration{0}) {
   return [lost = std::move(lost), delay](std::uint64_t index, const Bytes& bytes) {
     const bool gone = std::find(lost.begin(), lost.end(), index) != lost.end();
     return gone ? std::vector<Release>{} : std::vector<Release>{{delay, bytes}};
   };
 }
 
-inline const Fate kCut = [](std::uint64_t, const Bytes&) { return std::vector<Release>{}; };
+inline const PacketOutcome kCut = [](std::uint64_t, const Bytes&) {
+  return std::vector<Release>{};
+};
 
 /// One direction.
 class Lane {
  public:
-  Fate fate{after(Duration{0})};
+  PacketOutcome outcome{after(Duration{0})};
 
   void push(std::span<const std::byte> datagram, TimePoint now) {
-    for (Release& release : fate(pushed_++, Bytes{datagram.begin(), datagram.end()})) {
+    for (Release& release : outcome(pushed_++, Bytes{datagram.begin(), datagram.end()})) {
       waiting_.emplace(now + release.delay, std::move(release.bytes));
     }
   }

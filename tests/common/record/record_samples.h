@@ -114,8 +114,8 @@ inline void add_fields(Fields& out, const LinkStatus& s) {
           clock.skew,
           clock.uncertainty,
           clock.at,
-          h.way_there,
-          h.way_here,
+          h.delay_out,
+          h.delay_in,
           h.sent,
           h.accepted,
           h.late,
@@ -140,7 +140,7 @@ inline void add_fields(Fields& out, const ContactSample& c) {
 }
 inline void add_fields(Fields& out, const HandReading& h) {
   add_all(out, h.at, h.sampled_at, h.position, h.velocity, h.lateral);
-  add_all(out, h.dead_man_held, h.emergency_stop, h.faulted, h.script_phase);
+  add_all(out, h.pedal_held, h.emergency_stop, h.faulted, h.script_phase);
 }
 inline void add_fields(Fields& out, const StageReading& s) {
   add_all(out, s.at, s.sampled_at, s.position, s.velocity, s.lateral, s.at_limit, s.faulted);

@@ -53,7 +53,7 @@ LinkStatus any_link_status() {
   link::LinkHealth& h = status.health;
   h.state = any_of<LinkState>(kLinkStateCount);
   for (Duration* span :
-       {&h.gap, &h.round_trip, &h.round_trip_min, &h.jitter, &h.way_there, &h.way_here}) {
+       {&h.gap, &h.round_trip, &h.round_trip_min, &h.jitter, &h.delay_out, &h.delay_in}) {
     *span = any_span();
   }
   if (any<bool>()) {

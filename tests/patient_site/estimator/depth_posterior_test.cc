@@ -146,7 +146,7 @@ TEST(DepthModelTest, SettledTouchesCountLikeOthers) {
   const DepthPosterior all = model.update(input);
   DepthModel::Input early = input;
   early.touches = input.touches.first(2);
-  TouchSums settled{0};
+  NormalEquations settled{0};
   TouchModel near = all.best;
   near.surface += 20e-6;
   model.settle(early, near, settled);

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace palp::coupling {
+
+/// A displacement that goes on as a sine: now, a quarter later, and how fast.
+struct Swing {
+  double now{};         ///< [m]
+  double quadrature{};  ///< [m]
+  double rate{};        ///< [rad/s]
+  /// After `span` [s].
+  [[nodiscard]] double after(double span) const noexcept;
+};
+
+/// The breathing of a surface, found together with the tissue under it: where one is guessed first
+/// and the other afterwards, a wrong breath and a wrong tissue confirm each other. Keeps what the
+/// tip met in the last half minute of contact and fits to it, for each of several paces, surface,
+/// swing, pace and stiffness at once, a few samples a tick (Gauss and Newton, damped as by
+/// Marquardt). Says nothing until a swing explains most of what a surface at rest leaves. Thread:
+/// rt; constant memory, bounded work. A value.
+class BreathingEstimator {
+ public:
+  /// Of model_shapes(): the second to the fourth.
+  static constexpr std::size_t kShapes = 3;
+  static constexpr std::size_t kPaces = 16;
+
+  explicit BreathingEstimator(double period) noexcept;  ///< [s], between calls of step()
+  void step() noexcept;                                 ///< time goes on
+  /// The tip at `position` [m] meets `force` [N], both through the same filters. Every tick.
+  void see(double position, double force) noexcept;
+  /// Another place, and with it another surface and tissue; it breathes with the same breath.
+  void new_place() noexcept;
+
+  [[nodiscard]] Swing swing() const noexcept;
+  /// A swing is believed, and with it:
+  [[nodiscard]] bool believed() const noexcept { return believed_; }
+  [[nodiscard]] double surface() const noexcept;                             ///< [m], mean
+  [[nodiscard]] const std::array<double, kShapes>& shapes() const noexcept;  ///< [N]
+  /// Seen for long enough to say that it does not breathe.
+  [[nodiscard]] bool still() const noexcept { return still_; }
+
+ private:
+  static constexpr std::size_t kSamples = 384;
+  static constexpr std::size_t kUnknowns = kShapes + 4;  ///< and surface, cosine, sine, rate
+
+  struct Sample {
+    double at{};        ///< [s]
+    double position{};  ///< [m]
+    double force{};     ///< [N]
+    std::uint32_t place{};
+  };
+  struct Tissue {
+    double surface{};                     ///< [m]
+    std::array<double, kShapes> shape{};  ///< [N], each >= 0
+  };
+  /// What is supposed at one pace; the first supposes a surface at rest.
+  struct Guess {
+    Tissue here;
+    Tissue before;    ///< at the last place, as it was found there
+    double cosine{};  ///< [m]
+    double sine{};    ///< [m]
+    double rate{};    ///< [rad/s]
+    double origin{};  ///< [s], of the phase
+    double square{};  ///< [N^2], of what is left, mean
+    double cost{};    ///< [-]
+  };
+  struct Equations {
+    std::array<std::array<double, kUnknowns>, kUnknowns> normal{};  ///< [N^2], by unknowns
+    std::array<double, kUnknowns> right{};                          ///< [N^2], by unknowns
+    double square{};                                                ///< [N^2]
+    double time{};                                                  ///< [s], sum
+    double count{};                                                 ///< [-]
+  };
+
+  void fit_some() noexcept;
+  void add(const Guess& guess, const Sample& sample) noexcept;
+  [[nodiscard]] std::array<double, kUnknowns> solved(
+      const std::array<bool, kUnknowns>& open) const noexcept;
+  void improve(Guess& guess, std::size_t pace) noexcept;
+  void judge() noexcept;
+
+  double period_;  ///< [s]
+  double time_{};  ///< [s]
+  std::array<Sample, kSamples> samples_{};
+  std::size_t count_{};
+  std::size_t next_{};
+  std::uint32_t place_{};
+  bool touched_{};         ///< this place
+  double contact_at_{-1};  ///< [s], last
+  double first_seen_{-1};  ///< [s]
+  std::array<Guess, kPaces + 1> guesses_{};
+  std::uint32_t rounds_{};  ///< still to go
+  std::size_t at_guess_{};
+  std::size_t at_sample_{};
+  Equations equations_;
+  std::size_t best_{};
+  Swing last_;         ///< as judged last
+  double judged_{};    ///< [s]
+  double presence_{};  ///< [-], fades in and out
+  bool believed_{};
+  bool still_{};
+};
+
+}  // namespace palp::coupling

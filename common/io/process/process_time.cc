@@ -1,0 +1,20 @@
+#include "common/io/process/process_time.h"
+
+#include <ctime>
+
+namespace palp::io {
+namespace {
+
+Duration read(clockid_t clock) noexcept {
+  timespec time{};
+  ::clock_gettime(clock, &time);
+  return std::chrono::seconds{time.tv_sec} + std::chrono::nanoseconds{time.tv_nsec};
+}
+
+}  // namespace
+
+ProcessTime process_time() noexcept {
+  return {.cpu = read(CLOCK_PROCESS_CPUTIME_ID), .wall = read(CLOCK_MONOTONIC)};
+}
+
+}  // namespace palp::io

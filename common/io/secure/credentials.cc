@@ -1,0 +1,276 @@
+#include "common/io/secure/credentials.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include <openssl/pem.h>
+#include <openssl/x509err.h>
+
+#include "common/io/process/system_text.h"
+#include "common/io/secure/openssl_context.h"
+#include "common/io/secure/openssl_handles.h"
+
+namespace palp::io {
+namespace {
+
+using link::Role;
+
+constexpr char kBenchIdentity[] = "palp-bench";
+constexpr std::size_t kPreSharedKeySize = 32;  // [bytes]
+constexpr int kDaysToRenew = 14;
+constexpr char kCertificateFile[] = "certificate.pem";
+constexpr char kKeyFile[] = "key.pem";
+constexpr char kSharedKeyFile[] = "pre_shared_key.txt";
+/// Forward secret, authenticated encryption, 256 bits: nothing else is offered or accepted.
+constexpr char kCertificateSuites[] = "ECDHE-ECDSA-AES256-GCM-SHA384:ECDHE-RSA-AES256-GCM-SHA384";
+/// The only forward secret suite of OpenSSL 3.0 with a pre-shared key and authenticated encryption.
+constexpr char kPreSharedSuites[] = "ECDHE-PSK-CHACHA20-POLY1305";
+
+std::string role_name(Role role) { return role == Role::Surgeon ? "surgeon" : "patient"; }
+
+bool names_role(X509* certificate, Role role) {
+  const Openssl<GENERAL_NAMES> names{static_cast<GENERAL_NAMES*>(
+      X509_get_ext_d2i(certificate, NID_subject_alt_name, nullptr, nullptr))};
+  const std::string wanted = role_uri(role);
+  for (int i = 0; names != nullptr && i < sk_GENERAL_NAME_num(names.get()); ++i) {
+    const GENERAL_NAME* name = sk_GENERAL_NAME_value(names.get(), i);
+    if (name->type != GEN_URI) continue;
+    const ASN1_IA5STRING* uri = name->d.uniformResourceIdentifier;
+    const std::string text{reinterpret_cast<const char*>(ASN1_STRING_get0_data(uri)),
+                           static_cast<std::size_t>(ASN1_STRING_length(uri))};
+    if (text == wanted) return true;
+  }
+  return false;
+}
+
+/// After OpenSSL's own checks (signature, authority, time, purpose, revocation): the role.
+int check_role(int passed, X509_STORE_CTX* store) {
+  if (passed != 1 || X509_STORE_CTX_get_error_depth(store) != 0) return passed;
+  const auto* ssl = static_cast<const SSL*>(
+      X509_STORE_CTX_get_ex_data(store, SSL_get_ex_data_X509_STORE_CTX_idx()));
+  const auto* context =
+      static_cast<const Credentials::Context*>(SSL_CTX_get_app_data(SSL_get_SSL_CTX(ssl)));
+  if (names_role(X509_STORE_CTX_get_current_cert(store), context->peer)) return 1;
+  X509_STORE_CTX_set_error(store, X509_V_ERR_APPLICATION_VERIFICATION);
+  return 0;
+}
+
+const Credentials::Context& context_of(SSL* ssl) {
+  return *static_cast<const Credentials::Context*>(SSL_CTX_get_app_data(SSL_get_SSL_CTX(ssl)));
+}
+
+/// A key that has a passphrase is refused: OpenSSL would ask the terminal for it.
+int no_passphrase(char* /*out*/, int /*size*/, int /*writes*/, void* /*data*/) { return -1; }
+
+unsigned give_key(SSL* ssl, unsigned char* out, unsigned size_max) {
+  const std::vector<unsigned char>& key = context_of(ssl).pre_shared_key;
+  if (key.size() > size_max) return 0;
+  std::copy(key.begin(), key.end(), out);
+  return static_cast<unsigned>(key.size());
+}
+
+unsigned client_key(SSL* ssl,
+                    const char* /*hint*/,
+                    char* identity,
+                    unsigned identity_max,
+                    unsigned char* out,
+                    unsigned size_max) {
+  if (identity_max < sizeof kBenchIdentity) return 0;
+  std::memcpy(identity, kBenchIdentity, sizeof kBenchIdentity);
+  return give_key(ssl, out, size_max);
+}
+
+unsigned server_key(SSL* ssl, const char* identity, unsigned char* out, unsigned size_max) {
+  return std::strcmp(identity, kBenchIdentity) == 0 ? give_key(ssl, out, size_max) : 0;
+}
+
+std::unique_ptr<Credentials::Context> make_context(Role role) {
+  auto context = std::make_unique<Credentials::Context>();
+  context->peer = role == Role::Surgeon ? Role::Patient : Role::Surgeon;
+  context->ssl.reset(
+      SSL_CTX_new(role == Role::Surgeon ? DTLS_client_method() : DTLS_server_method()));
+  SSL_CTX* ssl = context->ssl.get();
+  if (ssl == nullptr) return nullptr;
+  SSL_CTX_set_app_data(ssl, context.get());
+  SSL_CTX_set_default_passwd_cb(ssl, no_passphrase);
+  SSL_CTX_set_min_proto_version(ssl, DTLS1_2_VERSION);
+  SSL_CTX_set_max_proto_version(ssl, DTLS1_2_VERSION);
+  SSL_CTX_set_options(ssl,
+                      SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_TICKET | SSL_OP_NO_QUERY_MTU |
+                          SSL_OP_NO_COMPRESSION | SSL_OP_CIPHER_SERVER_PREFERENCE |
+                          SSL_OP_NO_ENCRYPT_THEN_MAC);
+  SSL_CTX_set_session_cache_mode(ssl, SSL_SESS_CACHE_OFF);
+  SSL_CTX_set1_groups_list(ssl, "X25519:P-256");
+  return context;
+}
+
+Error unusable(const std::filesystem::path& file, const std::string& why) {
+  Error error{"identity " + file.string() + ": " + why};
+  error.unreachable = true;
+  return error;
+}
+
+/// Why a file that OpenSSL did not take could not be used: it speaks of its own libraries.
+Error not_taken(const std::filesystem::path& file, const std::string& wanted) {
+  ERR_clear_error();
+  errno = 0;
+  if (!std::ifstream{file}) return unusable(file, "cannot be read: " + system_text(errno));
+  return unusable(file, "holds no " + wanted);
+}
+
+Result<std::string> use_pre_shared_key(Credentials::Context& context,
+                                       const std::filesystem::path& file) {
+  std::ifstream stream{file};
+  if (!stream) return tl::unexpected{not_taken(file, "key")};
+  std::string text{std::istreambuf_iterator<char>{stream}, {}};
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) {
+    text.pop_back();
+  }
+  const bool hexadecimal =
+      std::ranges::all_of(text, [](unsigned char one) { return std::isxdigit(one) != 0; });
+  if (!hexadecimal || text.size() != 2 * kPreSharedKeySize) {
+    return tl::unexpected{unusable(file, "must hold 64 hexadecimal digits and nothing else")};
+  }
+  for (std::size_t i = 0; i < kPreSharedKeySize; ++i) {
+    const std::string digits = text.substr(2 * i, 2);
+    context.pre_shared_key.push_back(
+        static_cast<unsigned char>(std::strtoul(digits.c_str(), nullptr, 16)));
+  }
+  OPENSSL_cleanse(text.data(), text.size());
+  SSL_CTX* ssl = context.ssl.get();
+  SSL_CTX_set_cipher_list(ssl, kPreSharedSuites);
+  SSL_CTX_set_psk_client_callback(ssl, client_key);
+  SSL_CTX_set_psk_server_callback(ssl, server_key);
+  return std::string{"a pre-shared key"};
+}
+
+Result<bool> trust(SSL_CTX* ssl, const std::filesystem::path& folder) {
+  const std::filesystem::path authority = folder / "authority.pem";
+  if (SSL_CTX_load_verify_file(ssl, authority.c_str()) != 1) {
+    return tl::unexpected{not_taken(authority, "certificate in PEM form")};
+  }
+  const std::filesystem::path revoked = folder / "revoked.pem";
+  if (!std::filesystem::exists(revoked)) return false;
+  const Openssl<BIO> file{BIO_new_file(revoked.c_str(), "r")};
+  const Openssl<X509_CRL> list{
+      file == nullptr ? nullptr : PEM_read_bio_X509_CRL(file.get(), nullptr, nullptr, nullptr)};
+  X509_STORE* store = SSL_CTX_get_cert_store(ssl);
+  if (list == nullptr || X509_STORE_add_crl(store, list.get()) != 1) {
+    return tl::unexpected{not_taken(revoked, "revocation list in PEM form")};
+  }
+  X509_STORE_set_flags(store, X509_V_FLAG_CRL_CHECK);
+  return true;
+}
+
+std::string common_name(const X509* certificate) {
+  std::array<char, 100> name{};
+  X509_NAME_get_text_by_NID(X509_get_subject_name(certificate),
+                            NID_commonName,
+                            name.data(),
+                            static_cast<int>(name.size()));
+  return name.data();
+}
+
+Result<std::string> use_certificates(Credentials::Context& context,
+                                     const std::filesystem::path& folder,
+                                     Role role) {
+  SSL_CTX* ssl = context.ssl.get();
+  const std::filesystem::path certificate = folder / kCertificateFile;
+  if (SSL_CTX_use_certificate_chain_file(ssl, certificate.c_str()) != 1) {
+    return tl::unexpected{not_taken(certificate, "certificate in PEM form")};
+  }
+  X509* own = SSL_CTX_get0_certificate(ssl);
+  if (!names_role(own, role)) {
+    return tl::unexpected{
+        unusable(certificate, "is not made out to a " + role_name(role) + " site")};
+  }
+  const std::filesystem::path key = folder / kKeyFile;
+  if (SSL_CTX_use_PrivateKey_file(ssl, key.c_str(), SSL_FILETYPE_PEM) != 1) {
+    const bool misfit = ERR_GET_REASON(ERR_peek_last_error()) == X509_R_KEY_VALUES_MISMATCH;
+    return tl::unexpected{misfit ? unusable(key, "does not fit the certificate beside it")
+                                 : not_taken(key, "private key in PEM form without passphrase")};
+  }
+  if (const auto trusted = trust(ssl, folder); !trusted) return tl::unexpected{trusted.error()};
+  SSL_CTX_set_cipher_list(ssl, kCertificateSuites);
+  SSL_CTX_set_verify(ssl, SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, check_role);
+  return common_name(own);
+}
+
+/// Rights of others on a file that only its owner should read.
+std::optional<std::string> exposure(const std::filesystem::path& file) {
+  using std::filesystem::perms;
+  std::error_code refusal;
+  const perms rights = std::filesystem::status(file, refusal).permissions();
+  if (refusal || (rights & (perms::group_all | perms::others_all)) == perms::none) return {};
+  return "identity " + file.string() + ": others than its owner have rights on it; chmod 600";
+}
+
+/// Whether the wall clock lies within its time, and for how long.
+std::optional<std::string> time_trouble(const std::filesystem::path& file, const X509* own) {
+  const std::string name = "identity " + file.string();
+  if (X509_cmp_current_time(X509_get0_notBefore(own)) > 0) {
+    return name + " is not valid yet, by this machine's clock: the peer will refuse it";
+  }
+  if (X509_cmp_current_time(X509_get0_notAfter(own)) < 0) {
+    return name + " has expired, by this machine's clock: the peer will refuse it";
+  }
+  int days = 0;
+  int seconds = 0;
+  if (ASN1_TIME_diff(&days, &seconds, nullptr, X509_get0_notAfter(own)) == 1 &&
+      days < kDaysToRenew) {
+    return name + " expires in " + std::to_string(days) + " days";
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> cautions_of(const Credentials::Context& context,
+                                     const std::filesystem::path& folder) {
+  std::vector<std::string> cautions;
+  const bool shared = !context.pre_shared_key.empty();
+  if (auto one = exposure(folder / (shared ? kSharedKeyFile : kKeyFile))) cautions.push_back(*one);
+  if (shared) return cautions;
+  const X509* own = SSL_CTX_get0_certificate(context.ssl.get());
+  if (auto one = time_trouble(folder / kCertificateFile, own)) cautions.push_back(*one);
+  return cautions;
+}
+
+}  // namespace
+
+std::string role_uri(Role role) { return "palp:" + role_name(role); }
+
+Credentials::Credentials(std::unique_ptr<Context> context, Role role, std::string name)
+    : context_{std::move(context)}, role_{role}, name_{std::move(name)} {}
+
+Credentials::~Credentials() = default;
+
+Result<std::unique_ptr<Credentials>> Credentials::read(const std::string& folder, Role role) {
+  ERR_clear_error();
+  const std::filesystem::path place{folder};
+  if (!std::filesystem::is_directory(place)) {
+    return tl::unexpected{unusable(place, "is no folder; 'palp-surgeon certificates' makes one")};
+  }
+  std::unique_ptr<Context> context = make_context(role);
+  if (context == nullptr) return tl::unexpected{unusable(place, openssl_complaint())};
+  const std::filesystem::path shared = place / kSharedKeyFile;
+  if (std::filesystem::exists(shared) && std::filesystem::exists(place / kCertificateFile)) {
+    return tl::unexpected{
+        unusable(place, "holds a certificate and a pre-shared key; take away what is not meant")};
+  }
+  const Result<std::string> name = std::filesystem::exists(shared)
+                                       ? use_pre_shared_key(*context, shared)
+                                       : use_certificates(*context, place, role);
+  if (!name) return tl::unexpected{name.error()};
+  std::vector<std::string> cautions = cautions_of(*context, place);
+  std::unique_ptr<Credentials> read{new Credentials{std::move(context), role, *name}};
+  read->cautions_ = std::move(cautions);
+  return read;
+}
+
+}  // namespace palp::io

@@ -1,0 +1,126 @@
+#include "common/io/secure/path_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <optional>
+
+#include <poll.h>
+#include <sys/socket.h>
+
+#include "common/core/number_text.h"
+#include "common/io/process/descriptor.h"
+#include "common/io/process/system_text.h"
+#include "common/io/realtime/steady_clock.h"
+#include "common/io/secure/dtls_handshake.h"
+#include "common/link/link.h"
+
+namespace palp::io {
+namespace {
+
+constexpr Duration kRoundTripMax = link::LinkConfig{}.round_trip_max;
+/// More lost questions than this are no accident.
+constexpr double kLostMax = 0.2;  // [-]
+
+// Of a record of DTLS (RFC 6347, 4.1): its type, the last of six bytes of its number, and what is
+// behind its header.
+constexpr std::byte kHandshake{22};
+constexpr std::size_t kNumberAt = 10;
+constexpr std::size_t kBodyAt = 13;
+constexpr std::byte kHelloVerifyRequest{3};
+
+/// Which question it answers: a cookie has the number of the record it was asked with (4.2.1).
+std::optional<std::size_t> question_of(std::span<const std::byte> datagram) {
+  const bool cookie = datagram.size() > kBodyAt && datagram[0] == kHandshake &&
+                      datagram[kBodyAt] == kHelloVerifyRequest;
+  if (!cookie) return std::nullopt;
+  return std::to_integer<std::size_t>(datagram[kNumberAt]);
+}
+
+/// Questions under way to one peer.
+class Questions {
+ public:
+  Questions(int socket, const Credentials& credentials)
+      : socket_{socket}, hello_{DtlsHandshake{credentials}.take_datagrams()} {}
+
+  void ask(TimePoint now) {
+    for (DtlsDatagram& one : hello_) {
+      one[kNumberAt] = static_cast<std::byte>(asked_at_.size());
+      (void)::send(socket_, one.data(), one.size(), MSG_DONTWAIT);
+    }
+    asked_at_.emplace_back(now);
+  }
+  /// Waits for one datagram, at the longest until then.
+  void listen(const SteadyClock& clock, TimePoint until) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - clock.now()).count();
+    pollfd watched{.fd = socket_, .events = POLLIN, .revents = 0};
+    if (::poll(&watched, 1, static_cast<int>(std::max<std::int64_t>(0, left))) <= 0) return;
+    std::array<std::byte, 2048> bytes{};
+    const ssize_t got = ::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (got <= 0) return;
+    const auto number = question_of(std::span{bytes}.first(static_cast<std::size_t>(got)));
+    if (!number || *number >= asked_at_.size() || !asked_at_[*number]) return;
+    round_trips_.push_back(clock.now() - *asked_at_[*number]);
+    asked_at_[*number].reset();
+  }
+  [[nodiscard]] std::size_t asked() const { return asked_at_.size(); }
+  [[nodiscard]] const std::vector<Duration>& round_trips() const { return round_trips_; }
+
+ private:
+  int socket_;
+  std::vector<DtlsDatagram> hello_;
+  std::vector<std::optional<TimePoint>> asked_at_;  ///< by number; nullopt: answered
+  std::vector<Duration> round_trips_;
+};
+
+}  // namespace
+
+Result<PathFacts> read_path(const HostAndPort& peer,
+                            const Credentials& credentials,
+                            const PathCheckConfig& config) {
+  const Result<Endpoint> place = resolve(peer);
+  if (!place) return fail(place.error().text);
+  const Descriptor socket{::socket(place->family(), SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+  if (!socket.valid() || ::connect(socket.number(), place->address(), place->size()) != 0) {
+    return fail("cannot call " + peer.to_string() + ": " + system_text(errno));
+  }
+  Questions questions{socket.number(), credentials};
+  const SteadyClock clock;
+  TimePoint until{};
+  while (questions.asked() < config.questions) {
+    const TimePoint now = clock.now();
+    questions.ask(now);
+    until = now + config.patience;
+    for (const TimePoint next = now + config.pause; clock.now() < next;) {
+      questions.listen(clock, next);
+    }
+  }
+  while (questions.round_trips().size() < questions.asked() && clock.now() < until) {
+    questions.listen(clock, until);
+  }
+  return PathFacts{.asked = questions.asked(), .round_trips = questions.round_trips()};
+}
+
+MachineFinding judge_path(const PathFacts& facts) {
+  if (facts.round_trips.empty()) {
+    return {"way to the peer",
+            "none of " + std::to_string(facts.asked) + " questions was answered",
+            false,
+            "start the patient site, and let UDP through to its port"};
+  }
+  std::vector<Duration> sorted = facts.round_trips;
+  std::sort(sorted.begin(), sorted.end());
+  const auto lost = static_cast<double>(facts.asked) - static_cast<double>(sorted.size());
+  const bool good =
+      sorted.front() <= kRoundTripMax && lost <= kLostMax * static_cast<double>(facts.asked);
+  return {"way to the peer",
+          number_text("round trip ", seconds(sorted.front()) * 1e3, 1, " ms at best") +
+              number_text(", ", seconds(sorted[sorted.size() / 2]) * 1e3, 1, " in the middle") +
+              number_text(", ", lost, 0, " of ") + std::to_string(facts.asked) + " lost",
+          good,
+          good ? ""
+               : number_text("above ", seconds(kRoundTripMax), 1, " s, or with so much loss, ") +
+                     "no session comes about: another network"};
+}
+
+}  // namespace palp::io

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "common/core/result.h"
+#include "common/core/time.h"
+#include "common/io/net/endpoint.h"
+#include "common/io/net/machine_check.h"
+#include "common/io/secure/credentials.h"
+
+/// How far the peer is, before a session.
+namespace palp::io {
+
+struct PathFacts {
+  std::size_t asked{};
+  std::vector<Duration> round_trips;  ///< of the questions that were answered
+};
+
+struct PathCheckConfig {
+  std::size_t questions{10};                      ///< 256 at most
+  Duration pause{std::chrono::milliseconds{50}};  ///< between two questions
+  Duration patience{std::chrono::seconds{3}};     ///< then the last question counts as lost
+};
+
+/// Asks a patient site that runs at `peer`, in a session or not, for cookies: each is the first
+/// word of a handshake and its answer, and leaves nothing behind there. `credentials` are a
+/// surgeon's. Blocks. Refusal: the peer cannot be found, or there is no socket.
+[[nodiscard]] Result<PathFacts> read_path(const HostAndPort& peer,
+                                          const Credentials& credentials,
+                                          const PathCheckConfig& config = {});
+
+/// What that means for a session.
+[[nodiscard]] MachineFinding judge_path(const PathFacts& facts);
+
+}  // namespace palp::io

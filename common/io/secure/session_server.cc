@@ -1,0 +1,401 @@
+#include "common/io/secure/session_server.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <deque>
+#include <exception>
+#include <span>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/udp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "common/io/process/system_text.h"
+#include "common/io/realtime/realtime.h"
+#include "common/io/realtime/steady_clock.h"
+#include "common/io/secure/dtls_session.h"
+
+namespace palp::io {
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::udp;
+
+constexpr Duration kRound = std::chrono::milliseconds{5};  ///< between two looks at everything
+/// Datagrams of strangers looked at in a round. A flood beyond it is left to the kernel to drop: a
+/// FIFO thread that never sleeps would be stopped, and rt with it.
+constexpr int kStrangersPerRoundMax = 512;
+constexpr int kEarlyMax = 4096;
+constexpr std::size_t kNewsMax = 64;
+constexpr int kClassSelector3 = 24 << 2;  ///< TOS byte of DSCP CS3, RFC 2474
+
+udp::endpoint as_asio(const Endpoint& endpoint) {
+  udp::endpoint result;
+  result.resize(endpoint.size());
+  std::memcpy(result.data(), endpoint.address(), endpoint.size());
+  return result;
+}
+
+Endpoint from_asio(const udp::endpoint& endpoint) { return {endpoint.data(), endpoint.size()}; }
+
+void set_option(udp::socket& socket, int level, int name, int value) noexcept {
+  (void)setsockopt(socket.native_handle(), level, name, &value, sizeof value);
+}
+
+Endpoint found(const HostAndPort& place) {
+  const Result<Endpoint> endpoint = resolve(place);
+  if (!endpoint) {
+    throw std::runtime_error{endpoint.error().text};
+  }
+  return *endpoint;
+}
+
+std::string name_of_peer(link::Role role) {
+  return role == link::Role::Surgeon ? "the patient site" : "the surgeon site";
+}
+
+}  // namespace
+
+/// All that the io thread owns. start(), close(), abandon(), local(), news(), noise() and counts()
+/// are the maker's; the rest is the thread's.
+class SessionServer::Io {
+ public:
+  Io(const SessionServerConfig& config, LinkUpdateDesk& desk);
+  void start();
+  void close(const std::string& why);
+  void abandon() { context_.stop(); }
+
+  [[nodiscard]] Endpoint local() const { return local_; }
+  [[nodiscard]] std::optional<SessionNews> news();
+  [[nodiscard]] link::SessionCounters noise() { return noise_.get(); }
+  [[nodiscard]] SocketCounts counts() { return desk_.inbox().counts.get(); }
+
+ private:
+  struct Early {
+    Endpoint from;
+    std::vector<std::byte> bytes;
+  };
+
+  void run_round();
+  void wait_for_strangers();
+  void hear_strangers();
+  void hear(std::span<const std::byte> datagram, const Endpoint& from);
+  /// `from`: where the datagram came from that is answered; none: nothing came.
+  void carry_out(SessionEndpointOutput output, const Endpoint& from);
+  void meet(const link::Established& session,
+            std::unique_ptr<link::PacketProtection> protection,
+            const Endpoint& peer);
+  void replace_keys(std::unique_ptr<link::PacketProtection> protection);
+  void move(const Endpoint& peer);
+  [[nodiscard]] Result<std::unique_ptr<link::Transport>> way_to(const Endpoint& peer);
+  void offer_waiting();
+  void leave();
+  [[nodiscard]] std::string refusal_opening();
+  void tell(SessionNews::Kind kind, const Endpoint& peer, std::string sentence, bool final = false);
+
+  SessionServerConfig config_;
+  LinkUpdateDesk& desk_;
+  std::unique_ptr<SessionEndpoint> session_endpoint_;
+  SpscQueue<SessionNews> news_{kNewsMax};  ///< writer: io, reader: the maker
+  Mailbox<link::SessionCounters> noise_;   ///< writer: io, reader: the maker
+  asio::io_context context_{1};
+  udp::socket listening_{context_};
+  asio::steady_timer round_{context_};
+  SteadyClock clock_;
+  Endpoint local_;
+  Endpoint callee_;                       ///< surgeon: whom to call; patient: none
+  Endpoint connected_;                    ///< rt has or will get a socket to there
+  link::Established present_;             ///< rt has or will get this session; id 0: none
+  std::deque<link::LinkUpdate> waiting_;  ///< for room on the desk
+  std::deque<Early> early_;               ///< taken by a data socket before it was connected
+  std::array<std::byte, link::kDatagramSizeMax + 1> buffer_{};
+  int strangers_{};  ///< heard in this round
+  bool listens_{};   ///< a wait is under way
+  std::jthread thread_;
+};
+
+SessionServer::Io::Io(const SessionServerConfig& config, LinkUpdateDesk& desk)
+    : config_{config}, desk_{desk} {
+  const Endpoint place = found(config.address);
+  Endpoint wish = place;
+  if (config.session.role == link::Role::Surgeon) {
+    if (place.port() == 0) {
+      throw std::runtime_error{"cannot call " + config.address.to_string() +
+                               ": the port must be 1 to 65535"};
+    }
+    callee_ = place;
+    wish = place.caller();
+  }
+  // Bound without leave to share: an owner of this port is noticed, and none can come after us.
+  boost::system::error_code refusal;
+  listening_.open(wish.family() == AF_INET6 ? udp::v6() : udp::v4(), refusal);
+  if (!refusal) {
+    listening_.bind(as_asio(wish), refusal);
+  }
+  if (refusal) {
+    throw std::runtime_error{"cannot listen on " + config.address.to_string() + ": " +
+                             system_text(refusal.value())};
+  }
+  listening_.non_blocking(true);
+  mark_datagrams(listening_.native_handle(), wish.family(), kClassSelector3);
+  local_ = from_asio(listening_.local_endpoint());
+  session_endpoint_ = make_session_endpoint(
+      {.session = config_.session, .callee = callee_, .rekey_after = config_.rekey_after},
+      config_.credentials);
+}
+
+void SessionServer::Io::start() {
+  thread_ = std::jthread{[this] {
+    name_this_thread("palp-io");
+    (void)request_realtime(config_.priority, false, read_realtime_limits());
+    round_.expires_after(Duration{0});
+    run_round();
+    context_.run();
+  }};
+}
+
+void SessionServer::Io::close(const std::string& why) {
+  if (!thread_.joinable()) {
+    return;
+  }
+  asio::post(context_, [this, why] {
+    carry_out(session_endpoint_->close(why), {});
+    context_.stop();
+  });
+  thread_.join();
+}
+
+std::optional<SessionNews> SessionServer::Io::news() {
+  SessionNews news;
+  if (!news_.try_dequeue(news)) {
+    return std::nullopt;
+  }
+  return news;
+}
+
+void SessionServer::Io::run_round() {
+  desk_.destroy_retired();
+  SideDatagram aside;
+  for (std::size_t i = 0; i < SideInbox::kCapacity; ++i) {
+    if (!desk_.inbox().datagrams.try_dequeue(aside)) {
+      break;
+    }
+    hear(aside.datagram(), aside.from);
+  }
+  carry_out(session_endpoint_->tick(clock_.now(), desk_.link()), callee_);
+  for (std::deque<Early> early = std::exchange(early_, {}); !early.empty(); early.pop_front()) {
+    hear(early.front().bytes, early.front().from);
+  }
+  offer_waiting();
+  noise_.put(session_endpoint_->counters());
+  strangers_ = 0;
+  wait_for_strangers();
+  round_.expires_at(round_.expiry() + kRound);
+  if (round_.expiry() < asio::steady_timer::clock_type::now()) {
+    round_.expires_after(kRound);
+  }
+  round_.async_wait([this](const boost::system::error_code& refusal) {
+    if (!refusal) {
+      run_round();
+    }
+  });
+}
+
+void SessionServer::Io::wait_for_strangers() {
+  if (std::exchange(listens_, true)) {
+    return;
+  }
+  listening_.async_wait(udp::socket::wait_read, [this](const boost::system::error_code& refusal) {
+    listens_ = false;
+    if (!refusal) {
+      hear_strangers();
+    }
+  });
+}
+
+void SessionServer::Io::hear_strangers() {
+  while (strangers_ < kStrangersPerRoundMax) {
+    udp::endpoint from;
+    boost::system::error_code refusal;
+    const std::size_t size = listening_.receive_from(asio::buffer(buffer_), from, 0, refusal);
+    if (refusal == asio::error::would_block) {
+      wait_for_strangers();
+      return;
+    }
+    ++strangers_;
+    if (refusal) {
+      return;  // the next round tries again
+    }
+    hear(std::span{buffer_}.first(size), from_asio(from));
+  }
+}
+
+void SessionServer::Io::hear(std::span<const std::byte> datagram, const Endpoint& from) {
+  const TimePoint now = clock_.now();
+  SessionEndpointOutput output = session_endpoint_->hear(datagram, from, now);
+  if (output.detours) (void)desk_.inbox().detours.try_emplace(datagram, from, now);
+  carry_out(std::move(output), from);
+}
+
+void SessionServer::Io::carry_out(SessionEndpointOutput output, const Endpoint& from) {
+  if (output.event) {
+    if (const auto* session = std::get_if<link::Established>(&*output.event)) {
+      meet(*session, std::move(output.protection), from);
+    } else if (const auto* refused = std::get_if<link::Refused>(&*output.event)) {
+      tell(SessionNews::Kind::Refused, from, refusal_opening() + refused->text, refused->final);
+    } else if (const auto* closed = std::get_if<link::Closed>(&*output.event)) {
+      tell(SessionNews::Kind::Closed, connected_, "the session is over: " + closed->text);
+      leave();
+    }
+  }
+  if (output.protection != nullptr) replace_keys(std::move(output.protection));
+  if (output.moved_to) move(*output.moved_to);
+  for (const Letter& letter : output.letters) {
+    boost::system::error_code refusal;  // nothing to do about it: what matters is repeated
+    listening_.send_to(asio::buffer(letter.bytes), as_asio(letter.to), 0, refusal);
+  }
+  offer_waiting();
+}
+
+void SessionServer::Io::offer_waiting() {
+  while (!waiting_.empty() && desk_.offer(std::move(waiting_.front()))) {
+    waiting_.pop_front();
+  }
+}
+
+void SessionServer::Io::meet(const link::Established& session,
+                             std::unique_ptr<link::PacketProtection> protection,
+                             const Endpoint& peer) {
+  link::LinkUpdate next{.transport = nullptr,
+                        .protection = std::move(protection),
+                        .send_connection = session.send_connection,
+                        .receive_connection = session.receive_connection,
+                        .session_id = session.session_id,
+                        .peer_devices = session.peer_devices};
+  if (!(peer == connected_)) {
+    Result<std::unique_ptr<link::Transport>> way = way_to(peer);
+    if (!way) {
+      tell(SessionNews::Kind::Refused, peer, "no session: " + way.error().text);
+      leave();
+      return;
+    }
+    next.transport = std::move(*way);
+    connected_ = peer;
+  }
+  present_ = session;
+  waiting_.push_back(std::move(next));
+  const std::string proof = session_endpoint_->proof();
+  tell(SessionNews::Kind::Established,
+       peer,
+       "session with " + name_of_peer(config_.session.role) + " at " + peer.to_string() +
+           (session.peer_git.empty() ? "" : ", its build " + session.peer_git) +
+           (proof.empty() ? "" : ", proven by " + proof));
+}
+
+/// A surgeon in a session calls for new keys only; the session has those it has.
+std::string SessionServer::Io::refusal_opening() {
+  const LinkState link = desk_.link().state;
+  const bool works = link == LinkState::Live || link == LinkState::Hold;
+  return works && config_.session.role == link::Role::Surgeon ? "no new keys: " : "no session: ";
+}
+
+/// The present session goes on under other keys.
+void SessionServer::Io::replace_keys(std::unique_ptr<link::PacketProtection> protection) {
+  if (present_.session_id == 0) return;
+  waiting_.push_back({.transport = nullptr,
+                      .protection = std::move(protection),
+                      .send_connection = present_.send_connection,
+                      .receive_connection = present_.receive_connection,
+                      .session_id = present_.session_id,
+                      .continues = true});
+}
+
+/// The present session goes on with another address of the peer.
+void SessionServer::Io::move(const Endpoint& peer) {
+  if (present_.session_id == 0 || peer == connected_) return;
+  Result<std::unique_ptr<link::Transport>> way = way_to(peer);
+  if (!way) return;  // its next datagram begins anew
+  waiting_.push_back({.transport = std::move(*way),
+                      .protection = nullptr,
+                      .send_connection = present_.send_connection,
+                      .receive_connection = present_.receive_connection,
+                      .session_id = present_.session_id,
+                      .continues = true});
+  connected_ = peer;
+  tell(SessionNews::Kind::Moved, peer, "the peer's address is now " + peer.to_string());
+}
+
+Result<std::unique_ptr<link::Transport>> SessionServer::Io::way_to(const Endpoint& peer) {
+  // Only as long as it takes: with this option any process could share the port and its datagrams.
+  set_option(listening_, SOL_SOCKET, SO_REUSEADDR, 1);
+  Result<std::unique_ptr<UdpSocket>> socket =
+      UdpSocket::connect(local_, peer, desk_.inbox(), config_.socket);
+  set_option(listening_, SOL_SOCKET, SO_REUSEADDR, 0);
+  if (!socket) {
+    return fail(socket.error().text);
+  }
+  // Before it was connected it took what strangers sent: that is ours to hear.
+  for (int i = 0; i < kEarlyMax; ++i) {
+    const auto stranger = (*socket)->take_early(buffer_);
+    if (!stranger) {
+      break;
+    }
+    const std::size_t size = std::min(stranger->size, buffer_.size());
+    if (size > 0 && buffer_[0] != kDataFirstByte) {
+      early_.push_back({stranger->from, {buffer_.begin(), buffer_.begin() + size}});
+    }
+  }
+  if (config_.wrap_transport) {
+    return config_.wrap_transport(std::move(*socket));
+  }
+  return std::move(*socket);
+}
+
+void SessionServer::Io::leave() {
+  connected_ = {};
+  present_ = {};
+  waiting_.push_back({});
+}
+
+void SessionServer::Io::tell(SessionNews::Kind kind,
+                             const Endpoint& peer,
+                             std::string sentence,
+                             bool final) {
+  (void)news_.try_enqueue(SessionNews{.kind = kind,
+                                      .final = final,
+                                      .at = clock_.now(),
+                                      .peer = peer,
+                                      .sentence = std::move(sentence)});
+}
+
+SessionServer::SessionServer(const SessionServerConfig& config, LinkUpdateDesk& desk)
+    : io_{std::make_unique<Io>(config, desk)} {
+  io_->start();
+}
+
+SessionServer::~SessionServer() {
+  try {
+    close("the program ends");
+  } catch (const std::exception&) {
+    io_->abandon();  // out of memory: no farewell
+  }
+}
+
+Endpoint SessionServer::local() const { return io_->local(); }
+
+std::optional<SessionNews> SessionServer::news() { return io_->news(); }
+
+SocketCounts SessionServer::socket_counts() const { return io_->counts(); }
+
+link::SessionCounters SessionServer::noise() const { return io_->noise(); }
+
+void SessionServer::close(const std::string& why) { io_->close(why); }
+
+}  // namespace palp::io

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/core/result.h"
+#include "lab/plan/plan.h"
+#include "lab/run/metrics.h"
+
+/// Runs the cases of a plan, each by itself, and sums them up. What comes out depends on the plan
+/// alone: not on the number of threads, nor on how it was cut into shards.
+namespace palp::lab {
+
+struct CaseResult {
+  std::uint64_t index{};
+  std::uint64_t seed{};
+  std::vector<std::string> labels;
+  std::uint64_t digest{};
+  double virtual_span{};  ///< [s]
+  std::string outcome;
+  bool unstable{};
+  std::string unstable_reason;
+  std::vector<double> values;  ///< [as the metric], as metric_table(), nine digits, NaN: undefined
+};
+
+/// Calls the function once per index, in any order, on any threads.
+using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t)>&)>;
+/// How many of how many are done; called from any thread, one at a time.
+using Progress = std::function<void(std::size_t done, std::size_t count)>;
+
+/// Sorted by index. A case that cannot be made is an error of the plan.
+[[nodiscard]] Result<std::vector<CaseResult>> run_plan(const Plan& plan,
+                                                       const ForEach& for_each,
+                                                       const Progress& progress);
+
+/// Of the absolute values: element min(n - 1, floor(p n)) of n sorted ones, undefined ones last.
+struct Spread {
+  double p50{kUndefined};  ///< [as the metric]
+  double p95{kUndefined};  ///< [as the metric]
+  double max{kUndefined};  ///< [as the metric], of the defined ones
+  std::uint64_t undefined{};
+};
+[[nodiscard]] Spread spread_of(const std::vector<CaseResult>& results, std::size_t metric);
+
+/// Over all cases in order.
+[[nodiscard]] std::uint64_t digest_of(const std::vector<CaseResult>& results);
+
+}  // namespace palp::lab

@@ -1,0 +1,102 @@
+#include "lab/plan/scenario_file.h"
+
+#include <algorithm>
+
+#include "common/config/settings_text.h"
+#include "lab/plan/scenario_texts.h"
+#include "patient_site/settings.h"
+#include "proto/config.pb.h"
+#include "surgeon_site/script_reader.h"
+#include "surgeon_site/settings.h"
+
+namespace palp::lab {
+namespace {
+
+using proto::config::LabScenario;
+
+/// The words, if there are any, else the numbers.
+Result<netem::Impairment> make_path(const proto::config::Impairment& path) {
+  if (!path.spec().empty()) return netem::parse_impairment(path.spec());
+  return netem::impairment_from_delay(
+      from_seconds(path.delay_ms() * 1e-3), from_seconds(path.jitter_ms() * 1e-3), path.loss());
+}
+
+}  // namespace
+
+Result<config::Document> load_scenario(const std::string& name_or_path) {
+  config::Document document = config::scenario_document();
+  const auto texts = scenario_texts();
+  const auto known = std::find_if(texts.begin(), texts.end(), [&](const ScenarioText& candidate) {
+    return candidate.name == name_or_path;
+  });
+  std::string text;
+  if (known != texts.end()) {
+    text = known->text;
+  } else {
+    auto file = config::read_whole_file(name_or_path);
+    if (!file) {
+      return fail("'" + name_or_path + "' is neither a scenario of the lab nor a readable file; " +
+                  "palp-lab scenarios lists them");
+    }
+    text = std::move(*file);
+  }
+  if (auto merged = document.merge(text, name_or_path); !merged) {
+    return tl::unexpected(merged.error());
+  }
+  return document;
+}
+
+Result<Scenario> make_scenario(const std::string& name, const config::Document& document) {
+  const auto& message = document.as<LabScenario>();
+  auto surgeon = surgeon::make_settings(message.surgeon());
+  if (!surgeon) return tl::unexpected(surgeon.error());
+  auto patient = patient::make_settings(message.patient());
+  if (!patient) return tl::unexpected(patient.error());
+  if (surgeon->agreement != patient->agreement) {
+    return fail("surgeon and patient must have the same coupling settings");
+  }
+  auto phantom = patient::make_phantom(patient->phantom);
+  if (!phantom) return tl::unexpected(phantom.error());
+  auto up = make_path(message.up());
+  if (!up) return tl::unexpected(up.error());
+  auto down = make_path(message.down());
+  if (!down) return tl::unexpected(down.error());
+  auto script = surgeon::load_script(surgeon->master,
+                                     {.hand_stiffness = surgeon->hand.plant.grip.stiffness,
+                                      .round_trip = up->delay.mean + down->delay.mean});
+  if (!script) return tl::unexpected(script.error());
+
+  patient->node.gate = patient::within_tables(
+      patient->node.gate, patient->simulation.surface_offset, phantom->depth_max());
+  return Scenario{.name = name,
+                  .text = document.text(),
+                  .seed = message.seed(),
+                  .coupling = surgeon->coupling,
+                  .link = surgeon->link,
+                  .surgeon = surgeon->node,
+                  .hand = surgeon->hand,
+                  .script = std::move(*script),
+                  .patient = patient->node,
+                  .tissue = patient->simulation,
+                  .phantom = std::move(*phantom),
+                  .estimator = patient->estimator,
+                  .up = std::move(*up),
+                  .down = std::move(*down),
+                  .duration = from_seconds(message.duration_s()),
+                  .bare = false,
+                  .fault = {}};
+}
+
+std::string describe_scenarios() {
+  std::string lines;
+  for (const ScenarioText& known : scenario_texts()) {
+    config::Document document = config::scenario_document();
+    if (!document.merge(known.text, known.name)) continue;  // tests hold them to be readable
+    std::string name{known.name};
+    name.resize(std::max<std::size_t>(name.size() + 2, 16), ' ');
+    lines += name + document.as<LabScenario>().means() + "\n";
+  }
+  return lines;
+}
+
+}  // namespace palp::lab

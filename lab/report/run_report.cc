@@ -1,0 +1,216 @@
+#include "lab/report/run_report.h"
+
+#include <array>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <span>
+
+#include <nlohmann/json.hpp>
+
+#include "common/core/depth_text.h"
+#include "common/core/number_text.h"
+#include "lab/run/digest.h"
+#include "lab/run/metric_table.h"
+#include "patient_site/estimator/depth_summary.h"
+#include "patient_site/phantom.h"
+
+namespace palp::lab {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Site site_of(const DepthEstimate& estimate) {
+  return estimate.lateral < patient::Phantom::kSiteBoundary ? Site::A : Site::B;
+}
+
+const char* name_of(Site site) { return site == Site::A ? "A" : "B"; }
+
+std::vector<DepthEstimate> estimates_at(Site site, std::span<const DepthEstimate> all) {
+  std::vector<DepthEstimate> here;
+  for (const DepthEstimate& estimate : all) {
+    if (site_of(estimate) == site) here.push_back(estimate);
+  }
+  return here;
+}
+
+Json depth_json(const DepthEstimate& estimate, estimator::EstimatorKind kind) {
+  const bool found = estimate.verdict == DepthVerdict::Found;
+  const bool spread = found && estimate.depth_stddev > 0;
+  Json json;
+  json["verdict"] = to_string(estimate.verdict);
+  json["depth_mm"] = found ? number(estimate.depth * 1e3) : Json(nullptr);
+  json["low_mm"] = spread ? number(estimate.depth_low * 1e3) : Json(nullptr);
+  json["high_mm"] = spread ? number(estimate.depth_high * 1e3) : Json(nullptr);
+  json["stddev_mm"] = spread ? number(estimate.depth_stddev * 1e3) : Json(nullptr);
+  const bool excludes = estimate.verdict == DepthVerdict::None && estimate.depth_low > 0;
+  json["excluded_above_mm"] = excludes ? number(estimate.depth_low * 1e3) : Json(nullptr);
+  json["says"] = depth_text_of(estimate);
+  json["h_n"] = number(estimate.hash);
+  json["reason"] = to_string(estimate.reason);
+  json["estimator"] = to_string(kind);
+  return json;
+}
+
+/// The strokes of a site follow each other as its taps do; presses come behind them.
+Json taps_json(const RunResult& result, estimator::EstimatorKind kind) {
+  const std::array<std::vector<DepthEstimate>, 2> strokes{estimates_at(Site::A, result.depths),
+                                                          estimates_at(Site::B, result.depths)};
+  Json taps = Json::array();
+  for (const TapMetrics& tap : result.metrics.taps) {
+    const auto& here = strokes[static_cast<std::size_t>(tap.site)];
+    const auto index = static_cast<std::size_t>(tap.index - 1);
+    Json json;
+    json["site"] = name_of(tap.site);
+    json["index"] = tap.index;
+    const bool known = index < here.size();
+    json["indentation_max_mm"] = known ? number(here[index].indentation_max * 1e3) : Json(nullptr);
+    json["force_max_n"] = known ? number(here[index].force_max) : Json(nullptr);
+    json["stiffness_felt_n_per_m"] = number(tap.stiffness_felt);
+    json["stiffness_true_n_per_m"] = number(tap.stiffness_true);
+    json["depth"] = known ? depth_json(here[index], kind) : Json(nullptr);
+    taps.push_back(json);
+  }
+  return taps;
+}
+
+Json metrics_json(const RunMetrics& m) {
+  Json json;
+  json["unstable"] = m.unstable;
+  json["unstable_reason"] = m.unstable_reason;
+  for (const Metric& metric : metric_table()) {
+    json[std::string{metric.name}] = number(metric.value(m));
+  }
+  return json;
+}
+
+/// printf at the end of a text; a line is never longer than 239 characters.
+[[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...) {
+  std::array<char, 240> line{};
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line.data(), line.size(), format, arguments);
+  va_end(arguments);
+  text += line.data();
+}
+
+/// "-0.3 %" of a ratio; what nothing was measured of is "-".
+std::string percent(double ratio) {
+  std::string text;
+  if (std::isfinite(ratio)) append(text, "%+.1f %%", 100 * ratio);
+  return text.empty() ? "-" : text;
+}
+
+std::string measured(double value, int decimals, const char* unit) {
+  return std::isfinite(value) ? number_text("", value, decimals, unit) : "-";
+}
+
+std::string tap_text(const TapMetrics& tap) {
+  std::string text;
+  append(text, "tap %s%-2d    ", name_of(tap.site), tap.index);
+  if (!std::isfinite(tap.stiffness_felt)) return text + "no contact\n";
+  append(text,
+         "felt %6.1f N/m, true %6.1f N/m (%s), hand to %.2f mm\n",
+         tap.stiffness_felt,
+         tap.stiffness_true,
+         percent(tap.stiffness_felt / tap.stiffness_true - 1).c_str(),
+         tap.hand_max * 1e3);
+  return text;
+}
+
+}  // namespace
+
+std::string run_report(const Scenario& scenario,
+                       const RunResult& result,
+                       const RunAccount& account) {
+  Json json;
+  json["schema"] = "palp.run/1";
+  json["scenario"] = account.scenario;
+  json["seed"] = scenario.seed;
+  json["coupling"] = scenario.coupling.name;
+  json["tissue"] = scenario.phantom.name;
+  json["bare"] = scenario.bare;
+  json["digest"] = hexadecimal(result.digest);
+  json["outcome"] = surgeon::to_string(result.outcome);
+  json["virtual_s"] = seconds(result.virtual_span);
+  json["cpu_s"] = account.cpu;
+  json["wall_s"] = account.wall;
+  json["speed"] = number(seconds(result.virtual_span) / account.cpu);
+  json["records"] = result.records;
+  json.update(metrics_json(result.metrics));
+  json["taps"] = taps_json(result, scenario.estimator.kind);
+  json["depth"] = depth_json(estimator::summarise_depths(estimates_at(Site::B, result.depths)),
+                             scenario.estimator.kind);
+  // A file's name need not be UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string run_summary(const Scenario& scenario,
+                        const RunResult& result,
+                        const RunAccount& account) {
+  std::string text;
+  append(text,
+         "scenario   %s, seed %llu, coupling %s, phantom %s\n",
+         account.scenario.c_str(),
+         static_cast<unsigned long long>(scenario.seed),
+         scenario.coupling.name.c_str(),
+         scenario.phantom.name.c_str());
+  const RunMetrics& m = result.metrics;
+  for (const TapMetrics& tap : m.taps) text += tap_text(tap);
+  for (const DepthEstimate& estimate : result.depths) {
+    append(text,
+           "stroke %s    h %.4f N, %s",
+           name_of(site_of(estimate)),
+           estimate.hash,
+           std::string{to_string(estimate.verdict)}.c_str());
+    if (estimate.verdict == DepthVerdict::Found) append(text, " at %.1f mm", estimate.depth * 1e3);
+    if (estimate.reason != DepthReason::Ok) {
+      append(text, " (%s)", std::string{to_string(estimate.reason)}.c_str());
+    }
+    text += '\n';
+  }
+  append(text, "stability  %s\n", m.unstable ? m.unstable_reason : "stable");
+  text += "taps 2-4   A " + percent(m.tap_error[0]) + ", B " + percent(m.tap_error[1]) +
+          ", ratio " + percent(m.ratio_error) + "; holds A " + percent(m.static_error[0]) + ", B " +
+          percent(m.static_error[1]) + "\n";
+  text += "hand       drag " + measured(m.drag_rms, 3, " N rms") + ", worst step " +
+          measured(m.force_step_10ms, 2, " N in 10 ms") + ", energy out " +
+          measured(m.energy_operator * 1e3, 3, " mJ") + "\n";
+  append(text,
+         "outcome    %s after %.1f s of virtual time in %.2f s of processor time: %.0f times\n",
+         std::string{surgeon::to_string(result.outcome)}.c_str(),
+         seconds(result.virtual_span),
+         account.cpu,
+         seconds(result.virtual_span) / account.cpu);
+  append(text, "digest     %s\n", hexadecimal(result.digest).c_str());
+  return text;
+}
+
+std::string trace_csv(const RunResult& result) {
+  std::string text =
+      "t_s,site,phase,index,hand_mm,tip_mm,force_felt_n,force_true_n,contact_force_n,energy_mj,"
+      "counted,hand_speed_m_per_s,surface_mm\n";
+  constexpr std::array kKinds{"other", "air", "tap", "press", "lift"};
+  for (const RunTick& tick : result.ticks) {
+    append(text,
+           "%.4f,%s,%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%.9g,%.9g\n",
+           tick.at,
+           name_of(tick.phase.site),
+           kKinds[static_cast<std::size_t>(tick.phase.kind)],
+           tick.phase.index,
+           tick.hand * 1e3,
+           tick.tip * 1e3,
+           tick.hand_force,
+           tick.force_true,
+           tick.contact_force,
+           tick.energy_operator * 1e3,
+           tick.counted ? 1 : 0,
+           tick.hand_velocity,
+           tick.surface * 1e3);
+  }
+  return text;
+}
+
+}  // namespace palp::lab

@@ -1,0 +1,51 @@
+#include "lab/run/adversary.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/core/random.h"
+
+namespace palp::lab {
+namespace {
+
+constexpr std::uint64_t kLieStream = 0x6c69'6500'0000ULL;  // "lie"
+constexpr Duration kLieLength = std::chrono::milliseconds{50};
+constexpr double kSurfaceMax = 3e-3;                                            // [m]
+constexpr std::array<double, kModelTerms> kTermMax{0.1, 0.3, 0.1, 0.02, 1e-4};  // [N]
+constexpr double kShareMax = 0.3;  // [-], of what relaxes
+
+}  // namespace
+
+LyingCodec::LyingCodec(std::unique_ptr<link::Codec> codec, std::uint64_t seed, Duration period)
+    : codec_{std::move(codec)},
+      seed_{seed},
+      telegrams_per_lie_{
+          static_cast<std::uint64_t>(std::max<std::int64_t>(1, kLieLength / period))} {}
+
+// NOLINTNEXTLINE(bugprone-exception-escape): copying a payload does not throw
+std::size_t LyingCodec::encode(const link::WireTelegram& telegram,
+                               std::span<std::byte, link::kTelegramSizeMax> out) noexcept {
+  const std::uint64_t lie = told_++ / telegrams_per_lie_;
+  const auto uniform = [&](std::uint64_t which) {
+    return random_uniform(seed_, kLieStream + which, lie);
+  };
+  link::WireTelegram lying = telegram;
+  ModelPayload model;
+  model.version = static_cast<std::uint32_t>(lie + 1);
+  model.surface = kSurfaceMax * (2 * uniform(0) - 1);
+  for (std::size_t term = 0; term < kModelTerms; ++term) {
+    model.c[term] = kTermMax[term] * uniform(1 + term);
+  }
+  for (std::size_t k = 0; k < model.relaxing.size(); ++k) {
+    model.relaxing[k] = kShareMax * uniform(1 + kModelTerms + k);
+  }
+  model.depth_max = 5e-3;
+  lying.telegram.port.payload = model;
+  return codec_->encode(lying, out);
+}
+
+std::optional<link::WireTelegram> LyingCodec::decode(std::span<const std::byte> bytes) noexcept {
+  return codec_->decode(bytes);
+}
+
+}  // namespace palp::lab

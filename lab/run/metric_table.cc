@@ -1,0 +1,52 @@
+#include "lab/run/metric_table.h"
+
+#include <algorithm>
+#include <array>
+
+namespace palp::lab {
+namespace {
+
+using M = RunMetrics;
+
+constexpr std::array kTable{
+    Metric{"tap_a_error", [](const M& m) { return m.tap_error[0]; }},
+    Metric{"tap_b_error", [](const M& m) { return m.tap_error[1]; }},
+    Metric{"tap1_a_error", [](const M& m) { return m.tap1_error[0]; }},
+    Metric{"tap1_b_error", [](const M& m) { return m.tap1_error[1]; }},
+    Metric{"tap2_a_error", [](const M& m) { return m.tap2_error[0]; }},
+    Metric{"tap2_b_error", [](const M& m) { return m.tap2_error[1]; }},
+    Metric{"ratio_error", [](const M& m) { return m.ratio_error; }},
+    Metric{"ratio_true", [](const M& m) { return m.ratio_true; }},
+    Metric{"contrast", [](const M& m) { return m.contrast; }},
+    Metric{"stat_a_error", [](const M& m) { return m.static_error[0]; }},
+    Metric{"stat_b_error", [](const M& m) { return m.static_error[1]; }},
+    Metric{"stat_ratio_error", [](const M& m) { return m.static_ratio_error; }},
+    Metric{"learning_a_s", [](const M& m) { return m.learning[0]; }},
+    Metric{"learning_b_s", [](const M& m) { return m.learning[1]; }},
+    Metric{"force_rms_n", [](const M& m) { return m.force_rms; }},
+    Metric{"drag_rms_n", [](const M& m) { return m.drag_rms; }},
+    Metric{"drag_peak_n", [](const M& m) { return m.drag_peak; }},
+    Metric{"drift_mm", [](const M& m) { return m.drift * 1e3; }},
+    Metric{"energy_operator_mj", [](const M& m) { return m.energy_operator * 1e3; }},
+    Metric{"energy_net_mj", [](const M& m) { return m.energy_net * 1e3; }},
+    Metric{"force_step_10ms_n", [](const M& m) { return m.force_step_10ms; }},
+    Metric{"force_step_event_10ms_n", [](const M& m) { return m.force_step_event; }},
+    Metric{"force_step_guarded_10ms_n", [](const M& m) { return m.force_step_guarded; }},
+    Metric{"force_peak_n", [](const M& m) { return m.force_peak; }},
+    Metric{"contact_force_max_n", [](const M& m) { return m.contact_force_max; }},
+    Metric{"phantom_force_n", [](const M& m) { return m.phantom_force; }},
+    Metric{"stage_speed_max_m_per_s", [](const M& m) { return m.stage_speed_max; }},
+};
+
+}  // namespace
+
+std::span<const Metric> metric_table() noexcept { return kTable; }
+
+std::optional<std::size_t> metric_index(std::string_view name) noexcept {
+  const auto* const found = std::find_if(
+      kTable.begin(), kTable.end(), [&](const Metric& metric) { return metric.name == name; });
+  if (found == kTable.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - kTable.begin());
+}
+
+}  // namespace palp::lab

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "common/core/site_state.h"
+
+/// Judges a run from the plant's true states: how stiff the tissue felt, how much energy came out
+/// of the operator's port, what drifted. Pure functions of the recorded ticks.
+namespace palp::lab {
+
+enum class PhaseKind : std::uint8_t { Other, FreeAir, Tap, PressHold, LiftHold };
+enum class Site : std::uint8_t { A, B };
+
+/// Where in the script a tick lies.
+struct PhaseTag {
+  PhaseKind kind{PhaseKind::Other};
+  Site site{Site::A};
+  int index{};        ///< of the tap (1, 2, ...) or of the press hold (1: shallow, 2: deep)
+  double elapsed{};   ///< [s] since the phase began
+  double duration{};  ///< [s]
+};
+
+/// True states of one 1 kHz tick. Positions are relative to the true surface at rest.
+struct RunTick {
+  double at{};  ///< [s], since the start of the run
+  PhaseTag phase;
+  bool counted{};                ///< the surgeon's site was Engaged or in Hold
+  double hand{};                 ///< [m], x_m
+  double surface{};              ///< [m], where the surface is now, of its place at rest
+  double hand_velocity{};        ///< [m/s]
+  double hand_force{};           ///< [N], F_h as applied
+  double force_true{};           ///< [N], static law of the tissue at the hand's position
+  double contact_force{};        ///< [N], F_c, largest since the last tick
+  double tip{};                  ///< [m], x_s
+  double tip_velocity{};         ///< [m/s], of the stage
+  double tip_lateral{};          ///< [m], of the stage
+  double energy_operator{};      ///< [J], E_op: work of the hand on the device since the start
+  double energy_operator_min{};  ///< [J], least E_op so far, at plant steps
+  double energy_net_min{};       ///< [J], least (E_op - E_tissue) so far
+};
+
+struct MetricsConfig {
+  double force_cap{8.5};  ///< [N], of the haptic device
+  double period{1e-3};    ///< [s]
+  /// Of the blackout and 2 s after it, in seconds of the recorded ticks; equal: there was none.
+  double blackout_from{};  ///< [s]
+  double blackout_to{};    ///< [s]
+};
+
+inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+/// One tap as the surgeon felt it.
+struct TapMetrics {
+  Site site{};
+  int index{};
+  double hand_max{};        ///< [m]
+  double stiffness_felt{};  ///< [N/m], slope of F_h on x_m while loading; NaN: undefined
+  double stiffness_true{};  ///< [N/m], slope of the static law at the same positions
+};
+
+/// Errors are rendered/true - 1 [-]; NaN: undefined.
+struct RunMetrics {
+  bool unstable{};
+  const char* unstable_reason{""};
+  double tap_error[2]{kUndefined, kUndefined};     ///< [-], taps 2-4, sites A and B
+  double tap1_error[2]{kUndefined, kUndefined};    ///< [-]
+  double tap2_error[2]{kUndefined, kUndefined};    ///< [-]
+  double ratio_error{kUndefined};                  ///< [-]
+  double ratio_true{kUndefined};                   ///< [-], of the slopes B/A
+  double contrast{kUndefined};                     ///< [-], (ratio felt - 1)/(ratio true - 1)
+  double static_error[2]{kUndefined, kUndefined};  ///< [-], press holds
+  double static_ratio_error{kUndefined};           ///< [-]
+  /// [s], from the first contact of 0.1 N at a site until the force is right, to 0.02 N or 10 %,
+  /// through 50 ms of contact deeper than 1 mm.
+  double learning[2]{kUndefined, kUndefined};
+  double force_rms{kUndefined};  ///< [N], of felt - true over all taps
+  double drag_rms{kUndefined};   ///< [N]
+  double drag_peak{kUndefined};  ///< [N]
+  double drift{kUndefined};      ///< [m]
+  double energy_operator{};      ///< [J], most the operator ever got
+  double energy_net{};           ///< [J], most excess delivered to the tissue
+  double force_step_10ms{};      ///< [N], worst change of F_h in 10 ms
+  /// [N], the same less what the hand's own motion does: the smaller of the changes of F_h and of
+  /// felt - true, so that a hand that leaves or enters the tissue makes no step by itself.
+  double force_step_event{};
+  /// [N], the same over the whole run, also while the operator waits or aligns: as long as the
+  /// surgeon's process lives and its pedal is down. Not judge()'s: whoever made the ticks knows.
+  double force_step_guarded{};
+  double force_peak{};                 ///< [N]
+  double contact_force_max{};          ///< [N]
+  double phantom_force{kUndefined};    ///< [N], |F_h| in the air in and after a blackout
+  double stage_speed_max{kUndefined};  ///< [m/s], in and after a blackout
+  std::vector<TapMetrics> taps;
+};
+
+[[nodiscard]] RunMetrics judge(const std::vector<RunTick>& ticks, const MetricsConfig& config);
+
+}  // namespace palp::lab

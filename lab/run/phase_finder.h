@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "lab/run/metrics.h"
+#include "surgeon_site/gesture_script.h"
+
+namespace palp::lab {
+
+/// Says to which tap or hold of a script an instant of script time belongs.
+class PhaseFinder {
+ public:
+  /// The script outlives the finder.
+  explicit PhaseFinder(const surgeon::GestureScript& script);
+  [[nodiscard]] PhaseTag at(Duration script_time) noexcept;
+
+ private:
+  struct Entry {
+    Duration began_at{};
+    Duration ends_at{};
+    PhaseTag tag;
+  };
+  std::vector<Entry> entries_;
+  std::size_t present_{};  ///< where the last answer was found: time mostly goes on by one tick
+};
+
+}  // namespace palp::lab

@@ -1,0 +1,314 @@
+#include "lab/run/run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "common/core/denormals.h"
+#include "common/core/mailbox.h"
+#include "common/core/spsc_queue.h"
+#include "common/record/session_writer.h"
+#include "lab/run/phase_finder.h"
+#include "lab/run/simulator.h"
+#include "lab/run/site_process.h"
+#include "lab/run/state_digest.h"
+#include "lab/run/valve.h"
+#include "netem/model/pipe.h"
+#include "patient_site/estimator_worker.h"
+#include "patient_site/tissue_record.h"
+
+namespace palp::lab {
+namespace {
+
+/// Longer than any script plus its re-engagements; a run that hangs must end.
+constexpr Duration kRunMax = std::chrono::hours{5};
+/// What happens after the script: the pedal goes up and the force fades.
+constexpr Duration kAfterScript = std::chrono::milliseconds{500};
+constexpr std::size_t kStepTicks = 10;
+constexpr double kAfterBlackout = 2;  // [s], still judged with it
+constexpr std::size_t kInFlightMax = 4096;
+constexpr std::size_t kContactQueue = 4096;
+constexpr std::uint64_t kTissueStream = 0x7469737375650000;  ///< keeps the sensor's noise apart
+
+/// Both session files of a run, or none.
+class Files final {
+ public:
+  Files(const Scenario& scenario, const RunFiles& files, TimePoint now) {
+    if (scenario.bare) return;
+    const record::McapMap metadata{{"program", "palp-lab"},
+                                   {"scenario", scenario.name},
+                                   {"seed", std::to_string(scenario.seed)},
+                                   {"time", "virtual"}};
+    const std::vector<record::SessionAttachment> attached{
+        {"scenario.textproto", "text/plain", scenario.text}};
+    surgeon_.emplace(files.surgeon != nullptr ? *files.surgeon : null_surgeon_,
+                     record::SessionInfo{link::Role::Surgeon, metadata, attached, now});
+    record::SessionInfo patient_info{link::Role::Patient, metadata, attached, now};
+    patient::describe_tissue(scenario.phantom, scenario.tissue.surface_offset, patient_info);
+    patient_.emplace(files.patient != nullptr ? *files.patient : null_patient_, patient_info);
+  }
+  [[nodiscard]] record::SessionWriter* surgeon() { return surgeon_ ? &*surgeon_ : nullptr; }
+  [[nodiscard]] record::SessionWriter* patient() { return patient_ ? &*patient_ : nullptr; }
+  [[nodiscard]] std::uint64_t records() const {
+    return (surgeon_ ? surgeon_->counts().records() : 0) +
+           (patient_ ? patient_->counts().records() : 0);
+  }
+  void close() {
+    if (surgeon_) surgeon_->close();
+    if (patient_) patient_->close();
+  }
+
+ private:
+  record::NullSink null_surgeon_;
+  record::NullSink null_patient_;
+  std::optional<record::SessionWriter> surgeon_;
+  std::optional<record::SessionWriter> patient_;
+};
+
+/// Writes at once: in virtual time nobody waits for a disk.
+class DirectRecorder final : public record::Recorder {
+ public:
+  DirectRecorder(const Simulator& world, record::SessionWriter* writer)
+      : world_{world}, writer_{writer} {}
+  bool record(const record::Record& record) noexcept override {
+    if (const auto* estimate = std::get_if<DepthEstimate>(&record)) estimates_.push_back(*estimate);
+    return writer_ == nullptr || writer_->write(record, world_.now());
+  }
+  [[nodiscard]] const std::vector<DepthEstimate>& estimates() const { return estimates_; }
+
+ private:
+  const Simulator& world_;
+  record::SessionWriter* writer_;
+  std::vector<DepthEstimate> estimates_;
+};
+
+constexpr Duration kBlackout = std::chrono::seconds{2};
+
+/// Follows the plant's true states.
+class Probe {
+ public:
+  Probe(const Scenario& scenario,
+        const surgeon::SimulatedHand& hand,
+        const patient::SimulatedPhantom& tissue)
+      : scenario_{scenario},
+        hand_{hand},
+        tissue_{tissue},
+        phases_{scenario.script},
+        relaxing_{scenario.phantom.relaxation} {}
+
+  /// `at`: since the start of the run [s].
+  void look(const SurgeonProcess& site, double at, Digest& digest) {
+    const surgeon::SurgeonStatus& status = site.status();
+    const bool guarded = site.pressed();
+    const surgeon::HandTruth hand = hand_.truth();
+    step_max_ = guarded ? std::max(step_max_, force_step(hand.force)) : step_max_;
+    if (!guarded) forces_.clear();
+    const patient::PhantomTruth tissue = tissue_.truth();
+    for (const double state : {hand.position,
+                               hand.velocity,
+                               hand.force,
+                               hand.work,
+                               tissue.position,
+                               tissue.velocity,
+                               tissue.contact_force,
+                               tissue.noisy_force,
+                               tissue.tissue_energy}) {
+      digest.add(state);
+    }
+    const double net = hand.work - tissue.tissue_energy;
+    work_min_ = std::min(work_min_, hand.work);
+    net_min_ = std::min(net_min_, net);
+    // What the hand itself would have felt, had it pressed the tissue.
+    const double depth = hand.position - status.offset - tissue.surface;
+    const double force_true = relaxing_.step(scenario_.phantom.at(status.lateral).force(depth),
+                                             seconds(scenario_.link.period));
+    if (!hand.performing || !site.alive()) return;
+
+    RunTick tick;
+    tick.at = at;
+    tick.phase = phases_.at(hand.script_time);
+    tick.counted = status.state == SiteState::Engaged || status.state == SiteState::Hold;
+    tick.hand = depth;
+    tick.surface = tissue.surface - scenario_.tissue.surface_offset;
+    tick.hand_velocity = hand.velocity;
+    tick.hand_force = hand.force;
+    tick.force_true = force_true;
+    tick.contact_force = tissue.contact_force;
+    tick.tip = tissue.position - tissue.surface;
+    tick.tip_velocity = tissue.velocity;
+    tick.tip_lateral = tissue.lateral;
+    tick.energy_operator = hand.work;
+    tick.energy_operator_min = work_min_;
+    tick.energy_net_min = net_min_;
+    ticks_.push_back(tick);
+  }
+  [[nodiscard]] const std::vector<RunTick>& ticks() const { return ticks_; }
+  [[nodiscard]] std::vector<RunTick> take_ticks() { return std::move(ticks_); }
+  [[nodiscard]] double work_min() const { return work_min_; }  ///< [J], of the whole run
+  [[nodiscard]] double net_min() const { return net_min_; }    ///< [J], of the whole run
+  /// [N], in 10 ms, whatever the operator was doing.
+  [[nodiscard]] double force_step_max() const { return step_max_; }
+
+ private:
+  /// Against 10 ms ago, or the oldest since the force became the site's own.
+  double force_step(double force) {
+    forces_.push_back(force);
+    if (forces_.size() > kStepTicks + 1) forces_.pop_front();
+    return std::abs(force - forces_.front());
+  }
+
+  const Scenario& scenario_;
+  const surgeon::SimulatedHand& hand_;
+  const patient::SimulatedPhantom& tissue_;
+  PhaseFinder phases_;
+  patient::RelaxingForce relaxing_;
+  double work_min_{};          ///< [J]
+  double net_min_{};           ///< [J]
+  std::deque<double> forces_;  ///< [N], newest last
+  double step_max_{};          ///< [N]
+  std::vector<RunTick> ticks_;
+};
+
+/// Makes the one fault of a run happen, and ends it.
+class FaultInjector {
+ public:
+  FaultInjector(const Fault& fault, SurgeonProcess& surgeon, PatientProcess& patient)
+      : fault_{fault}, surgeon_{surgeon}, patient_{patient} {}
+
+  void step(TimePoint now, const surgeon::HandTruth& hand) {
+    if (fault_.kind == FaultKind::None) return;
+    if (!began_at_ && hand.performing && hand.script_time >= fault_.at_script_time) {
+      began_at_ = now;
+      begin(now);
+    } else if (began_at_ && !over_ && now - *began_at_ >= fault_.amount) {
+      over_ = true;
+      end(now);
+    }
+  }
+
+ private:
+  void begin(TimePoint now) {
+    if (fault_.kind == FaultKind::KillSurgeon) surgeon_.kill(now);
+    if (fault_.kind == FaultKind::KillPatient) patient_.kill(now);
+    if (fault_.kind == FaultKind::StepSurgeonClock) surgeon_.clock().ahead += fault_.amount;
+    if (fault_.kind == FaultKind::StepPatientClock) patient_.clock().ahead += fault_.amount;
+    if (fault_.kind == FaultKind::LiftPedal) surgeon_.hand().lift_pedal(true);
+    surgeon_.hand().fail(fault_.kind);
+    patient_.devices().fail(fault_.kind);
+  }
+  void end(TimePoint now) {
+    if (fault_.kind == FaultKind::KillSurgeon) surgeon_.start(now);
+    if (fault_.kind == FaultKind::KillPatient) patient_.start(now);
+    if (fault_.kind == FaultKind::LiftPedal) surgeon_.hand().lift_pedal(false);
+    surgeon_.hand().fail(FaultKind::None);
+    patient_.devices().fail(FaultKind::None);
+  }
+
+  Fault fault_;
+  SurgeonProcess& surgeon_;
+  PatientProcess& patient_;
+  std::optional<TimePoint> began_at_;
+  bool over_{};
+};
+
+void drop_all(SpscQueue<ContactSample>& queue) {
+  ContactSample sample;
+  while (queue.try_dequeue(sample)) continue;
+}
+
+patient::SimulatedPhantomConfig seeded(patient::SimulatedPhantomConfig config, std::uint64_t seed) {
+  config.seed = seed ^ kTissueStream;
+  return config;
+}
+
+}  // namespace
+
+RunResult simulate(const Scenario& scenario, const RunFiles& files) {
+  const DenormalFlush flush;
+  Simulator world;
+  const TimePoint start = world.now();
+  Digest digest;
+  Files session_files{scenario, files, start};
+
+  // The path.
+  netem::Pipe pipe{scenario.up, scenario.down, scenario.seed, kInFlightMax, start};
+  bool shut = false;
+
+  // The surgeon's site.
+  surgeon::SimulatedHand hand{scenario.hand, scenario.script};
+  DirectRecorder surgeon_file{world, session_files.surgeon()};
+  DigestRecorder surgeon_recorder{digest, &surgeon_file};
+  SurgeonProcess surgeon{
+      scenario, hand, std::make_unique<Valve>(pipe.surgeon_end(), shut), surgeon_recorder};
+
+  // The patient's site.
+  patient::SimulatedPhantom tissue{scenario.phantom, seeded(scenario.tissue, scenario.seed)};
+  DirectRecorder patient_file{world, session_files.patient()};
+  DigestRecorder patient_recorder{digest, &patient_file};
+  SpscQueue<ContactSample> contact{kContactQueue};  // one thread is both writer and reader here
+  Mailbox<DepthEstimate> depth;
+  PatientProcess patient{scenario,
+                         {tissue, patient_recorder, contact, depth},
+                         std::make_unique<Valve>(pipe.patient_end(), shut)};
+  patient::EstimatorWorker estimator{
+      estimator::with_sensor(scenario.estimator, tissue.sensor_facts()),
+      {contact, depth, patient_recorder}};
+  surgeon.start(start);
+  patient.start(start);
+
+  Probe probe{scenario, hand, tissue};
+  FaultInjector fault_injector{scenario.fault, surgeon, patient};
+  std::optional<TimePoint> finished_at;
+  std::optional<TimePoint> dark_from;
+  const Duration period = scenario.link.period;
+  world.every({.period = period}, [&](TimePoint now) { surgeon.tick(now); });
+  world.every({.period = period}, [&](TimePoint now) { patient.tick(now); });
+  world.every({.period = period}, [&](TimePoint now) {
+    if (scenario.depths) {
+      estimator.drain();
+    } else {
+      drop_all(contact);
+    }
+    const surgeon::HandTruth truth = hand.truth();
+    if (scenario.blackout_at_script_time > Duration{0}) {
+      if (!dark_from && truth.script_time >= scenario.blackout_at_script_time) dark_from = now;
+      shut = dark_from && now - *dark_from < kBlackout;
+    }
+    probe.look(surgeon, seconds(now - start), digest);
+    fault_injector.step(now, truth);
+    if (hand.finished() && !finished_at) finished_at = now;
+  });
+
+  const Duration limit = scenario.duration > Duration{0} ? scenario.duration : kRunMax;
+  while (world.now() - start < limit &&
+         !(finished_at && world.now() - *finished_at > kAfterScript)) {
+    world.run_for(std::min<Duration>(std::chrono::milliseconds{100}, limit));
+  }
+  session_files.close();
+
+  RunResult result;
+  result.digest = digest.value();
+  result.began_at = start;
+  result.virtual_span = world.now() - start;
+  result.outcome = hand.progress().outcome;
+  MetricsConfig judging{.force_cap = scenario.hand.force_max, .period = seconds(period)};
+  if (dark_from) {
+    judging.blackout_from = seconds(*dark_from - start);
+    judging.blackout_to = judging.blackout_from + seconds(kBlackout) + kAfterBlackout;
+  }
+  result.metrics = judge(probe.ticks(), judging);
+  result.metrics.force_step_guarded = probe.force_step_max();
+  // Energy has no script: what the hand gets while it waits or lets go counts too.
+  result.metrics.energy_operator = std::max(0.0, -probe.work_min());
+  result.metrics.energy_net = std::max(0.0, -probe.net_min());
+  result.ticks = probe.take_ticks();
+  result.depths = patient_file.estimates();
+  result.surgeon_link = surgeon.health(world.now());
+  result.patient_link = patient.health(world.now());
+  result.records = session_files.records();
+  return result;
+}
+
+}  // namespace palp::lab

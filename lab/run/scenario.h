@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/core/time.h"
+#include "common/coupling/any_coupling.h"
+#include "common/link/link.h"
+#include "lab/run/fault.h"
+#include "netem/model/impairment.h"
+#include "patient_site/estimator/depth_estimator.h"
+#include "patient_site/patient_node.h"
+#include "patient_site/phantom.h"
+#include "patient_site/simulated_phantom.h"
+#include "surgeon_site/gesture_script.h"
+#include "surgeon_site/simulated_hand.h"
+#include "surgeon_site/surgeon_node.h"
+
+namespace palp::lab {
+
+/// Everything that decides a run: two runs of equal scenarios give equal bits.
+struct Scenario {
+  std::string name;
+  std::string text{};  ///< the document it was made of
+  std::uint64_t seed{1};
+  coupling::CouplingConfig coupling;
+  link::LinkConfig link;
+  surgeon::SurgeonConfig surgeon;
+  surgeon::SimulatedHandConfig hand;
+  surgeon::GestureScript script;
+  patient::PatientConfig patient;
+  patient::SimulatedPhantomConfig tissue;
+  patient::Phantom phantom;
+  estimator::DepthEstimatorConfig estimator;
+  netem::Impairment up;    ///< surgeon to patient
+  netem::Impairment down;  ///< patient to surgeon
+  Duration duration{};     ///< virtual; 0: until the script is done
+  bool bare{};             ///< telegrams as raw structs and no session log: the laws alone, fast
+  bool depths{true};       ///< the estimator of the inclusion's depth runs too
+  bool lying{};            ///< the patient site's models are random (adversary.h)
+  /// > 0: nothing passes for 2 s from there on.
+  Duration blackout_at_script_time{};
+  Fault fault;  ///< with one, sites meet by the handshake
+};
+
+}  // namespace palp::lab

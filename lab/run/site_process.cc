@@ -1,0 +1,156 @@
+#include "lab/run/site_process.h"
+
+#include <cmath>
+#include <utility>
+
+#include "common/link/codec_wire.h"
+#include "lab/run/adversary.h"
+
+namespace palp::lab {
+namespace {
+
+std::unique_ptr<link::Codec> make_codec(const Scenario& scenario) {
+  if (scenario.bare) return std::make_unique<link::RawCodec>();
+  return std::make_unique<link::WireCodec>();
+}
+
+std::unique_ptr<link::Codec> patient_codec(const Scenario& scenario) {
+  auto codec = make_codec(scenario);
+  if (!scenario.lying) return codec;
+  return std::make_unique<LyingCodec>(std::move(codec), scenario.seed, scenario.link.period);
+}
+
+}  // namespace
+
+surgeon::HandState HandAtClock::read(TimePoint now) noexcept {
+  surgeon::HandState state = hand_.read(clock_.world(now));
+  state.sampled_at = clock_.local(state.sampled_at);
+  if (lifted_) state.pedal_held = false;
+  held_ = state.pedal_held;
+  if (failing_ == FaultKind::HandNotFinite) state.position = std::nan("");
+  if (failing_ == FaultKind::HandFaulted) state.faulted = true;
+  if (failing_ == FaultKind::EmergencyStop) state.emergency_stop = true;
+  return state;
+}
+
+patient::StageState PhantomAtClock::read(TimePoint now) noexcept {
+  patient::StageState state = phantom_.read(clock_.world(now));
+  state.sampled_at = clock_.local(state.sampled_at);
+  if (failing_ == FaultKind::StageFaulted) state.faulted = true;
+  return state;
+}
+
+void PhantomAtClock::move_to(const patient::StageTarget& target) noexcept {
+  if (failing_ == FaultKind::StageStuck) return phantom_.halt();
+  phantom_.move_to(target);
+}
+
+std::optional<patient::ForceSample> PhantomAtClock::sample(TimePoint now) noexcept {
+  auto sample = phantom_.sample(clock_.world(now));
+  if (!sample || failing_ == FaultKind::SensorSilent) return std::nullopt;
+  constexpr double kOffset = 1;  // [N]
+  sample->sampled_at = clock_.local(sample->sampled_at);
+  if (failing_ == FaultKind::SensorStuck) sample->force = reading_;
+  reading_ = sample->force;
+  if (failing_ == FaultKind::SensorOffset) sample->force += kOffset;
+  if (failing_ == FaultKind::SensorNotFinite) sample->force = std::nan("");
+  return sample;
+}
+
+SurgeonProcess::Running::Running(SurgeonProcess& owner)
+    : link{owner.scenario_.link, make_codec(owner.scenario_)},
+      law{coupling::make_surgeon_coupling(owner.scenario_.coupling).value()},
+      node{owner.scenario_.surgeon, {owner.device_, law, link, owner.recorder_}} {}
+
+SurgeonProcess::SurgeonProcess(const Scenario& scenario,
+                               surgeon::SimulatedHand& hand,
+                               std::unique_ptr<link::Transport> end,
+                               record::Recorder& recorder)
+    : scenario_{scenario},
+      hand_{hand},
+      session_setup_{scenario, link::Role::Surgeon, std::move(end)},
+      device_{hand, session_setup_.clock()},
+      recorder_{recorder} {}
+
+void SurgeonProcess::start(TimePoint now) {
+  parts_.emplace(*this);
+  session_setup_.start(parts_->link, now);
+}
+
+void SurgeonProcess::kill(TimePoint now) {
+  parts_.reset();
+  session_setup_.kill(now);
+  const double offset = status_.offset;
+  const double lateral = status_.lateral;
+  status_ = {};
+  status_.offset = offset;
+  status_.lateral = lateral;
+}
+
+void SurgeonProcess::tick(TimePoint now) {
+  if (!parts_) {
+    // A device that nobody writes to any more lets go by itself.
+    (void)hand_.read(now);
+    hand_.apply(0);
+    hand_.show({});
+    session_setup_.lose(now);
+    return;
+  }
+  parts_->node.tick(session_setup_.clock().local(now));
+  session_setup_.step(now);
+  status_ = parts_->node.status().get();
+}
+
+link::LinkHealth SurgeonProcess::health(TimePoint now) const noexcept {
+  return parts_ ? parts_->link.health(session_setup_.clock().local(now)) : link::LinkHealth{};
+}
+
+PatientProcess::Running::Running(PatientProcess& owner)
+    : link{owner.scenario_.link, patient_codec(owner.scenario_)},
+      law{coupling::make_patient_coupling(owner.scenario_.coupling,
+                                          patient::facts_of(owner.scenario_.tissue))
+              .value()},
+      node{owner.scenario_.patient,
+           {owner.device_,
+            owner.device_,
+            law,
+            link,
+            owner.around_.recorder,
+            owner.around_.contact,
+            owner.around_.depth}} {}
+
+PatientProcess::PatientProcess(const Scenario& scenario,
+                               const Surroundings& around,
+                               std::unique_ptr<link::Transport> end)
+    : scenario_{scenario},
+      around_{around},
+      session_setup_{scenario, link::Role::Patient, std::move(end)},
+      device_{around.phantom, session_setup_.clock()} {}
+
+void PatientProcess::start(TimePoint now) {
+  parts_.emplace(*this);
+  session_setup_.start(parts_->link, now);
+}
+
+void PatientProcess::kill(TimePoint now) {
+  parts_.reset();
+  session_setup_.kill(now);
+}
+
+void PatientProcess::tick(TimePoint now) {
+  if (!parts_) {
+    // The drive holds the stage where it stands.
+    (void)around_.phantom.read(now);
+    around_.phantom.halt();
+    session_setup_.lose(now);
+    return;
+  }
+  parts_->node.tick(session_setup_.clock().local(now));
+  session_setup_.step(now);
+}
+
+link::LinkHealth PatientProcess::health(TimePoint now) const noexcept {
+  return parts_ ? parts_->link.health(session_setup_.clock().local(now)) : link::LinkHealth{};
+}
+
+}  // namespace palp::lab

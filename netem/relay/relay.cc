@@ -1,0 +1,293 @@
+#include "netem/relay/relay.h"
+
+#include <algorithm>
+
+#include <poll.h>
+#include <time.h>
+
+#include "common/io/realtime/realtime.h"
+
+namespace palp::netem {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+/// The kernel wakes a sleeper some 10-50 us late, one that slept deeply later still; so much of a
+/// wait is spun instead: what the late ones of the last wakings make advisable, within these.
+constexpr Duration kSpinMin = microseconds{60};
+constexpr Duration kSpinMax = microseconds{600};
+constexpr Duration kSpinSpare = microseconds{20};
+constexpr std::int64_t kSpinMemory = 128;  ///< wakings
+/// After so long a rest the caches have forgotten how to send: 50 us instead of 8.
+constexpr Duration kCold = milliseconds{1};
+constexpr Duration kLate = microseconds{60};
+/// A send call on a busy machine costs about 8 us; more is a disturbance, not a cost to lead by.
+constexpr Duration kLeadMax = microseconds{20};
+constexpr Duration kLeadStep{50};
+/// Nothing is sent earlier than this before its time.
+constexpr Duration kBunchLeadMax = microseconds{50};
+/// A SCHED_FIFO thread that is awake for 95 % of a second is stopped for the rest of it by the
+/// kernel: under a flood it naps before.
+constexpr Duration kAwakeMax = microseconds{2000};
+constexpr Duration kNap = microseconds{120};
+/// Batches of one drain: bounds the time the other socket and the releases wait.
+constexpr int kBatchesPerDrain = 4;
+constexpr Duration kShowEvery = milliseconds{250};
+/// Commands from outside are looked for at least so often.
+constexpr Duration kRestMax = milliseconds{10};
+
+timespec to_timespec(Duration span) noexcept {
+  const auto whole = std::chrono::duration_cast<std::chrono::seconds>(span);
+  return {.tv_sec = whole.count(), .tv_nsec = (span - whole).count()};
+}
+
+}  // namespace
+
+Relay::Relay(const RelayConfig& config)
+    : client_side_{DatagramSocket::bound(config.listen, config.datagram_max)},
+      server_side_{DatagramSocket::connected(config.forward, config.datagram_max)},
+      forward_{config.forward},
+      own_ends_{CapturedEnd{client_side_.local()}, CapturedEnd{server_side_.local()}},
+      start_{monotonic_now()},
+      up_{config.up, config.seed, Direction::Up, config.in_flight_max, start_, config.datagram_max},
+      down_{config.down,
+            config.seed,
+            Direction::Down,
+            config.in_flight_max,
+            start_,
+            config.datagram_max},
+      stop_descriptor_{config.stop_descriptor},
+      priority_{config.priority},
+      spin_{kSpinMin},
+      awake_since_{start_} {
+  waiting_.reserve(64);
+}
+
+bool Relay::serve(Duration span) {
+  if (priority_ > 0) {
+    real_time_ = io::request_realtime(priority_, false, io::read_realtime_limits()).priority > 0;
+    priority_ = 0;
+  }
+  const TimePoint until = monotonic_now() + span;
+  Readable readable{.client_side = true, .server_side = true};
+  for (;;) {
+    recording_on_ = recording.wanted.load(std::memory_order_acquire);
+    take_commands(monotonic_now());
+    drain(readable);
+    const TimePoint now = monotonic_now();
+    tell_laws(now);
+    release(Direction::Up, now);
+    release(Direction::Down, now);
+    rebind_if_asked();
+    if (stopped_) return false;
+    if (now >= until) return true;
+    if (now >= show_at_) show(now);
+    readable = rest(now, until);
+  }
+}
+
+RelayTraffic Relay::traffic(Direction direction) const {
+  RelayTraffic traffic = traffic_[static_cast<std::size_t>(direction)];
+  traffic.socket_errors =
+      direction == Direction::Up ? server_side_.errors() : client_side_.errors();
+  return traffic;
+}
+
+void Relay::drain(Readable readable) noexcept {
+  for (int batch = 0; readable.client_side && batch < kBatchesPerDrain; ++batch) {
+    const auto datagrams = client_side_.receive();
+    if (datagrams.empty()) break;
+    client_ = client_side_.sender_of_last();
+    push(Direction::Up, datagrams);
+    if (datagrams.size() < kDatagramBatch) break;
+  }
+  for (int batch = 0; readable.server_side && batch < kBatchesPerDrain; ++batch) {
+    const auto datagrams = server_side_.receive();
+    push(Direction::Down, datagrams);
+    if (datagrams.size() < kDatagramBatch) break;
+  }
+}
+
+void Relay::push(Direction direction, std::span<const ReceivedDatagram> datagrams) noexcept {
+  Channel& channel = way(direction);
+  const Crossing from = recording_on_ ? crossing(direction == Direction::Up ? 0 : 1) : Crossing{};
+  for (const ReceivedDatagram& datagram : datagrams) {
+    const auto decisions = channel.push(datagram.bytes, datagram.arrived_at, datagram.tos);
+    if (!recording_on_) continue;
+    recording.decided(decisions, direction);
+    recording.crossed(from, datagram.bytes, datagram.arrived_at, false, datagram.tos);
+  }
+}
+
+Crossing Relay::crossing(std::uint8_t side) const noexcept {
+  const CapturedEnd peer{side == 1 ? forward_ : client_.value_or(io::Endpoint{})};
+  return {.own = own_ends_[side], .peer = peer, .side = side};
+}
+
+/// Changes whose time has come act on what arrives from now on.
+void Relay::take_commands(TimePoint now) {
+  RelayCommand command;
+  while (waiting_.size() < waiting_.capacity() && commands.try_dequeue(command)) {
+    waiting_.push_back(std::move(command));
+  }
+  for (std::size_t i = 0; i < waiting_.size();) {
+    if (waiting_[i].at > now) {
+      ++i;
+      continue;
+    }
+    way(waiting_[i].direction).apply(waiting_[i].change, now);
+    waiting_[i].at = now;
+    tell_laws(now);
+    // What the change replaced is freed by the other thread, or here if it does not keep up.
+    (void)spent.try_enqueue(std::move(waiting_[i]));
+    waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
+void Relay::tell_laws(TimePoint now) noexcept {
+  law_numbers[0].store(up_.impaired_path().law_number(now), std::memory_order_relaxed);
+  law_numbers[1].store(down_.impaired_path().law_number(now), std::memory_order_relaxed);
+}
+
+/// How long before `next` to begin, so that what leaves at `next` is on time. Of several that are
+/// due together, sent one after the other, the middle one is: the error of the first and of the
+/// last is then the least it can be.
+Duration Relay::lead(Direction direction, TimePoint next) const noexcept {
+  const std::size_t together =
+      channel(direction).impaired_path().in_line_by(next + lead_, kDatagramBatch);
+  if (together < 2) return lead_;
+  return std::min(lead_ * static_cast<std::int64_t>(together + 1) / 2, kBunchLeadMax);
+}
+
+/// Sends what is due, in batches: their bytes stay where they are until the next push.
+void Relay::release(Direction direction, TimePoint now) noexcept {
+  Channel& channel = way(direction);
+  DatagramSocket& socket = direction == Direction::Up ? server_side_ : client_side_;
+  const bool known = direction == Direction::Up || client_.has_value();
+  const io::Endpoint* to = direction == Direction::Down && client_ ? &*client_ : nullptr;
+  const Crossing onto = recording_on_ ? crossing(direction == Direction::Up ? 1 : 0) : Crossing{};
+  TimePoint before = now;
+  for (auto next = channel.next_release(); next; next = channel.next_release()) {
+    const TimePoint due = before + lead(direction, *next);
+    std::size_t count = 0;
+    while (count < kDatagramBatch) {
+      const auto popped = channel.pop_in_place(due);
+      if (!popped) break;
+      leaving_[count] = popped->decision;
+      outgoing_[count] = {popped->bytes, popped->decision.tos};
+      ++count;
+    }
+    if (count == 0) return;
+    const std::size_t sent = known ? socket.send(std::span{outgoing_}.first(count), to) : 0;
+    traffic_[static_cast<std::size_t>(direction)].unsent += count - sent;
+    account(direction, sent, before);
+    if (recording_on_) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (leaving_[i].open) recording.left(leaving_[i], direction);
+        if (i < sent) {
+          recording.crossed(onto, outgoing_[i].bytes, monotonic_now(), true, outgoing_[i].tos);
+        }
+      }
+    }
+    if (count < kDatagramBatch) return;
+    before = monotonic_now();
+  }
+}
+
+void Relay::account(Direction direction, std::size_t sent, TimePoint before) noexcept {
+  if (sent == 0) return;
+  RelayTraffic& traffic = traffic_[static_cast<std::size_t>(direction)];
+  const TimePoint after = monotonic_now();
+  traffic.forwarded += sent;
+  const Duration each = (after - before) / static_cast<std::int64_t>(sent);
+  for (std::size_t i = 0; i < sent; ++i) {
+    const TimePoint left = before + each * static_cast<std::int64_t>(i + 1);
+    traffic.delay.record(left - leaving_[i].arrived_at);
+    const Duration late = left - leaving_[i].released_at;
+    traffic.release_error.record(late < Duration{} ? -late : late);
+    if (late > kLate) ++traffic.late_releases;
+  }
+  // A step up or down at each call ends where half of the calls take longer.
+  lead_ += each > lead_ ? kLeadStep : -kLeadStep;
+  lead_ = std::clamp(lead_, Duration{}, kLeadMax);
+}
+
+/// As a router that forgets a mapping: the server sees another port, and what it sends to the old
+/// one is lost.
+void Relay::rebind_if_asked() {
+  const std::uint64_t asked = up_.impaired_path().rebinds() + down_.impaired_path().rebinds();
+  if (asked == rebinds_) return;
+  rebinds_ = asked;
+  server_side_.reconnect(forward_);
+  own_ends_[1] = CapturedEnd{server_side_.local()};
+}
+
+/// Waits in the kernel until something arrives or shortly before the next release; then it looks
+/// without waiting, which is the spin.
+Relay::Readable Relay::rest(TimePoint now, TimePoint until) noexcept {
+  TimePoint next = std::min(until, now + kRestMax);
+  for (const Direction direction : {Direction::Up, Direction::Down}) {
+    const auto release = way(direction).next_release();
+    if (release) next = std::min(next, *release - lead(direction, *release));
+  }
+  if (real_time_ && now - awake_since_ > kAwakeMax) {
+    const timespec nap = to_timespec(kNap);
+    ::clock_nanosleep(CLOCK_MONOTONIC, 0, &nap, nullptr);
+    awake_since_ = monotonic_now();
+    return {.client_side = true, .server_side = true};
+  }
+  std::array<pollfd, 3> watched{{{client_side_.descriptor(), POLLIN, 0},
+                                 {server_side_.descriptor(), POLLIN, 0},
+                                 {stop_descriptor_, POLLIN, 0}}};
+  const TimePoint wake = std::max(next - spin_, now);
+  const timespec wait = to_timespec(wake - now);
+  const int ready = ::ppoll(watched.data(), watched.size(), &wait, nullptr);
+  const bool slept = wait.tv_sec > 0 || wait.tv_nsec > 0;
+  if (slept) {
+    const TimePoint woken = monotonic_now();
+    if (woken - now > kNap / 4) awake_since_ = woken;
+    if (ready == 0 && woken - now > kCold) warm();
+    if (ready == 0) learn_spin(monotonic_now() - wake);
+  }
+  if (ready <= 0) return {};
+  stopped_ = (watched[2].revents & POLLIN) != 0;
+  return {.client_side = watched[0].revents != 0, .server_side = watched[1].revents != 0};
+}
+
+/// Both ways: which of them is next may change till then.
+void Relay::warm() noexcept {
+  if (up_.next_release()) server_side_.warm(nullptr);
+  if (down_.next_release() && client_) client_side_.warm(&*client_);
+}
+
+/// Up at once, down slowly.
+void Relay::learn_spin(Duration late) noexcept {
+  const Duration wanted = std::clamp(late + kSpinSpare, kSpinMin, kSpinMax);
+  spin_ = wanted > spin_ ? wanted : spin_ - (spin_ - wanted) / kSpinMemory;
+}
+
+void Relay::show(TimePoint now) noexcept {
+  show_at_ = now + kShowEvery;
+  RelayStatus shown;
+  shown.at = now;
+  if (client_) shown.client = *client_;
+  for (const Direction direction : {Direction::Up, Direction::Down}) {
+    const auto i = static_cast<std::size_t>(direction);
+    const Channel& channel = this->channel(direction);
+    const RelayTraffic& traffic = traffic_[i];
+    shown.ways[i] = {
+        .counters = channel.counters(),
+        .forwarded = traffic.forwarded,
+        .late_releases = traffic.late_releases,
+        .socket_errors = direction == Direction::Up ? server_side_.errors() : client_side_.errors(),
+        .changes = channel.impaired_path().changes_applied(),
+        .in_flight = channel.in_flight(),
+        .delay_p50 = traffic.delay.quantile(0.5),
+        .delay_p99 = traffic.delay.quantile(0.99),
+        .error_p99 = traffic.release_error.quantile(0.99)};
+  }
+  status.put(shown);
+}
+
+}  // namespace palp::netem

@@ -1,0 +1,141 @@
+#include "netem/relay/relay_control.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "common/io/net/endpoint.h"
+#include "common/io/process/system_text.h"
+
+namespace palp::netem {
+namespace {
+
+constexpr std::size_t kCallersMax = 64;
+constexpr std::size_t kLineMax = std::size_t{1} << 20U;  ///< [bytes]
+constexpr std::string_view kUnix = "unix:";
+
+Result<io::Descriptor> listening(int family, const sockaddr* address, socklen_t size) {
+  io::Descriptor descriptor{::socket(family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  const int on = 1;
+  if (family != AF_UNIX) {
+    ::setsockopt(descriptor.number(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  }
+  if (!descriptor.valid() || ::bind(descriptor.number(), address, size) != 0 ||
+      ::listen(descriptor.number(), kCallersMax) != 0) {
+    return fail_to_reach(io::system_text(errno));
+  }
+  return descriptor;
+}
+
+/// Whether a socket lies at `local` that nobody listens on any more: a killed program's.
+bool abandoned(const sockaddr_un& local) {
+  struct stat there {};
+  if (::lstat(local.sun_path, &there) != 0 || !S_ISSOCK(there.st_mode)) return false;
+  const io::Descriptor caller{::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+  return ::connect(caller.number(), reinterpret_cast<const sockaddr*>(&local), sizeof local) != 0 &&
+         errno == ECONNREFUSED;
+}
+
+bool has_gone(const io::Descriptor& caller) {
+  pollfd state{caller.number(), 0, 0};
+  return ::poll(&state, 1, 0) > 0 && (state.revents & (POLLHUP | POLLERR)) != 0;
+}
+
+/// A caller that does not read loses its answers, not our time.
+void tell(const io::Descriptor& caller, std::string text) {
+  text += '\n';
+  (void)!::send(caller.number(), text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+}
+
+}  // namespace
+
+RelayControl::RelayControl(io::Descriptor descriptor, std::string address, std::string path)
+    : descriptor_{std::move(descriptor)}, address_{std::move(address)}, path_{std::move(path)} {}
+
+RelayControl::~RelayControl() {
+  if (descriptor_.valid() && !path_.empty()) ::unlink(path_.c_str());
+}
+
+Result<RelayControl> RelayControl::listen(const std::string& address) {
+  if (address.starts_with(kUnix)) {
+    sockaddr_un local{};
+    const std::string path = address.substr(kUnix.size());
+    local.sun_family = AF_UNIX;
+    if (path.empty() || path.size() >= sizeof local.sun_path) {
+      return fail("'" + address + "': expected unix:PATH of at most 107 characters");
+    }
+    std::copy(path.begin(), path.end(), local.sun_path);
+    if (abandoned(local)) ::unlink(local.sun_path);
+    // The sockets API takes every family through this one type.
+    auto descriptor = listening(AF_UNIX, reinterpret_cast<const sockaddr*>(&local), sizeof local);
+    if (!descriptor) return fail("'" + address + "'", descriptor.error());
+    return RelayControl{*std::move(descriptor), address, path};
+  }
+  const auto local = io::resolve_endpoint(address);
+  if (!local) return tl::unexpected<Error>(local.error());
+  if (!local->loopback()) return fail("'" + address + "' is not a loopback address");
+  auto descriptor = listening(local->family(), local->address(), local->size());
+  if (!descriptor) return fail("'" + address + "'", descriptor.error());
+  sockaddr_storage bound{};
+  socklen_t size = sizeof bound;
+  ::getsockname(descriptor->number(), reinterpret_cast<sockaddr*>(&bound), &size);
+  return RelayControl{*std::move(descriptor), io::Endpoint{&bound, size}.to_string(), {}};
+}
+
+void RelayControl::serve(const Answer& answer) {
+  while (callers_.size() < kCallersMax) {
+    io::Descriptor caller{
+        ::accept4(descriptor_.number(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
+    if (!caller.valid()) break;
+    callers_.push_back({std::move(caller), {}});
+  }
+  std::erase_if(callers_, [&](Caller& caller) { return !serve(caller, answer); });
+}
+
+/// @returns false: it is gone.
+bool RelayControl::serve(Caller& caller, const Answer& answer) {
+  std::array<char, 4096> bytes{};
+  while (!caller.silent) {
+    const ssize_t got =
+        ::recv(caller.descriptor.number(), bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (got < 0) return errno == EAGAIN || errno == EINTR;
+    caller.text.append(bytes.data(), static_cast<std::size_t>(got));
+    caller.silent = got == 0;
+    if (caller.silent) caller.text += '\n';
+    take_lines(caller, answer);
+    if (caller.text.size() > kLineMax) return false;
+  }
+  return !caller.owed.empty() && !has_gone(caller.descriptor);
+}
+
+void RelayControl::take_lines(Caller& caller, const Answer& answer) {
+  std::size_t begin = 0;
+  for (std::size_t end = caller.text.find('\n'); end != std::string::npos;
+       end = caller.text.find('\n', begin)) {
+    const std::string line = caller.text.substr(begin, end - begin);
+    begin = end + 1;
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const std::uint64_t number = ++lines_;
+    if (const auto reply = answer(line, number)) {
+      tell(caller.descriptor, *reply);
+    } else {
+      caller.owed.push_back(number);
+    }
+  }
+  caller.text.erase(0, begin);
+}
+
+void RelayControl::reply(std::uint64_t number, const std::string& text) {
+  for (Caller& caller : callers_) {
+    if (std::erase(caller.owed, number) > 0) return tell(caller.descriptor, text);
+  }
+}
+
+}  // namespace palp::netem

@@ -1,0 +1,131 @@
+#include "site_program/site_report.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "common/config/report.h"
+#include "common/io/process/diagnostics.h"
+
+namespace palp::site_program {
+namespace {
+
+using nlohmann::ordered_json;
+
+double microseconds(Duration span) { return static_cast<double>(span.count()) * 1e-3; }
+
+ordered_json milliseconds(const std::optional<Duration>& span) {
+  if (!span) return nullptr;
+  return static_cast<double>(span->count()) * 1e-6;
+}
+
+ordered_json records_json(const RecordAccount& account) {
+  ordered_json json;
+  for (std::size_t type = 0; type < record::kRecordNames.size(); ++type) {
+    json[record::kRecordNames[type]] = account.counts.by_type[type];
+  }
+  return json;
+}
+
+/// On the link and beside it, in one: datagrams that were of no use to this site.
+ordered_json rejected_json(const link::LinkHealth& link, const link::SessionCounters& noise) {
+  return {{"malformed", link.malformed + noise.malformed},
+          {"foreign", link.foreign + noise.foreign},
+          {"replayed", link.replayed},
+          {"too_old", link.too_old},
+          {"forged", link.forged}};
+}
+
+/// null where there never was an estimate.
+ordered_json clock_json(const std::optional<link::LinkHealth>& link) {
+  if (!link) return nullptr;
+  const link::ClockOffset& clock = *link->peer_clock;
+  return {{"offset_ms", milliseconds(clock.offset)},
+          {"uncertainty_ms", milliseconds(clock.uncertainty)},
+          {"skew_ppm", clock.skew * 1e6},
+          {"delay_out_ms", milliseconds(link->delay_out)},
+          {"delay_in_ms", milliseconds(link->delay_in)}};
+}
+
+}  // namespace
+
+void RoundTrips::add(const link::LinkHealth& link) noexcept {
+  if (link.peer_clock) clocked_ = link;
+  if (link.state != LinkState::Live || link.round_trip <= Duration{0}) return;
+  all_.record(link.round_trip);
+  least_ = std::min(least_.value_or(Duration::max()), link.round_trip_min);
+}
+
+std::optional<Duration> RoundTrips::median() const noexcept {
+  if (all_.count() == 0) return std::nullopt;
+  return all_.quantile(0.5);
+}
+
+std::string to_json(const SiteReport& report) {
+  const io::LoopStats& loop = report.loop;
+  const link::LinkHealth& link = report.link;
+  ordered_json json;
+  json["schema"] = "palp.site/1";
+  json["site"] = report.site;
+  json["outcome"] = report.exit_status.outcome;
+  json["reason"] = report.exit_status.reason;
+  json["exit_code"] = config::exit_value(report.exit_status.code);
+  json["seed"] = report.seed;
+  json["coupling"] = report.coupling;
+  json["session_file"] =
+      report.session_file.empty() ? ordered_json(nullptr) : ordered_json(report.session_file);
+  json["ticks"] = loop.ticks;
+  json["missed_ticks"] = loop.missed;
+  json["lateness_p50_us"] = microseconds(loop.lateness_p50);
+  json["lateness_p999_us"] = microseconds(loop.lateness_p999);
+  json["lateness_max_us"] = microseconds(loop.lateness_max);
+  json["realtime"] = {{"priority", loop.grant.priority},
+                      {"memory_locked", loop.grant.memory_locked}};
+  json["records_written"] = report.records.counts.records();
+  json["records_dropped"] = report.records.dropped;
+  json["records"] = records_json(report.records);
+  json["tick_views"] = report.records.counts.views;
+  json["messages"] = report.records.messages;
+  json["sent"] = link.sent;
+  json["accepted"] = link.accepted;
+  json["late"] = link.late;
+  json["lost"] = link.lost;
+  json["repaired"] = link.repaired;
+  json["reordered"] = link.reordered;
+  json["stale"] = link.stale;
+  json["old_epoch"] = link.old_epoch;
+  json["unsent"] = link.unsent;
+  json["rejected"] = rejected_json(link, report.noise);
+  json["round_trip_p50_ms"] = milliseconds(report.round_trips.median());
+  json["round_trip_min_ms"] = milliseconds(report.round_trips.least());
+  json["clock"] = clock_json(report.round_trips.clocked());
+  json["sessions"] = report.sessions;
+  if (report.estimates) {
+    json["estimates"] = *report.estimates;
+    json["estimate_latency_p50_ms"] = microseconds(report.estimate_p50) / 1e3;
+    json["estimate_latency_max_ms"] = microseconds(report.estimate_max) / 1e3;
+  }
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+int finish(const SiteReport& report, const std::string& path) {
+  if (report.exit_status.code != config::ExitCode::Done) {
+    io::error(report.exit_status.reason.empty() ? report.exit_status.outcome
+                                                : report.exit_status.reason);
+  } else {
+    io::info(report.exit_status.outcome + (report.session_file.empty()
+                                               ? ""
+                                               : ": " + std::to_string(report.records.messages) +
+                                                     " messages in " + report.session_file));
+  }
+  config::ExitCode code = report.exit_status.code;
+  if (!path.empty()) {
+    if (const auto written = config::write_whole_file(path, to_json(report)); !written) {
+      io::error("--report: " + written.error().text);
+      if (code == config::ExitCode::Done) code = config::ExitCode::CannotOpen;
+    }
+  }
+  return config::exit_value(code);
+}
+
+}  // namespace palp::site_program

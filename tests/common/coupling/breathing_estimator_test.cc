@@ -1,0 +1,83 @@
+#include "common/coupling/breathing_estimator.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "common/core/random.h"
+
+namespace palp::coupling {
+namespace {
+
+constexpr double kPeriod = 1e-3;
+
+double hertz(double depth) { return depth > 0 ? 1897 * depth * std::sqrt(depth) : 0; }
+
+/// Four taps of 4 mm from 3 mm above the surface at rest, then a press of 3 mm.
+double palpating(double t) {
+  if (t > 6) return std::min(3e-3, -3e-3 + 10e-3 * (t - 6));
+  const double phase = std::fmod(t, 1.5);
+  return -3e-3 + (phase < 1 ? 3.5e-3 * (1 - std::cos(2 * std::numbers::pi * phase)) : 0);
+}
+
+/// A tip that palpates for `span` [s] at a surface that moves as `displacement`(t) [m], from
+/// `begin` [s] on.
+template <class Displacement>
+void palpate(BreathingEstimator& swing,
+             double begin,
+             double span,
+             const Displacement& displacement) {
+  const int ticks = static_cast<int>(span / kPeriod);
+  for (int tick = 0; tick < ticks; ++tick) {
+    const double t = kPeriod * tick;
+    const double tip = palpating(t);
+    const double noise = 3e-3 * random_normal(1, 2, static_cast<std::uint64_t>(tick));
+    swing.step();
+    swing.see(tip, hertz(tip - displacement(begin + t)) + noise);
+  }
+}
+
+TEST(BreathingEstimatorTest, FindsABreathOfAnyPaceAndSizeWithTheTissueUnderItAndForeseesIt) {
+  for (const double pace : {0.15, 0.25, 0.4}) {
+    for (const double size : {0.5e-3, 2e-3}) {
+      const double rate = 2 * std::numbers::pi * pace;
+      const auto breath = [&](double t) { return 0.3e-3 + size * std::sin(rate * t + 0.4); };
+      BreathingEstimator swing{kPeriod};
+      palpate(swing, 0, 16, breath);
+      ASSERT_TRUE(swing.believed()) << pace << ' ' << size;
+      const Swing found = swing.swing();
+      EXPECT_NEAR(found.rate / rate, 1, 0.01) << pace << ' ' << size;
+      for (const double ahead : {0.0, 0.1, 0.25}) {
+        EXPECT_NEAR(swing.surface() + found.after(ahead), breath(16 + ahead), 0.05e-3)
+            << pace << " Hz, " << size << " m, " << ahead << " s ahead";
+      }
+      const auto& shapes = swing.shapes();
+      const double at_three = shapes[0] * 3 * std::sqrt(3 / 1.3) + shapes[1] * 9 + shapes[2] * 27;
+      EXPECT_NEAR(at_three / hertz(3e-3), 1, 0.03) << pace << ' ' << size;
+    }
+  }
+}
+
+TEST(BreathingEstimatorTest, SaysNothingOfASurfaceThatStandsStillOrTrembles) {
+  for (const double size : {0.0, 0.05e-3}) {
+    BreathingEstimator swing{kPeriod};
+    palpate(swing, 0, 16, [&](double t) { return 0.3e-3 + size * std::sin(1.5 * t); });
+    EXPECT_FALSE(swing.believed()) << size;
+    EXPECT_EQ(swing.swing().now, 0) << size;
+    EXPECT_TRUE(swing.still()) << size;
+  }
+}
+
+TEST(BreathingEstimatorTest, AnotherPlaceBreathesWithTheSameBreath) {
+  const auto breath = [](double t) { return 1e-3 * std::sin(1.6 * t); };
+  BreathingEstimator swing{kPeriod};
+  palpate(swing, 0, 16, breath);
+  ASSERT_TRUE(swing.believed());
+  swing.new_place();
+  palpate(swing, 16, 9, [&](double t) { return 2e-3 + breath(t); });
+  EXPECT_NEAR(swing.surface() + swing.swing().now, 2e-3 + breath(25), 0.1e-3);
+}
+
+}  // namespace
+}  // namespace palp::coupling

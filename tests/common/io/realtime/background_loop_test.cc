@@ -1,0 +1,52 @@
+#include "common/io/realtime/background_loop.h"
+
+#include <atomic>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace palp::io {
+namespace {
+
+using std::chrono::hours;
+using std::chrono::milliseconds;
+
+TEST(BackgroundLoopTest, WorksOnceMoreAfterStopWasAsked) {
+  std::atomic<int> queued{0};
+  int done = 0;
+  BackgroundLoop loop{"test", hours{1}, [&](TimePoint) { done = queued.load(); }};
+  queued = 7;
+  loop.stop();
+  EXPECT_EQ(done, 7);
+}
+
+TEST(BackgroundLoopTest, CallsAgainAfterEachPause) {
+  std::atomic<int> calls{0};
+  BackgroundLoop loop{"test", milliseconds{1}, [&](TimePoint) {
+                        ++calls;
+                        calls.notify_all();
+                      }};
+  for (int seen = calls; seen < 3; seen = calls) {
+    calls.wait(seen);
+  }
+  loop.stop();
+  EXPECT_GE(calls, 3);
+}
+
+TEST(BackgroundLoopTest, StopThrowsWhatTheWorkThrew) {
+  BackgroundLoop loop{
+      "test", milliseconds{1}, [](TimePoint) { throw std::runtime_error{"disk full"}; }};
+  EXPECT_THROW(
+      {
+        try {
+          loop.stop();
+        } catch (const std::runtime_error& failure) {
+          EXPECT_STREQ(failure.what(), "disk full");
+          throw;
+        }
+      },
+      std::runtime_error);
+}
+
+}  // namespace
+}  // namespace palp::io

@@ -1,0 +1,91 @@
+#include "lab/report/metric_plot.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "lab/run/metric_table.h"
+
+namespace palp::lab {
+namespace {
+
+CaseResult result(std::vector<std::string> labels, double value) {
+  CaseResult one;
+  one.labels = std::move(labels);
+  one.values.assign(metric_table().size(), value);
+  return one;
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t found = 0;
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
+  return found;
+}
+
+TEST(MetricPlotTest, RepeatsArePointsAndTheLineGoesThroughTheirMedians) {
+  const std::vector<CaseResult> results{result({"20"}, 0.1),
+                                        result({"20"}, 0.3),
+                                        result({"20"}, 0.2),
+                                        result({"100"}, 0.2),
+                                        result({"100"}, 0.2),
+                                        result({"100"}, 0.5)};
+  const std::string svg = metric_plot({"rtt_ms"}, results, "tap_a_error", "title");
+  EXPECT_EQ(count(svg, "<circle"), 6U);
+  const auto line = svg.find(" points=\"");
+  ASSERT_NE(line, std::string::npos);
+  const std::string points = svg.substr(line, svg.find("\"/>", line) - line);
+  EXPECT_EQ(count(points, ","), 2U) << points;
+  // Both medians are 0.2: the line is level.
+  const auto first = points.find(',');
+  const auto second = points.find(',', first + 1);
+  EXPECT_EQ(points.substr(first, points.find(' ', first) - first),
+            points.substr(second, points.find(' ', second) - second));
+}
+
+TEST(MetricPlotTest, RunsAlongTheFirstLabelThatIsANumber) {
+  const std::vector<CaseResult> results{result({"light", "20"}, 0.1),
+                                        result({"light", "50"}, 0.1),
+                                        result({"firm", "20"}, 0.1),
+                                        result({"firm", "50"}, 0.1)};
+  const std::string svg = metric_plot({"grip", "servo_hz"}, results, "tap_a_error", "title");
+  EXPECT_EQ(count(svg, "<polyline"), 2U);
+  EXPECT_NE(svg.find(">servo_hz<"), std::string::npos);
+  EXPECT_NE(svg.find(">firm<"), std::string::npos);
+}
+
+TEST(MetricPlotTest, WordsAloneStandByTheirCaseEachAsAPoint) {
+  std::vector<CaseResult> results{result({"light"}, 0.1), result({"firm"}, 0.2)};
+  results[1].index = 1;
+  const std::string svg = metric_plot({"grip"}, results, "tap_a_error", "title");
+  EXPECT_EQ(count(svg, "<circle"), 2U);
+  EXPECT_NE(svg.find(">case<"), std::string::npos);
+  EXPECT_NE(svg.find(">firm<"), std::string::npos);
+}
+
+TEST(MetricPlotTest, ALabelThatIsTheSameInAllCasesIsNoAxisIfAnotherIs) {
+  const std::vector<CaseResult> results{result({"20", "1"}, 0.1), result({"20", "2"}, 0.2)};
+  const std::string svg = metric_plot({"rtt_ms", "memory_s"}, results, "tap_a_error", "title");
+  EXPECT_NE(svg.find(">memory_s<"), std::string::npos);
+}
+
+TEST(MetricPlotTest, NothingToShowIsStillAPicture) {
+  for (const auto& none : {std::vector<CaseResult>{}, {result({"20"}, kUndefined)}}) {
+    const std::string svg = metric_plot({"rtt_ms"}, none, "tap_a_error", "nothing");
+    EXPECT_NE(svg.find("<svg"), std::string::npos);
+    EXPECT_NE(svg.find(">nothing<"), std::string::npos);
+  }
+}
+
+TEST(MetricPlotTest, ManyCurvesBecomePoints) {
+  std::vector<CaseResult> results;
+  results.reserve(40);
+  for (int i = 0; i < 40; ++i) {
+    results.push_back(result({std::to_string(i + 1), std::to_string(i)}, 0.01 * i));
+  }
+  const std::string svg = metric_plot({"rtt_ms", "seed"}, results, "tap_a_error", "title");
+  EXPECT_EQ(count(svg, "<polyline"), 0U);
+  EXPECT_EQ(count(svg, "<circle"), 40U);
+}
+
+}  // namespace
+}  // namespace palp::lab

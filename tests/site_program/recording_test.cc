@@ -1,0 +1,101 @@
+#include "site_program/recording.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/io/process/diagnostics.h"
+#include "common/record/notes.h"
+
+namespace palp::site_program {
+namespace {
+
+/// A name in the test's own folder; nothing is there yet.
+std::string fresh_file() {
+  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+  const std::string path = testing::TempDir() + "palp_" + info->name() + ".mcap";
+  std::filesystem::remove(path);
+  return path;
+}
+
+record::SessionInfo patient_info() {
+  record::SessionInfo info;
+  info.site = link::Role::Patient;
+  return info;
+}
+
+TEST(RecordingTest, WhatAllWritersRecordedIsInTheFile) {
+  const std::string path = fresh_file();
+  Recording recording{{.file = path}, patient_info(), 2};
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_TRUE(recording.recorder(0).record(record::SiteTick{}));
+  }
+  EXPECT_TRUE(recording.recorder(1).record(DepthEstimate{}));
+  const RecordAccount& account = recording.stop();
+  EXPECT_EQ(account.counts.records(), 101U);
+  EXPECT_EQ(account.messages, account.counts.records() + account.counts.views);
+  EXPECT_EQ(account.dropped, 0U);
+  EXPECT_GT(std::filesystem::file_size(path), 1000U);
+  EXPECT_EQ(recording.stop().messages, account.messages) << "once more changes nothing";
+}
+
+TEST(RecordingTest, WithoutAFileNothingIsWritten) {
+  Recording recording{{}, patient_info(), 1};
+  EXPECT_TRUE(recording.recorder(0).record(record::SiteTick{}));
+  EXPECT_EQ(recording.stop().counts.records(), 0U);
+}
+
+TEST(RecordingTest, AnExistingFileIsNotTouched) {
+  const std::string path = fresh_file();
+  std::FILE* file = std::fopen(path.c_str(), "w");
+  ASSERT_NE(file, nullptr);
+  std::fputs("precious", file);
+  std::fclose(file);
+  EXPECT_THROW((Recording{{.file = path}, patient_info(), 1}), std::runtime_error);
+  EXPECT_EQ(std::filesystem::file_size(path), 8U);
+}
+
+TEST(RecordingTest, AFullQueueIsCounted) {
+  Recording recording{{.queue_records = 256}, patient_info(), 1};
+  std::uint64_t refused = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    if (!recording.recorder(0).record(record::SiteTick{})) ++refused;
+  }
+  EXPECT_GT(refused, 0U);
+  EXPECT_EQ(recording.stop().dropped, refused);
+}
+
+std::string told(Recording& recording) {
+  recording.stop();
+  StatusLine line;
+  io::start_diagnostics("test");
+  testing::internal::CaptureStderr();
+  recording.tell_news(line);
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(RecordingTest, ChangesOfStateAreToldToPeople) {
+  Recording recording{{}, patient_info(), 1};
+  (void)recording.recorder(0).record(
+      record::Transition{.from = SiteState::Engaged,
+                         .to = SiteState::Hold,
+                         .reason = static_cast<std::uint16_t>(record::NoteCode::GapHold)});
+  EXPECT_THAT(told(recording), testing::HasSubstr("ENGAGED -> HOLD: nothing arrived: hold"));
+}
+
+TEST(RecordingTest, WhatRepeatsItselfIsToldOnce) {
+  Recording recording{{}, patient_info(), 1};
+  for (int i = 0; i < 20; ++i) {
+    (void)recording.recorder(0).record(
+        record::Note{.code = static_cast<std::uint16_t>(record::NoteCode::RoundTripTooLong)});
+  }
+  const std::string text = told(recording);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+}
+
+}  // namespace
+}  // namespace palp::site_program
