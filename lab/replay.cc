@@ -15,7 +15,7 @@
 namespace palp::lab {
 namespace {
 
-using record::Record;
+using Record;
 
 class ListRecorder final : public record::Recorder {
  public:
@@ -39,18 +39,18 @@ struct LoggedTick {
   std::optional<record::StageReading> stage;
   std::optional<record::ForceReading> force;
   std::optional<record::LinkHeard> heard;
-  std::optional<link::LinkHealth> status;
+  std::optional<LinkHealth> status;
   std::optional<UserCommand> user;
   std::optional<DeviceFacts> own_devices;
   std::optional<DeviceFacts> peer_devices;
-  std::optional<link::DepthReport> depth;
+  std::optional<DepthReport> depth;
 
   void add(const Record& record) {
     records.push_back(record);
     std::visit([this](const auto& one) { sort(one); }, record);
   }
-  [[nodiscard]] link::LinkHealth link() const {
-    link::LinkHealth health = status.value_or(link::LinkHealth{});
+  [[nodiscard]] LinkHealth link() const {
+    LinkHealth health = status.value_or(LinkHealth{});
     health.state = heard->state;
     health.session_id = heard->session_id;
     health.gap = heard->gap;
@@ -71,14 +71,14 @@ struct LoggedTick {
  private:
   template <class T>
   void sort(const T& /*output*/) {}
-  void sort(const record::Arrived& one) { samples.push_back(one.incoming); }
+  void sort(const Arrived& one) { samples.push_back(one.incoming); }
   void sort(const record::HandReading& one) { hand = one; }
   void sort(const record::StageReading& one) { stage = one; }
   void sort(const record::ForceReading& one) { force = one; }
   void sort(const record::LinkHeard& one) { heard = one; }
-  void sort(const record::LinkStatus& one) { status = one.health; }
+  void sort(const LinkStatus& one) { status = one.health; }
   void sort(const record::UserAsked& one) { user = one.command; }
-  void sort(const record::DepthArrived& one) { depth = one.report; }
+  void sort(const DepthArrived& one) { depth = one.report; }
   void sort(const record::DevicesTold& one) {
     (one.of_peer ? peer_devices : own_devices) = one.facts;
   }
@@ -111,9 +111,9 @@ class Comparison {
   std::string compare(const std::vector<Record>& logged, const std::vector<Record>& again) {
     for (std::size_t i = 0; i < std::min(logged.size(), again.size()); ++i) {
       if (bytes_of(logged[i]) == bytes_of(again[i])) continue;
-      return std::string{"record '"} + record::kRecordNames[logged[i].index()] + "' " +
+      return std::string{"record '"} + kRecordNames[logged[i].index()] + "' " +
              number_text("at ", seconds(at_.time_since_epoch()), 6, " s") + " became '" +
-             record::kRecordNames[again[i].index()] + "'";
+             kRecordNames[again[i].index()] + "'";
     }
     if (logged.size() == again.size()) return {};
     return "tick " + number_text("at ", seconds(at_.time_since_epoch()), 6, " s") + " has " +
@@ -195,7 +195,7 @@ class SurgeonAgain {
   coupling::SurgeonCoupling law_;
   surgeon::SurgeonControl control_;
   UserCommand user_;
-  link::DepthReport depth_;
+  DepthReport depth_;
 };
 
 /// A patient's site between two ticks, and its estimator.

@@ -35,7 +35,7 @@ void EstimatorWorker::publish(const DepthEstimate& estimate) {
   record(estimate);
 }
 
-void EstimatorWorker::record(const record::Record& record) {
+void EstimatorWorker::record(const Record& record) {
   if (parts_.recorder.record(record)) {
     ++records_;
   } else {

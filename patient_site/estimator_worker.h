@@ -4,7 +4,7 @@
 
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
-#include "common/core/stroke.h"
+#include "common/message/depth.h"
 #include "common/record/recorder.h"
 #include "patient_site/estimator/depth_estimator.h"
 
@@ -35,7 +35,7 @@ class EstimatorWorker {
 
  private:
   void publish(const DepthEstimate& estimate);
-  void record(const record::Record& record);
+  void record(const Record& record);
 
   estimator::DepthEstimator estimator_;
   Parts parts_;

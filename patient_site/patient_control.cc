@@ -188,17 +188,17 @@ PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
 
 void PatientControl::write_down(const PatientInputs& in, const PatientOutputs& out) noexcept {
   if (now_.state == SiteState::Engaged) give_contact_sample();
-  account_.record(record::SiteTick{.at = now_.at,
-                                   .state = now_.state,
-                                   .epoch = now_.epoch,
-                                   .position = now_.position,
-                                   .velocity = now_.velocity,
-                                   .force = now_.contact_force,
-                                   .lateral = now_.lateral,
-                                   .command = now_.command,
-                                   .gate_acted = now_.gate_acted,
-                                   .round_trip = now_.link.round_trip,
-                                   .sent = out.to_peer.port});
+  account_.record(SiteTick{.at = now_.at,
+                           .state = now_.state,
+                           .epoch = now_.epoch,
+                           .position = now_.position,
+                           .velocity = now_.velocity,
+                           .force = now_.contact_force,
+                           .lateral = now_.lateral,
+                           .command = now_.command,
+                           .gate_acted = now_.gate_acted,
+                           .round_trip = now_.link.round_trip,
+                           .sent = out.to_peer.port});
   account_.link(in.link);
   record_readings(in);
   static_cast<record::SiteCounts&>(now_) = account_.counts();
@@ -240,7 +240,7 @@ void PatientControl::give_contact_sample() noexcept {
   ++(taken ? now_.contact_samples : now_.contact_samples_lost);
 }
 
-link::DepthReport PatientControl::depth_report() const noexcept {
+DepthReport PatientControl::depth_report() const noexcept {
   return {.number = now_.depth.number,
           .verdict = now_.depth.verdict,
           .reason = now_.depth.reason,

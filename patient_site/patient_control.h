@@ -5,11 +5,11 @@
 
 #include "common/core/device_facts.h"
 #include "common/core/spsc_queue.h"
-#include "common/core/stroke.h"
 #include "common/core/time.h"
 #include "common/core/user_command.h"
 #include "common/coupling/any_coupling.h"
 #include "common/link/telegram.h"
+#include "common/message/depth.h"
 #include "common/record/recorder.h"
 #include "common/record/site_account.h"
 #include "patient_site/device_watch.h"
@@ -36,7 +36,7 @@ struct PatientInputs {
   std::optional<ForceSample> force;
   UserCommand user;
   link::Arrivals arrived;  ///< its samples are valid until the next receive() of the link
-  link::LinkHealth link;
+  LinkHealth link;
   DeviceFacts peer_devices;  ///< says something where the session is another than a tick ago
   DepthEstimate depth;       ///< newest; number 0: none yet
 };
@@ -45,7 +45,7 @@ struct PatientInputs {
 struct PatientOutputs {
   bool halt{};  ///< and no target
   StageTarget target;
-  link::Telegram to_peer;
+  Telegram to_peer;
 };
 
 /// What the patient's site does with a tick: from the same inputs, in the same order, the same
@@ -85,7 +85,7 @@ class PatientControl {
   void record_decision(const SupervisorOutput& decision, SiteState before) noexcept;
   [[nodiscard]] coupling::PatientInput law_input(const link::Arrivals& arrived) const noexcept;
   [[nodiscard]] MotionAnswer limit(double target, double lateral, Duration dt) noexcept;
-  [[nodiscard]] link::DepthReport depth_report() const noexcept;
+  [[nodiscard]] DepthReport depth_report() const noexcept;
   void give_contact_sample() noexcept;
   void record_readings(const PatientInputs& in) noexcept;
 

@@ -4,11 +4,11 @@
 
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
-#include "common/core/stroke.h"
 #include "common/core/time.h"
 #include "common/core/user_command.h"
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
+#include "common/message/depth.h"
 #include "common/record/recorder.h"
 #include "patient_site/force_sensor.h"
 #include "patient_site/patient_control.h"

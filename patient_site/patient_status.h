@@ -4,9 +4,9 @@
 
 #include "common/core/device_facts.h"
 #include "common/core/site_state.h"
-#include "common/core/stroke.h"
 #include "common/core/time.h"
 #include "common/link/telegram.h"
+#include "common/message/depth.h"
 #include "common/record/notes.h"
 #include "common/record/site_account.h"
 
@@ -21,7 +21,7 @@ struct PatientStatus : record::SiteCounts {
   std::uint32_t epoch{};
   SiteState peer_state{};
   bool peer_heard{};
-  link::LinkHealth link;
+  LinkHealth link;
   DeviceFacts peer_devices;  ///< of the session's other site
   double position{};         ///< [m], tip
   double velocity{};         ///< [m/s]

@@ -12,7 +12,7 @@ namespace palp::patient {
 struct SupervisorInput {
   LinkState link{};
   std::uint64_t session_id{};  ///< 0: none
-  link::SiteReport peer;
+  SiteReport peer;
   bool peer_heard{};
   bool emergency_stop{};
   bool device_faulted{};

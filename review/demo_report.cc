@@ -141,7 +141,7 @@ Json rejected_json(const SiteData& site, const Json& report) {
   if (!told.is_null() || !site.last_link) {
     return told;
   }
-  const link::LinkHealth& health = site.last_link->health;
+  const LinkHealth& health = site.last_link->health;
   return {{"malformed", health.malformed},
           {"foreign", health.foreign},
           {"replayed", health.replayed},
@@ -176,11 +176,11 @@ Json transitions_json(const SiteData& surgeon, const SiteData& patient) {
   struct Entry {
     double t{};  ///< [s]
     const SiteData* site{};
-    const record::Transition* transition{};
+    const Transition* transition{};
   };
   std::vector<Entry> entries;
   for (const SiteData* site : {&surgeon, &patient}) {
-    for (const record::Transition& transition : site->transitions) {
+    for (const Transition& transition : site->transitions) {
       entries.push_back({seconds(elapsed(site->began_at, transition.at)), site, &transition});
     }
   }

@@ -15,27 +15,25 @@ namespace {
 struct Collector {
   SiteData& data;
 
-  void operator()(const record::SiteTick& tick) const {
+  void operator()(const SiteTick& tick) const {
     data.motion.push_back({.at = tick.at,
                            .position = tick.position,
                            .velocity = tick.velocity,
                            .force = tick.force,
                            .lateral = tick.lateral});
   }
-  void operator()(const record::Arrived&) const {}
-  void operator()(const record::LinkStatus& status) const {
+  void operator()(const Arrived&) const {}
+  void operator()(const LinkStatus& status) const {
     data.last_link = status;
     if (status.health.state == LinkState::Live && status.health.round_trip > Duration{0}) {
       data.round_trips.push_back(status.health.round_trip);
     }
   }
-  void operator()(const record::Transition& transition) const {
-    data.transitions.push_back(transition);
-  }
+  void operator()(const Transition& transition) const { data.transitions.push_back(transition); }
   void operator()(const DepthEstimate& estimate) const { data.estimates.push_back(estimate); }
-  void operator()(const record::Note&) const {}
+  void operator()(const Note&) const {}
   void operator()(const ContactSample&) const {}
-  void operator()(const record::DepthArrived& arrived) const { data.reports.push_back(arrived); }
+  void operator()(const DepthArrived& arrived) const { data.reports.push_back(arrived); }
 };
 
 }  // namespace

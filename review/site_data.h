@@ -25,11 +25,11 @@ struct SiteData {
   link::Role site{};
   TimePoint began_at{};  ///< the earliest sample
   std::vector<Motion> motion;
-  std::vector<record::Transition> transitions;
+  std::vector<Transition> transitions;
   std::vector<DepthEstimate> estimates;
   std::vector<Duration> round_trips;  ///< of the link's statuses, where measured
-  std::optional<record::LinkStatus> last_link;
-  std::vector<record::DepthArrived> reports;   ///< surgeon: each estimate as it arrived
+  std::optional<LinkStatus> last_link;
+  std::vector<DepthArrived> reports;           ///< surgeon: each estimate as it arrived
   record::McapMap metadata;                    ///< of the record `palp`
   std::optional<std::string> tissue_csv;       ///< attachment tissue.csv
   std::uint64_t records{};                     ///< decoded

@@ -16,7 +16,7 @@ class Strokes {
  public:
   Strokes(const SiteData& surgeon, double surface, const TissueTable* tissue)
       : surface_{surface}, tissue_{tissue} {
-    for (const record::DepthArrived& arrived : surgeon.reports) {
+    for (const DepthArrived& arrived : surgeon.reports) {
       arrived_at_.try_emplace(arrived.report.number, arrived.at);
     }
     for (const Excursion& excursion : find_excursions(surgeon.motion, surface)) {

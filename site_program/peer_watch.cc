@@ -12,7 +12,7 @@ std::string milliseconds_text(Duration span) {
 
 }  // namespace
 
-std::optional<ExitStatus> PeerWatch::judge(const link::LinkHealth& link, TimePoint now) {
+std::optional<ExitStatus> PeerWatch::judge(const LinkHealth& link, TimePoint now) {
   if (link.state == LinkState::Live || link.state == LinkState::Hold) {
     worked_at_ = now;
     ever_ = true;
@@ -27,7 +27,7 @@ std::optional<ExitStatus> PeerWatch::judge(const link::LinkHealth& link, TimePoi
                         config::number_text(seconds(config_.patience)) + " s"};
 }
 
-ExitStatus PeerWatch::unreachable(const link::LinkHealth& link, Duration waited) const {
+ExitStatus PeerWatch::unreachable(const LinkHealth& link, Duration waited) const {
   if (link.round_trip_min > config_.round_trip_max) {
     return {config::ExitCode::CannotOpen,
             "unreachable",

@@ -23,14 +23,14 @@ class PeerWatch {
       : config_{config}, worked_at_{began_at} {}
 
   /// nullopt: go on.
-  [[nodiscard]] std::optional<ExitStatus> judge(const link::LinkHealth& link, TimePoint now);
+  [[nodiscard]] std::optional<ExitStatus> judge(const LinkHealth& link, TimePoint now);
   /// The peer, or whoever is there, has refused; empty: nothing new.
   void note_refusal(const std::string& sentence) {
     if (!sentence.empty()) refusal_ = sentence;
   }
   [[nodiscard]] bool ever_worked() const noexcept { return ever_; }
   /// How a wait of this length ends in which no link ever worked.
-  [[nodiscard]] ExitStatus unreachable(const link::LinkHealth& link, Duration waited) const;
+  [[nodiscard]] ExitStatus unreachable(const LinkHealth& link, Duration waited) const;
 
  private:
   PeerWatchConfig config_;

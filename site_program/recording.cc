@@ -50,7 +50,7 @@ Recording::~Recording() = default;
 void Recording::drain(TimePoint now) {
   std::uint64_t dropped = 0;
   for (const auto& queue : queues_) {
-    queue->drain([this, now](const record::Record& record) { write(record, now); });
+    queue->drain([this, now](const Record& record) { write(record, now); });
     dropped += queue->dropped();
   }
   account_.dropped = dropped;
@@ -62,17 +62,17 @@ void Recording::drain(TimePoint now) {
   }
 }
 
-void Recording::write(const record::Record& record, TimePoint now) {
+void Recording::write(const Record& record, TimePoint now) {
   tell_of(record);
   if (writer_) (void)writer_->write(record, now);
 }
 
-void Recording::tell_of(const record::Record& record) {
-  if (const auto* change = std::get_if<record::Transition>(&record)) {
+void Recording::tell_of(const Record& record) {
+  if (const auto* change = std::get_if<Transition>(&record)) {
     const std::string_view reason = record::note_text(change->reason);
     (void)news_.try_enqueue(std::string{to_string(change->from)} + " -> " +
                             std::string{to_string(change->to)} + ": " + std::string{reason});
-  } else if (const auto* note = std::get_if<record::Note>(&record)) {
+  } else if (const auto* note = std::get_if<Note>(&record)) {
     const auto code = static_cast<record::NoteCode>(note->code);
     if (!shown_elsewhere(code)) (void)news_.try_enqueue(std::string{record::to_string(code)});
   }

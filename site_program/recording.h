@@ -45,8 +45,8 @@ class Recording {
 
  private:
   void drain(TimePoint now);
-  void write(const record::Record& record, TimePoint now);
-  void tell_of(const record::Record& record);
+  void write(const Record& record, TimePoint now);
+  void tell_of(const Record& record);
 
   static constexpr std::size_t kNewsMax = 256;
 

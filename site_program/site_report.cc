@@ -21,14 +21,14 @@ ordered_json milliseconds(const std::optional<Duration>& span) {
 
 ordered_json records_json(const RecordAccount& account) {
   ordered_json json;
-  for (std::size_t type = 0; type < record::kRecordNames.size(); ++type) {
-    json[record::kRecordNames[type]] = account.counts.by_type[type];
+  for (std::size_t type = 0; type < kRecordNames.size(); ++type) {
+    json[kRecordNames[type]] = account.counts.by_type[type];
   }
   return json;
 }
 
 /// On the link and beside it, in one: datagrams that were of no use to this site.
-ordered_json rejected_json(const link::LinkHealth& link, const link::SessionCounters& noise) {
+ordered_json rejected_json(const LinkHealth& link, const link::SessionCounters& noise) {
   return {{"malformed", link.malformed + noise.malformed},
           {"foreign", link.foreign + noise.foreign},
           {"replayed", link.replayed},
@@ -37,9 +37,9 @@ ordered_json rejected_json(const link::LinkHealth& link, const link::SessionCoun
 }
 
 /// null where there never was an estimate.
-ordered_json clock_json(const std::optional<link::LinkHealth>& link) {
+ordered_json clock_json(const std::optional<LinkHealth>& link) {
   if (!link) return nullptr;
-  const link::ClockOffset& clock = *link->peer_clock;
+  const ClockOffset& clock = *link->peer_clock;
   return {{"offset_ms", milliseconds(clock.offset)},
           {"uncertainty_ms", milliseconds(clock.uncertainty)},
           {"skew_ppm", clock.skew * 1e6},
@@ -49,7 +49,7 @@ ordered_json clock_json(const std::optional<link::LinkHealth>& link) {
 
 }  // namespace
 
-void RoundTrips::add(const link::LinkHealth& link) noexcept {
+void RoundTrips::add(const LinkHealth& link) noexcept {
   if (link.peer_clock) clocked_ = link;
   if (link.state != LinkState::Live || link.round_trip <= Duration{0}) return;
   all_.record(link.round_trip);
@@ -63,7 +63,7 @@ std::optional<Duration> RoundTrips::median() const noexcept {
 
 std::string to_json(const SiteReport& report) {
   const io::LoopStats& loop = report.loop;
-  const link::LinkHealth& link = report.link;
+  const LinkHealth& link = report.link;
   ordered_json json;
   json["schema"] = "palp.site/1";
   json["site"] = report.site;

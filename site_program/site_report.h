@@ -16,14 +16,14 @@ namespace palp::site_program {
 /// Round trips as a program saw them at the rate of its display.
 class RoundTrips {
  public:
-  void add(const link::LinkHealth& link) noexcept;
+  void add(const LinkHealth& link) noexcept;
   [[nodiscard]] std::optional<Duration> median() const noexcept;
   [[nodiscard]] std::optional<Duration> least() const noexcept { return least_; }
   /// As the link was when it last knew the peer's clock: after its session it forgets it.
-  [[nodiscard]] const std::optional<link::LinkHealth>& clocked() const noexcept { return clocked_; }
+  [[nodiscard]] const std::optional<LinkHealth>& clocked() const noexcept { return clocked_; }
 
  private:
-  std::optional<link::LinkHealth> clocked_;
+  std::optional<LinkHealth> clocked_;
   Histogram all_;
   std::optional<Duration> least_;
 };
@@ -37,7 +37,7 @@ struct SiteReport {
   std::string session_file;
   io::LoopStats loop;
   RecordAccount records;
-  link::LinkHealth link;        ///< of the last tick
+  LinkHealth link;              ///< of the last tick
   link::SessionCounters noise;  ///< what came to the port besides data
   RoundTrips round_trips;
   std::uint64_t sessions{};

@@ -34,7 +34,7 @@ std::string status_line(const SurgeonStatus& status) {
 std::optional<std::string> delay_advice(const SurgeonStatus& status,
                                         Duration round_trip_max,
                                         bool engagement_forced) {
-  const link::LinkHealth& link = status.link;
+  const LinkHealth& link = status.link;
   if (link.state != LinkState::Live || link.round_trip <= round_trip_max) return std::nullopt;
   return number_text("the round trip is ", milliseconds(link.round_trip), 1, " ms: ") +
          number_text("above ", milliseconds(round_trip_max), 0, " ms ") +

@@ -29,7 +29,7 @@ struct SupervisorInput {
   std::uint64_t session_id{};  ///< 0: none
   Duration gap{};
   Duration round_trip{};
-  link::SiteReport peer;
+  SiteReport peer;
   bool peer_heard{};
   bool tip_known{};  ///< without it the clutch has nothing to align with
 };

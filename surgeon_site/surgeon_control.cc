@@ -68,7 +68,7 @@ void SurgeonControl::hear(const link::Arrivals& arrived) noexcept {
   }
   if (arrived.peer_heard && arrived.peer.depth.number != now_.depth.number) {
     now_.depth = arrived.peer.depth;
-    if (now_.depth.number != 0) account_.record(record::DepthArrived{now_.at, now_.depth});
+    if (now_.depth.number != 0) account_.record(DepthArrived{now_.at, now_.depth});
   }
 }
 
@@ -152,17 +152,17 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
 
 void SurgeonControl::write_down(const SurgeonInputs& in, const SurgeonOutputs& out) noexcept {
   if (answer_.note != NoteCode::None) account_.note(answer_.note, answer_.detail);
-  account_.record(record::SiteTick{.at = now_.at,
-                                   .state = now_.state,
-                                   .epoch = now_.epoch,
-                                   .position = now_.position,
-                                   .velocity = hand_.velocity,
-                                   .force = force_before_,
-                                   .lateral = now_.lateral,
-                                   .command = now_.force,
-                                   .gate_acted = now_.gate_acted,
-                                   .round_trip = now_.link.round_trip,
-                                   .sent = out.to_peer.port});
+  account_.record(SiteTick{.at = now_.at,
+                           .state = now_.state,
+                           .epoch = now_.epoch,
+                           .position = now_.position,
+                           .velocity = hand_.velocity,
+                           .force = force_before_,
+                           .lateral = now_.lateral,
+                           .command = now_.force,
+                           .gate_acted = now_.gate_acted,
+                           .round_trip = now_.link.round_trip,
+                           .sent = out.to_peer.port});
   account_.link(in.link);
   note_script(in.script);
   record_readings(in);

@@ -30,14 +30,14 @@ struct SurgeonInputs {
   ScriptProgress script;
   UserCommand user;
   link::Arrivals arrived;  ///< its samples are valid until the next receive() of the link
-  link::LinkHealth link;
+  LinkHealth link;
   DeviceFacts peer_devices;  ///< says something where the session is another than a tick ago
 };
 
 /// All that a tick wants done.
 struct SurgeonOutputs {
   double force{};  ///< [N], + pushes out
-  link::Telegram to_peer;
+  Telegram to_peer;
   OperatorView view;
 };
 

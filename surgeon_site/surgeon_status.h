@@ -21,7 +21,7 @@ struct SurgeonStatus : record::SiteCounts {
   std::uint32_t epoch{};
   SiteState peer_state{};
   bool peer_heard{};
-  link::LinkHealth link;
+  LinkHealth link;
   DeviceFacts peer_devices;  ///< of the session's other site
   double position{};         ///< [m], hand, as given to the law
   double lateral{};          ///< [m]
@@ -31,7 +31,7 @@ struct SurgeonStatus : record::SiteCounts {
   double force{};          ///< [N], to the hand
   double contact_force{};  ///< [N], as last heard
   bool gate_acted{};
-  link::DepthReport depth;
+  DepthReport depth;
   ScriptProgress script;
   record::NoteCode refused{};  ///< why the last press of the pedal did not engage; None: it did
 };

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "common/core/number_text.h"
-#include "common/core/stroke.h"
+#include "common/message/depth.h"
 
 namespace palp {
 

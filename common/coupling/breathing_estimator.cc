@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/core/port_sample.h"
 #include "common/coupling/contact_model.h"
+#include "common/message/port_sample.h"
 
 namespace palp::coupling {
 namespace {

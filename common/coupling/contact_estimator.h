@@ -6,9 +6,9 @@
 
 #include "common/core/device_facts.h"
 #include "common/core/filters.h"
-#include "common/core/port_sample.h"
 #include "common/core/time.h"
 #include "common/coupling/breathing_estimator.h"
+#include "common/message/port_sample.h"
 
 /// The patient's half of `mmt` at work: finds the contact model behind positions and forces.
 namespace palp::coupling {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "common/core/port_sample.h"
+#include "common/message/port_sample.h"
 
 /// The passive contact law that the coupling `mmt` sends instead of delayed forces.
 namespace palp::coupling {

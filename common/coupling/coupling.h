@@ -4,9 +4,9 @@
 #include <limits>
 #include <span>
 
-#include "common/core/port_sample.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
+#include "common/message/port_sample.h"
 
 /// A coupling is a control law in two halves, one per site, that talk in PortSamples. Pure: no
 /// clock, no I/O, no allocation in step(). Signs and units: common/core/conventions.h.

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <span>
 
-#include "common/core/port_sample.h"
 #include "common/core/time.h"
+#include "common/message/port_sample.h"
 
 namespace palp::coupling {
 

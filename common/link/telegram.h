@@ -4,10 +4,10 @@
 #include <optional>
 #include <span>
 
-#include "common/core/port_sample.h"
 #include "common/core/site_state.h"
-#include "common/core/stroke.h"
 #include "common/link/clock_offset.h"
+#include "common/message/depth.h"
+#include "common/message/port_sample.h"
 
 /// What sites say to each other, before bytes.
 namespace palp::link {

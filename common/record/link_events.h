@@ -14,7 +14,7 @@ class LinkEvents {
  public:
   /// Once a tick. `note`: called as note(NoteCode, detail).
   template <class Note>
-  void look(const link::LinkHealth& now, const Note& note) noexcept {
+  void look(const LinkHealth& now, const Note& note) noexcept {
     if (now.state != state_) tell_state(now, note);
     const bool same_session = now.session_id == session_id_ && session_id_ != 0;
     if (same_session && now.key != key_) note(NoteCode::KeysReplaced, static_cast<double>(now.key));
@@ -25,7 +25,7 @@ class LinkEvents {
 
  private:
   template <class Note>
-  static void tell_state(const link::LinkHealth& now, const Note& note) noexcept {
+  static void tell_state(const LinkHealth& now, const Note& note) noexcept {
     switch (now.state) {
       case LinkState::Down:
         return note(NoteCode::LinkIsDown, seconds(now.gap));

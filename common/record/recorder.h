@@ -6,12 +6,12 @@
 #include <variant>
 
 #include "common/core/device_facts.h"
-#include "common/core/port_sample.h"
 #include "common/core/site_state.h"
-#include "common/core/stroke.h"
 #include "common/core/time.h"
 #include "common/core/user_command.h"
 #include "common/link/telegram.h"
+#include "common/message/depth.h"
+#include "common/message/port_sample.h"
 
 /// What a site writes down. Typed, complete, safe to write from rt: a Recorder only copies.
 namespace palp::record {
@@ -40,7 +40,7 @@ struct Arrived {
 /// State of the link, 10 times a second.
 struct LinkStatus {
   TimePoint at{};
-  link::LinkHealth health;
+  LinkHealth health;
 };
 
 /// A numbered event; its text stands in notes.h.
@@ -61,7 +61,7 @@ struct Transition {
 /// The depth as it arrived at the surgeon's.
 struct DepthArrived {
   TimePoint at{};
-  link::DepthReport report;
+  DepthReport report;
 };
 
 /// The rest is what a tick was given, raw, so that it can be done again: what the devices said,

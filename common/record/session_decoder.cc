@@ -78,12 +78,12 @@ Record arrived_of(const session::ArrivedSample& in, TimePoint at) {
                               .arrived_at = TimePoint{Duration{in.arrived_at_ns()}}}};
 }
 
-std::optional<link::ClockOffset> peer_clock_of(const session::LinkStatus& in) {
+std::optional<ClockOffset> peer_clock_of(const session::LinkStatus& in) {
   if (!in.has_clock_offset_ns()) return std::nullopt;
-  return link::ClockOffset{.offset = Duration{in.clock_offset_ns()},
-                           .skew = in.clock_skew(),
-                           .uncertainty = Duration{in.clock_uncertainty_ns()},
-                           .at = TimePoint{Duration{in.clock_at_ns()}}};
+  return ClockOffset{.offset = Duration{in.clock_offset_ns()},
+                     .skew = in.clock_skew(),
+                     .uncertainty = Duration{in.clock_uncertainty_ns()},
+                     .at = TimePoint{Duration{in.clock_at_ns()}}};
 }
 
 Record link_status_of(const session::LinkStatus& in, TimePoint at, Range& range) {

@@ -118,7 +118,7 @@ void put(const Arrived& arrived, session::ArrivedSample& out) {
   put_payload(incoming.sample.payload, out);
 }
 
-void put(const link::LinkHealth& health, std::uint64_t records_dropped, session::LinkStatus& out) {
+void put(const LinkHealth& health, std::uint64_t records_dropped, session::LinkStatus& out) {
   out.set_state(to_wire<session::LinkState>(health.state));
   out.set_gap_ns(health.gap.count());
   out.set_round_trip_ns(health.round_trip.count());
@@ -268,7 +268,7 @@ void put(const DepthEstimate& estimate, session::DepthEstimate& out) {
   out.set_fit_rms_n(estimate.fit_rms);
 }
 
-void put(const link::DepthReport& report, session::DepthReport& out) {
+void put(const DepthReport& report, session::DepthReport& out) {
   out.set_number(report.number);
   out.set_verdict(to_wire<session::DepthVerdict>(report.verdict));
   out.set_reason(to_wire<session::DepthReason>(report.reason));

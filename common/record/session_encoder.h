@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "common/link/telegram.h"
+#include "common/message/tick_view.h"
 #include "common/record/mcap_format.h"
 #include "common/record/recorder.h"
-#include "common/record/tick_view.h"
 
 /// Records to the messages of proto/session_log.proto; one message type per topic.
 namespace palp::record {

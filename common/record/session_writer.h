@@ -7,10 +7,10 @@
 #include <variant>
 #include <vector>
 
+#include "common/message/tick_view.h"
 #include "common/record/mcap_writer.h"
 #include "common/record/recorder.h"
 #include "common/record/session_encoder.h"
-#include "common/record/tick_view.h"
 
 namespace palp::record {
 

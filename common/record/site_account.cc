@@ -39,7 +39,7 @@ void SiteAccount::arrived(const link::Arrivals& arrivals) noexcept {
   for (const Incoming& incoming : arrivals.samples) record(Arrived{now_, incoming});
 }
 
-void SiteAccount::link(const link::LinkHealth& health) noexcept {
+void SiteAccount::link(const LinkHealth& health) noexcept {
   link_events_.look(health, [this](NoteCode code, double detail) { note(code, detail); });
   if (link_recorded_at_ && now_ - *link_recorded_at_ < config_.link_status_every) return;
   link_recorded_at_ = now_;
@@ -54,7 +54,7 @@ void SiteAccount::user(const UserCommand& command) noexcept {
   record(UserAsked{now_, command});
 }
 
-void SiteAccount::heard(const link::LinkHealth& health,
+void SiteAccount::heard(const LinkHealth& health,
                         const link::Arrivals& arrivals,
                         std::uint32_t depth_number) noexcept {
   record(LinkHeard{.at = now_,

@@ -43,11 +43,11 @@ class SiteAccount {
   void transition(SiteState from, SiteState to, NoteCode reason) noexcept;
   void arrived(const link::Arrivals& arrivals) noexcept;
   /// Once a tick: its events, and its status at times.
-  void link(const link::LinkHealth& health) noexcept;
+  void link(const LinkHealth& health) noexcept;
   /// Once a tick; recorded where it changes.
   void user(const UserCommand& command) noexcept;
   /// Once a tick, last.
-  void heard(const link::LinkHealth& health,
+  void heard(const LinkHealth& health,
              const link::Arrivals& arrivals,
              std::uint32_t depth_number) noexcept;
 

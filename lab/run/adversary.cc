@@ -23,13 +23,13 @@ LyingCodec::LyingCodec(std::unique_ptr<link::Codec> codec, std::uint64_t seed, D
           static_cast<std::uint64_t>(std::max<std::int64_t>(1, kLieLength / period))} {}
 
 // NOLINTNEXTLINE(bugprone-exception-escape): copying a payload does not throw
-std::size_t LyingCodec::encode(const link::WireTelegram& telegram,
-                               std::span<std::byte, link::kTelegramSizeMax> out) noexcept {
+std::size_t LyingCodec::encode(const WireTelegram& telegram,
+                               std::span<std::byte, message::kTelegramSizeMax> out) noexcept {
   const std::uint64_t lie = told_++ / telegrams_per_lie_;
   const auto uniform = [&](std::uint64_t which) {
     return random_uniform(seed_, kLieStream + which, lie);
   };
-  link::WireTelegram lying = telegram;
+  WireTelegram lying = telegram;
   ModelPayload model;
   model.version = static_cast<std::uint32_t>(lie + 1);
   model.surface = kSurfaceMax * (2 * uniform(0) - 1);
@@ -44,7 +44,7 @@ std::size_t LyingCodec::encode(const link::WireTelegram& telegram,
   return codec_->encode(lying, out);
 }
 
-std::optional<link::WireTelegram> LyingCodec::decode(std::span<const std::byte> bytes) noexcept {
+std::optional<WireTelegram> LyingCodec::decode(std::span<const std::byte> bytes) noexcept {
   return codec_->decode(bytes);
 }
 

@@ -14,9 +14,9 @@ class LyingCodec final : public link::Codec {
   LyingCodec(std::unique_ptr<link::Codec> codec, std::uint64_t seed, Duration period);
   // NOLINTNEXTLINE(bugprone-exception-escape): copying a payload does not throw
   [[nodiscard]] std::size_t encode(
-      const link::WireTelegram& telegram,
-      std::span<std::byte, link::kTelegramSizeMax> out) noexcept override;
-  [[nodiscard]] std::optional<link::WireTelegram> decode(
+      const WireTelegram& telegram,
+      std::span<std::byte, message::kTelegramSizeMax> out) noexcept override;
+  [[nodiscard]] std::optional<WireTelegram> decode(
       std::span<const std::byte> bytes) noexcept override;
 
  private:

@@ -71,7 +71,7 @@ void LabSession::step(TimePoint now) {
     control_.pop_front();
     carry_out(session_.on_datagram(next.bytes, clock_.local(now)), now);
   }
-  const link::LinkHealth health = link_.health(clock_.local(now));
+  const LinkHealth health = link_.health(clock_.local(now));
   carry_out(session_.tick(clock_.local(now), health.state, health.session_id), now);
 }
 

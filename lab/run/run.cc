@@ -72,7 +72,7 @@ class DirectRecorder final : public record::Recorder {
  public:
   DirectRecorder(const Simulator& world, record::SessionWriter* writer)
       : world_{world}, writer_{writer} {}
-  bool record(const record::Record& record) noexcept override {
+  bool record(const Record& record) noexcept override {
     if (const auto* estimate = std::get_if<DepthEstimate>(&record)) estimates_.push_back(*estimate);
     return writer_ == nullptr || writer_->write(record, world_.now());
   }

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/core/stroke.h"
 #include "common/link/telegram.h"
+#include "common/message/depth.h"
 #include "common/record/byte_sink.h"
 #include "lab/run/metrics.h"
 #include "lab/run/scenario.h"
@@ -21,8 +21,8 @@ struct RunResult {
   RunMetrics metrics;
   std::vector<RunTick> ticks;         ///< while the script was performed
   std::vector<DepthEstimate> depths;  ///< one per stroke, in order
-  link::LinkHealth surgeon_link;
-  link::LinkHealth patient_link;
+  LinkHealth surgeon_link;
+  LinkHealth patient_link;
   std::uint64_t records{};  ///< written to both session files
 };
 

@@ -101,8 +101,8 @@ void SurgeonProcess::tick(TimePoint now) {
   status_ = parts_->node.status().get();
 }
 
-link::LinkHealth SurgeonProcess::health(TimePoint now) const noexcept {
-  return parts_ ? parts_->link.health(session_setup_.clock().local(now)) : link::LinkHealth{};
+LinkHealth SurgeonProcess::health(TimePoint now) const noexcept {
+  return parts_ ? parts_->link.health(session_setup_.clock().local(now)) : LinkHealth{};
 }
 
 PatientProcess::Running::Running(PatientProcess& owner)
@@ -149,8 +149,8 @@ void PatientProcess::tick(TimePoint now) {
   session_setup_.step(now);
 }
 
-link::LinkHealth PatientProcess::health(TimePoint now) const noexcept {
-  return parts_ ? parts_->link.health(session_setup_.clock().local(now)) : link::LinkHealth{};
+LinkHealth PatientProcess::health(TimePoint now) const noexcept {
+  return parts_ ? parts_->link.health(session_setup_.clock().local(now)) : LinkHealth{};
 }
 
 }  // namespace palp::lab

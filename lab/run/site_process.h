@@ -87,7 +87,7 @@ class SurgeonProcess {
   /// Alive, and the pedal down: the force at the hand is this process's own.
   [[nodiscard]] bool pressed() const noexcept { return alive() && device_.pedal_held(); }
   [[nodiscard]] const surgeon::SurgeonStatus& status() const noexcept { return status_; }
-  [[nodiscard]] link::LinkHealth health(TimePoint now) const noexcept;
+  [[nodiscard]] LinkHealth health(TimePoint now) const noexcept;
 
  private:
   const Scenario& scenario_;
@@ -123,7 +123,7 @@ class PatientProcess {
   void tick(TimePoint now);
   [[nodiscard]] LocalClock& clock() noexcept { return session_setup_.clock(); }
   [[nodiscard]] PhantomAtClock& devices() noexcept { return device_; }
-  [[nodiscard]] link::LinkHealth health(TimePoint now) const noexcept;
+  [[nodiscard]] LinkHealth health(TimePoint now) const noexcept;
 
  private:
   const Scenario& scenario_;

@@ -40,25 +40,23 @@ void fold_port(Digest& digest, const PortSample& port) noexcept {
 
 struct RecordFolder {
   Digest& digest;
-  void operator()(const record::SiteTick& t) const noexcept {
+  void operator()(const SiteTick& t) const noexcept {
     fold_all(digest, t.at, t.state, t.epoch, t.position, t.velocity, t.force, t.lateral, t.command);
     fold_all(digest, t.gate_acted, t.round_trip);
     fold_port(digest, t.sent);
   }
-  void operator()(const record::Arrived& a) const noexcept {
+  void operator()(const Arrived& a) const noexcept {
     const Incoming& in = a.incoming;
     fold_all(digest, a.at, in.number, in.fresh, in.repaired, in.sent_at, in.arrived_at);
     fold_port(digest, in.sample);
   }
-  void operator()(const record::LinkStatus& l) const noexcept {
-    const link::LinkHealth& h = l.health;
+  void operator()(const LinkStatus& l) const noexcept {
+    const LinkHealth& h = l.health;
     fold_all(digest, l.at, h.state, h.gap, h.round_trip, h.sent, h.accepted, h.late, h.lost);
     fold_all(digest, h.repaired, h.stale, h.old_epoch, h.replayed, h.malformed, h.foreign);
   }
-  void operator()(const record::Note& n) const noexcept {
-    fold_all(digest, n.at, n.code, n.detail);
-  }
-  void operator()(const record::Transition& t) const noexcept {
+  void operator()(const Note& n) const noexcept { fold_all(digest, n.at, n.code, n.detail); }
+  void operator()(const Transition& t) const noexcept {
     fold_all(digest, t.at, t.from, t.to, t.reason);
   }
   void operator()(const ContactSample& c) const noexcept {
@@ -67,7 +65,7 @@ struct RecordFolder {
   void operator()(const DepthEstimate& d) const noexcept {
     fold_all(digest, d.number, d.stroke_ended_at, d.verdict, d.reason, d.hash, d.depth, d.surface);
   }
-  void operator()(const record::DepthArrived& d) const noexcept {
+  void operator()(const DepthArrived& d) const noexcept {
     fold_all(digest, d.at, d.report.number, d.report.verdict, d.report.depth, d.report.hash);
   }
   void operator()(const record::HandReading& h) const noexcept {
@@ -105,7 +103,7 @@ struct RecordFolder {
 
 }  // namespace
 
-bool DigestRecorder::record(const record::Record& record) noexcept {
+bool DigestRecorder::record(const Record& record) noexcept {
   digest_.add(record.index());
   std::visit(RecordFolder{digest_}, record);
   return next_ == nullptr || next_->record(record);

@@ -10,7 +10,7 @@ class DigestRecorder final : public record::Recorder {
  public:
   /// `next` may be null; both outlive the recorder.
   DigestRecorder(Digest& digest, record::Recorder* next) noexcept : digest_{digest}, next_{next} {}
-  bool record(const record::Record& record) noexcept override;
+  bool record(const Record& record) noexcept override;
 
  private:
   Digest& digest_;

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "common/core/stroke.h"
+#include "common/message/depth.h"
 
 namespace palp::estimator {
 

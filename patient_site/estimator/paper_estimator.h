@@ -7,8 +7,8 @@
 
 #include "common/core/device_facts.h"
 #include "common/core/filters.h"
-#include "common/core/stroke.h"
 #include "common/core/time.h"
+#include "common/message/depth.h"
 #include "patient_site/estimator/contact_curve.h"
 #include "patient_site/estimator/stroke_cutter.h"
 #include "patient_site/estimator/surface.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/core/stroke.h"
+#include "common/message/depth.h"
 #include "patient_site/estimator/cubic_fit.h"
 
 namespace palp::estimator {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/core/stroke.h"
+#include "common/message/depth.h"
 
 namespace palp::estimator {
 

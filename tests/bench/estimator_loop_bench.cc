@@ -25,7 +25,7 @@ constexpr auto kPause = std::chrono::milliseconds{1};  // of the estimator's thr
 
 class NoRecorder final : public record::Recorder {
  public:
-  bool record(const record::Record&) noexcept override { return true; }
+  bool record(const Record&) noexcept override { return true; }
 };
 
 struct Account {

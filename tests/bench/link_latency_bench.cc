@@ -80,7 +80,7 @@ struct End {
   std::vector<Duration> reading;
   std::size_t ready_at_most{};
 
-  void exchange(link::Link& link, const link::Telegram& telegram, const End& peer, TimePoint now) {
+  void exchange(link::Link& link, const Telegram& telegram, const End& peer, TimePoint now) {
     const io::SteadyClock clock;
     const TimePoint began = clock.now();
     const link::Arrivals arrivals = link.receive(now);
@@ -97,8 +97,8 @@ struct End {
   }
 };
 
-link::Telegram telegram_of(Role role) {
-  link::Telegram telegram;
+Telegram telegram_of(Role role) {
+  Telegram telegram;
   telegram.site.state = SiteState::Engaged;
   telegram.site.epoch = 3;
   telegram.port = {.position = 1.25e-3, .velocity = 0.02, .force = 0.31, .payload = {}};

@@ -44,7 +44,7 @@ struct SecureSite {
   io::LinkUpdateDesk desk;
   link::Link link{{}, std::make_unique<link::WireCodec>()};
   io::SessionServer server;
-  Mailbox<link::LinkHealth> health;  ///< writer: rt, reader: main
+  Mailbox<LinkHealth> health;  ///< writer: rt, reader: main
   std::unique_ptr<io::PeriodicThread> rt;
 };
 

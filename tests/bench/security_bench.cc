@@ -292,8 +292,8 @@ bool flood_with(int kind, Duration span, Road& road, SecureSite& surgeon, Secure
   const StolenTime stolen;
   RawLoop raw{
       socket, clock.now() + milliseconds{10}, static_cast<std::size_t>(span / milliseconds{1})};
-  const link::LinkHealth before = patient.health.get();
-  const link::LinkHealth sent_before = surgeon.health.get();
+  const LinkHealth before = patient.health.get();
+  const LinkHealth sent_before = surgeon.health.get();
   const io::LoopProgress loop_before = patient.rt->progress();
   const long memory = resident_kb();
   const std::uint64_t junk = road.junk();
@@ -301,7 +301,7 @@ bool flood_with(int kind, Duration span, Road& road, SecureSite& surgeon, Secure
   clock.sleep_until(clock.now() + span);
   road.flood(0);
   clock.sleep_until(clock.now() + milliseconds{200});
-  const link::LinkHealth after = patient.health.get();
+  const LinkHealth after = patient.health.get();
   const io::LoopProgress loop = patient.rt->progress();
   const RawAccount reference = raw.stop();
   ::close(socket);

@@ -55,8 +55,8 @@ class TwoSites {
   void tick_patient(TimePoint now) { patient_.tick(now); }
   /// Thread: that of the ticks.
   void drop_records() {
-    surgeon_records_.drain([](const record::Record&) {});
-    patient_records_.drain([](const record::Record&) {});
+    surgeon_records_.drain([](const Record&) {});
+    patient_records_.drain([](const Record&) {});
   }
   [[nodiscard]] SpscQueue<ContactSample>& contact() { return contact_; }
   [[nodiscard]] Mailbox<DepthEstimate>& depth() { return depth_; }

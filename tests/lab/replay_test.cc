@@ -91,13 +91,13 @@ void expect_same_again(const std::string& coupling, FaultKind fault) {
   const Replays again = replay(files);
   EXPECT_EQ(again.surgeon.difference, "");
   EXPECT_EQ(again.patient.difference, "");
-  EXPECT_EQ(again.surgeon.ticks, all<record::SiteTick>(files.surgeon.bytes()).size());
-  EXPECT_EQ(again.patient.ticks, all<record::SiteTick>(files.patient.bytes()).size());
+  EXPECT_EQ(again.surgeon.ticks, all<SiteTick>(files.surgeon.bytes()).size());
+  EXPECT_EQ(again.patient.ticks, all<SiteTick>(files.patient.bytes()).size());
   EXPECT_EQ(again.surgeon.ticks, 14'000U);
   EXPECT_EQ(again.patient.estimates, all<DepthEstimate>(files.patient.bytes()).size());
   // Or nothing was at stake: engaged, held by the blackout or stopped by the fault, and again.
-  EXPECT_GT(all<record::Transition>(files.surgeon.bytes()).size(), 4U);
-  EXPECT_GT(all<record::Transition>(files.patient.bytes()).size(), 4U);
+  EXPECT_GT(all<Transition>(files.surgeon.bytes()).size(), 4U);
+  EXPECT_GT(all<Transition>(files.patient.bytes()).size(), 4U);
 }
 
 TEST(ReplayTest, DirectDoesTheSameAgainFromItsFiles) {
@@ -136,7 +136,7 @@ TEST(ReplayTest, EstimatesComeAgainToo) {
   EXPECT_EQ(again.patient.difference, "");
   EXPECT_GE(again.patient.estimates, 4U);
   EXPECT_EQ(again.patient.estimates, all<DepthEstimate>(files.patient.bytes()).size());
-  EXPECT_FALSE(all<record::DepthArrived>(files.surgeon.bytes()).empty());
+  EXPECT_FALSE(all<DepthArrived>(files.surgeon.bytes()).empty());
 }
 
 /// The file once more, each record as `change` wants it.
@@ -157,12 +157,11 @@ TEST(ReplayTest, OneBitOfOneReadingIsADifference) {
   const Scenario scenario = rough("mmt", FaultKind::None);
   const Files files = session_of(scenario);
   int hands = 0;
-  const auto changed =
-      altered(files.surgeon.bytes(), link::Role::Surgeon, [&](record::Record& record) {
-        auto* hand = std::get_if<record::HandReading>(&record);
-        if (hand != nullptr && ++hands == 9000) hand->position = std::nextafter(hand->position, 1);
-        return true;
-      });
+  const auto changed = altered(files.surgeon.bytes(), link::Role::Surgeon, [&](Record& record) {
+    auto* hand = std::get_if<record::HandReading>(&record);
+    if (hand != nullptr && ++hands == 9000) hand->position = std::nextafter(hand->position, 1);
+    return true;
+  });
   const auto again = replay_surgeon(changed, scenario.surgeon, scenario.coupling);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->ticks, 9000U);

@@ -11,11 +11,11 @@ namespace {
 
 class ListRecorder final : public record::Recorder {
  public:
-  bool record(const record::Record& record) noexcept override {
+  bool record(const Record& record) noexcept override {
     records.push_back(record);
     return accept;
   }
-  std::vector<record::Record> records;
+  std::vector<Record> records;
   bool accept{true};
 };
 

@@ -120,7 +120,7 @@ TEST(PatientControlTest, ATicksRecordsEndWithWhatTheLinkSaid) {
   Bench bench;
   for (int i = 0; i < 20; ++i) bench.engaged_tick(0);
   std::size_t ticks = 0;
-  for (const record::Record& record : bench.recorder.records()) {
+  for (const Record& record : bench.recorder.records()) {
     if (std::holds_alternative<record::LinkHeard>(record)) ++ticks;
   }
   EXPECT_EQ(ticks, 20U);

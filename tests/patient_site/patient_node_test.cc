@@ -64,19 +64,19 @@ class FaultySite final : public Stage, public ForceSensor {
 
 class ListRecorder final : public record::Recorder {
  public:
-  bool record(const record::Record& record) noexcept override {
+  bool record(const Record& record) noexcept override {
     records.push_back(record);
     return true;
   }
   template <class T>
   [[nodiscard]] std::vector<T> all() const {
     std::vector<T> found;
-    for (const record::Record& record : records) {
+    for (const Record& record : records) {
       if (const T* one = std::get_if<T>(&record)) found.push_back(*one);
     }
     return found;
   }
-  std::vector<record::Record> records;
+  std::vector<Record> records;
 };
 
 /// A patient site with everything, and the surgeon's end of the link in the hands of the test.
@@ -92,7 +92,7 @@ struct World {
   SpscQueue<ContactSample> contact{1 << 15};
   Mailbox<DepthEstimate> depth;
   PatientNode node{{}, {site, site, law, patient_link, recorder, contact, depth}};
-  link::Telegram say;  ///< the surgeon's
+  Telegram say;  ///< the surgeon's
   link::Arrivals heard;
   TimePoint now{};
   bool silent{};
@@ -246,7 +246,7 @@ TEST(PatientNodeTest, EveryFaultOfADeviceStopsTheSite) {
     fault(world.site);
     world.run(milliseconds{60});
     EXPECT_TRUE(world.site.halted);
-    const auto transitions = world.recorder.all<record::Transition>();
+    const auto transitions = world.recorder.all<Transition>();
     EXPECT_EQ(transitions.back().reason, static_cast<std::uint16_t>(NoteCode::DeviceFault));
     return world.status().state;
   };
@@ -291,7 +291,7 @@ TEST(PatientNodeTest, AStageThatDoesNotFollowStopsTheSite) {
   EXPECT_EQ(world.status().state, SiteState::Engaged);
   world.run(milliseconds{150});
   EXPECT_EQ(world.status().state, SiteState::Stopped);
-  const auto transitions = world.recorder.all<record::Transition>();
+  const auto transitions = world.recorder.all<Transition>();
   EXPECT_EQ(transitions.back().reason, static_cast<std::uint16_t>(NoteCode::DeviceFault));
 }
 
@@ -366,7 +366,7 @@ TEST(PatientNodeTest, ALawThatGivesNoNumberMovesNothing) {
   world.run(milliseconds{100});
   EXPECT_NEAR(world.plant.truth().position, -10e-3, 10e-6);
   bool noted = false;
-  for (const record::Note& note : world.recorder.all<record::Note>()) {
+  for (const Note& note : world.recorder.all<Note>()) {
     noted |= note.code == static_cast<std::uint16_t>(NoteCode::NotFinite);
   }
   EXPECT_TRUE(noted);
@@ -385,13 +385,13 @@ TEST(PatientNodeTest, RecordsEachTickEachArrivalAndTheLinkTenTimesASecond) {
   world.engage();
   world.run(std::chrono::seconds{1});
   const PatientStatus status = world.status();
-  EXPECT_EQ(world.recorder.all<record::SiteTick>().size(), status.ticks);
+  EXPECT_EQ(world.recorder.all<SiteTick>().size(), status.ticks);
   EXPECT_EQ(world.recorder.records.size(), status.records);
-  EXPECT_NEAR(static_cast<double>(world.recorder.all<record::Arrived>().size()),
+  EXPECT_NEAR(static_cast<double>(world.recorder.all<Arrived>().size()),
               static_cast<double>(status.ticks),
               110);
-  EXPECT_NEAR(static_cast<double>(world.recorder.all<record::LinkStatus>().size()), 12, 1);
-  const auto transitions = world.recorder.all<record::Transition>();
+  EXPECT_NEAR(static_cast<double>(world.recorder.all<LinkStatus>().size()), 12, 1);
+  const auto transitions = world.recorder.all<Transition>();
   ASSERT_EQ(transitions.size(), 2U);
   EXPECT_EQ(transitions[0].to, SiteState::Clutched);
   EXPECT_EQ(transitions[1].to, SiteState::Engaged);

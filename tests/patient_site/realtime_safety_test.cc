@@ -59,7 +59,7 @@ class LaneEnd final : public link::Transport {
 
 class CountingRecorder final : public record::Recorder {
  public:
-  bool record(const record::Record& /*record*/) noexcept override {
+  bool record(const Record& /*record*/) noexcept override {
     ++count_;
     return true;
   }
@@ -91,7 +91,7 @@ TEST(PatientRealtimeTest, ATickNeitherAllocatesNorWaits) {
   (void)patient.adopt(hand_over(down, up, 2, 3), now);
   PatientNode node{{}, {site, site, law, patient, recorder, contact, depth}};
 
-  link::Telegram say;
+  Telegram say;
   RealtimeGuard guard;
   for (int i = 0; i < 4000; ++i) {
     now += std::chrono::milliseconds{1};

@@ -39,7 +39,7 @@ inline std::vector<std::byte> bytes_of(const record::MemorySink& sink) {
 }
 
 /// Hand 0.8 s in, from -3 mm to 4 mm past the surface and back, then 0.2 s rest; A first, then B.
-inline record::SiteTick hand_tick(std::int64_t ms, int taps_per_place) {
+inline SiteTick hand_tick(std::int64_t ms, int taps_per_place) {
   const auto tap = ms / 1000;
   const double phase = static_cast<double>(ms % 1000) / 800;
   const bool moving = phase < 1;
@@ -80,16 +80,16 @@ inline SampleFiles sample_session(const SampleOptions& options = {}) {
                                    .attachments = {{"tissue.csv", "text/csv", kTissueCsv}}}};
     const int strokes = 2 * options.taps_per_place;
     for (std::int64_t ms = 0; ms < 1000 * strokes; ++ms) {
-      const record::SiteTick tick = hand_tick(ms, options.taps_per_place);
+      const SiteTick tick = hand_tick(ms, options.taps_per_place);
       surgeon.write(tick, tick.at);
       const TimePoint there = tick.at + kClockOffset + kWay;
       if (ms % 100 == 0) {
-        link::LinkHealth health;
+        LinkHealth health;
         health.state = LinkState::Live;
         health.round_trip = 2 * kWay;
         health.late = 5;
         health.forged = 2;
-        surgeon.write(record::LinkStatus{.at = tick.at, .health = health}, tick.at);
+        surgeon.write(LinkStatus{.at = tick.at, .health = health}, tick.at);
       }
       const int stroke = static_cast<int>(ms / 1000);
       if (ms % 1000 == 400 && stroke != options.unseen_stroke) {
@@ -97,7 +97,7 @@ inline SampleFiles sample_session(const SampleOptions& options = {}) {
         const auto number = static_cast<std::uint32_t>(stroke + 1);
         if (options.reports) {
           const TimePoint heard = tick.at + 2 * kWay;
-          surgeon.write(record::DepthArrived{.at = heard, .report = {.number = number}}, tick.at);
+          surgeon.write(DepthArrived{.at = heard, .report = {.number = number}}, tick.at);
         }
         patient.write(DepthEstimate{.number = number,
                                     .stroke_began_at = there - std::chrono::milliseconds{180},
@@ -117,7 +117,7 @@ inline SampleFiles sample_session(const SampleOptions& options = {}) {
                       there);
       }
     }
-    surgeon.write(record::Transition{at_ms(500), SiteState::Clutched, SiteState::Engaged, 2},
+    surgeon.write(Transition{at_ms(500), SiteState::Clutched, SiteState::Engaged, 2},
                   at_ms(1000 * strokes));
   }
   return {bytes_of(surgeon_sink), bytes_of(patient_sink)};

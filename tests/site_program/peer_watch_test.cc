@@ -11,8 +11,8 @@ using testing::HasSubstr;
 
 constexpr TimePoint kStart{seconds{100}};
 
-link::LinkHealth link_in(LinkState state) {
-  link::LinkHealth link;
+LinkHealth link_in(LinkState state) {
+  LinkHealth link;
   link.state = state;
   return link;
 }
@@ -69,7 +69,7 @@ TEST(PeerWatchTest, WhoeverRefusedIsNotSaidToBeSilent) {
 
 TEST(PeerWatchTest, ARoundTripAboveTheLimitIsNamed) {
   PeerWatch watch_it = watch();
-  link::LinkHealth link = link_in(LinkState::Down);
+  LinkHealth link = link_in(LinkState::Down);
   link.round_trip_min = std::chrono::milliseconds{2600};
   const auto exit_status = watch_it.judge(link, kStart + seconds{30});
   ASSERT_TRUE(exit_status);

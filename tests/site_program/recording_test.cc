@@ -32,7 +32,7 @@ TEST(RecordingTest, WhatAllWritersRecordedIsInTheFile) {
   const std::string path = fresh_file();
   Recording recording{{.file = path}, patient_info(), 2};
   for (int i = 0; i < 100; ++i) {
-    EXPECT_TRUE(recording.recorder(0).record(record::SiteTick{}));
+    EXPECT_TRUE(recording.recorder(0).record(SiteTick{}));
   }
   EXPECT_TRUE(recording.recorder(1).record(DepthEstimate{}));
   const RecordAccount& account = recording.stop();
@@ -45,7 +45,7 @@ TEST(RecordingTest, WhatAllWritersRecordedIsInTheFile) {
 
 TEST(RecordingTest, WithoutAFileNothingIsWritten) {
   Recording recording{{}, patient_info(), 1};
-  EXPECT_TRUE(recording.recorder(0).record(record::SiteTick{}));
+  EXPECT_TRUE(recording.recorder(0).record(SiteTick{}));
   EXPECT_EQ(recording.stop().counts.records(), 0U);
 }
 
@@ -63,7 +63,7 @@ TEST(RecordingTest, AFullQueueIsCounted) {
   Recording recording{{.queue_records = 256}, patient_info(), 1};
   std::uint64_t refused = 0;
   for (int i = 0; i < 100'000; ++i) {
-    if (!recording.recorder(0).record(record::SiteTick{})) ++refused;
+    if (!recording.recorder(0).record(SiteTick{})) ++refused;
   }
   EXPECT_GT(refused, 0U);
   EXPECT_EQ(recording.stop().dropped, refused);
@@ -81,9 +81,9 @@ std::string told(Recording& recording) {
 TEST(RecordingTest, ChangesOfStateAreToldToPeople) {
   Recording recording{{}, patient_info(), 1};
   (void)recording.recorder(0).record(
-      record::Transition{.from = SiteState::Engaged,
-                         .to = SiteState::Hold,
-                         .reason = static_cast<std::uint16_t>(record::NoteCode::GapHold)});
+      Transition{.from = SiteState::Engaged,
+                 .to = SiteState::Hold,
+                 .reason = static_cast<std::uint16_t>(record::NoteCode::GapHold)});
   EXPECT_THAT(told(recording), testing::HasSubstr("ENGAGED -> HOLD: nothing arrived: hold"));
 }
 
@@ -91,7 +91,7 @@ TEST(RecordingTest, WhatRepeatsItselfIsToldOnce) {
   Recording recording{{}, patient_info(), 1};
   for (int i = 0; i < 20; ++i) {
     (void)recording.recorder(0).record(
-        record::Note{.code = static_cast<std::uint16_t>(record::NoteCode::RoundTripTooLong)});
+        Note{.code = static_cast<std::uint16_t>(record::NoteCode::RoundTripTooLong)});
   }
   const std::string text = told(recording);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;

@@ -59,11 +59,11 @@ TEST(SiteReportTest, HasTheKeysThatScriptsRelyOn) {
 TEST(SiteReportTest, TheClockOfThePeerIsNullBeforeItIsKnown) {
   SiteReport made;
   EXPECT_TRUE(json::parse(to_json(made))["clock"].is_null());
-  link::LinkHealth health;
-  health.peer_clock = link::ClockOffset{.offset = std::chrono::milliseconds{-1500},
-                                        .skew = 20e-6,
-                                        .uncertainty = std::chrono::milliseconds{40},
-                                        .at = {}};
+  LinkHealth health;
+  health.peer_clock = ClockOffset{.offset = std::chrono::milliseconds{-1500},
+                                  .skew = 20e-6,
+                                  .uncertainty = std::chrono::milliseconds{40},
+                                  .at = {}};
   health.delay_in = std::chrono::milliseconds{41};
   made.round_trips.add(health);
   made.round_trips.add({});  // the session is over
@@ -98,7 +98,7 @@ TEST(SiteReportTest, RejectionsOnAndBesideTheLinkAreOneSum) {
 TEST(SiteReportTest, WhatWasNeverMeasuredIsNull) {
   SiteReport made;
   EXPECT_TRUE(json::parse(to_json(made))["round_trip_p50_ms"].is_null());
-  link::LinkHealth link;
+  LinkHealth link;
   link.round_trip = std::chrono::milliseconds{5};
   link.round_trip_min = std::chrono::milliseconds{4};
   made.round_trips.add(link);

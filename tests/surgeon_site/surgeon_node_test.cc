@@ -88,7 +88,7 @@ class Bench {
 };
 
 double worst_step(const Keeper& recorder) {
-  const std::vector<record::SiteTick> ticks = recorder.all<record::SiteTick>();
+  const std::vector<SiteTick> ticks = recorder.all<SiteTick>();
   double worst = 0;
   for (std::size_t i = 10; i < ticks.size(); ++i) {
     worst = std::max(worst, std::abs(ticks[i].command - ticks[i - 10].command));
@@ -97,7 +97,7 @@ double worst_step(const Keeper& recorder) {
 }
 
 bool noted(const Keeper& recorder, NoteCode code) {
-  for (const record::Note& note : recorder.all<record::Note>()) {
+  for (const Note& note : recorder.all<Note>()) {
     if (note.code == static_cast<std::uint16_t>(code)) return true;
   }
   return false;
@@ -116,7 +116,7 @@ TEST(SurgeonNodeTest, PalpatesFromBeginningToEnd) {
   EXPECT_EQ(hand.progress().outcome, ScriptOutcome::Completed);
   EXPECT_NEAR(force_max, plain_force(4e-3), 0.1);
   EXPECT_NEAR(depth_max, 4e-3, 0.3e-3);
-  const auto transitions = bench.recorder.all<record::Transition>();
+  const auto transitions = bench.recorder.all<Transition>();
   ASSERT_GE(transitions.size(), 3U);
   EXPECT_EQ(transitions[0].to, SiteState::Clutched);
   EXPECT_EQ(transitions[1].to, SiteState::Engaged);
@@ -130,7 +130,7 @@ TEST(SurgeonNodeTest, LawIsToldTheForceThatWasApplied) {
   Bench bench{hand};
   bench.run(30s, [&] { return !hand.finished(); });
   double before = 0;
-  for (const record::SiteTick& tick : bench.recorder.all<record::SiteTick>()) {
+  for (const SiteTick& tick : bench.recorder.all<SiteTick>()) {
     ASSERT_EQ(tick.force, before);
     before = tick.command;
   }
@@ -162,7 +162,7 @@ TEST(SurgeonNodeTest, SamplesSentBeforeTheEngagementCauseNoForce) {
   device.state.position += 5e-3;
   bench.run(1s);
   ASSERT_EQ(bench.status().state, SiteState::Engaged);
-  for (const record::SiteTick& tick : bench.recorder.all<record::SiteTick>()) {
+  for (const SiteTick& tick : bench.recorder.all<SiteTick>()) {
     ASSERT_EQ(tick.command, 0);
   }
 }
@@ -205,7 +205,7 @@ TEST(SurgeonNodeTest, PatientKilledInAPressGoesHoldThenRetractThenEngagesAgain) 
   std::vector<SiteState> states;
   TimePoint held_at{};
   TimePoint retracted_at{};
-  for (const record::Transition& transition : bench.recorder.all<record::Transition>()) {
+  for (const Transition& transition : bench.recorder.all<Transition>()) {
     if (transition.at < killed_at) continue;
     states.push_back(transition.to);
     if (transition.to == SiteState::Hold) held_at = transition.at;
@@ -291,7 +291,7 @@ TEST(SurgeonNodeTest, DeviceWithoutNumbersStopsTheSite) {
   EXPECT_TRUE(std::isfinite(bench.status().position));
   EXPECT_EQ(device.force_applied, 0);
   int notes = 0;
-  for (const record::Note& note : bench.recorder.all<record::Note>()) {
+  for (const Note& note : bench.recorder.all<Note>()) {
     notes += note.code == static_cast<std::uint16_t>(NoteCode::NotFinite);
   }
   EXPECT_EQ(notes, 1);
@@ -314,9 +314,9 @@ TEST(SurgeonNodeTest, RecordsEveryTickEveryArrivalAndTenStatusesASecond) {
   HeldDevice device;
   Bench bench{device};
   bench.run(2s);
-  EXPECT_EQ(bench.recorder.all<record::SiteTick>().size(), 2000U);
-  EXPECT_EQ(bench.recorder.all<record::LinkStatus>().size(), 20U);
-  EXPECT_EQ(bench.recorder.all<record::Arrived>().size(), 1999U);
+  EXPECT_EQ(bench.recorder.all<SiteTick>().size(), 2000U);
+  EXPECT_EQ(bench.recorder.all<LinkStatus>().size(), 20U);
+  EXPECT_EQ(bench.recorder.all<Arrived>().size(), 1999U);
   EXPECT_EQ(bench.status().ticks, 2000U);
   EXPECT_EQ(bench.status().records, bench.recorder.kept.size());
 }
@@ -330,7 +330,7 @@ TEST(SurgeonNodeTest, EachDepthIsRecordedOnce) {
   bench.run(100ms);
   bench.patient.report.depth.number = 2;
   bench.run(100ms);
-  const auto depths = bench.recorder.all<record::DepthArrived>();
+  const auto depths = bench.recorder.all<DepthArrived>();
   ASSERT_EQ(depths.size(), 2U);
   EXPECT_EQ(depths[0].report.depth, 5e-3);
   EXPECT_EQ(bench.status().depth.number, 2U);

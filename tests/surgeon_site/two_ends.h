@@ -72,20 +72,20 @@ inline void open_session(link::Link& link, Wire& out, Wire& in, std::uint64_t id
 /// Keeps all that is recorded.
 class Keeper final : public record::Recorder {
  public:
-  bool record(const record::Record& record) noexcept override {
+  bool record(const Record& record) noexcept override {
     kept.push_back(record);
     return true;
   }
   template <class T>
   [[nodiscard]] std::vector<T> all() const {
     std::vector<T> found;
-    for (const record::Record& one : kept) {
+    for (const Record& one : kept) {
       if (const T* match = std::get_if<T>(&one)) found.push_back(*match);
     }
     return found;
   }
 
-  std::vector<record::Record> kept;
+  std::vector<Record> kept;
 };
 
 /// A patient's site as the surgeon's needs it: a perfect stage on the tissue scripts assume. It
@@ -124,7 +124,7 @@ class PlainPatient {
     link_->send({report, out.to_surgeon}, now);
   }
 
-  link::SiteReport report;
+  SiteReport report;
   double position{-10e-3};  ///< [m]
   bool follows{true};
 

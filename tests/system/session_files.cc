@@ -21,11 +21,11 @@ SessionFile read_session(const std::string& path) {
   }
   record::SessionReader reader{file->bytes()};
   while (const auto entry = reader.next()) {
-    if (const auto* tick = std::get_if<record::SiteTick>(&entry->record)) {
+    if (const auto* tick = std::get_if<SiteTick>(&entry->record)) {
       session.ticks.push_back(*tick);
-    } else if (const auto* change = std::get_if<record::Transition>(&entry->record)) {
+    } else if (const auto* change = std::get_if<Transition>(&entry->record)) {
       session.transitions.push_back(*change);
-    } else if (const auto* arrived = std::get_if<record::Arrived>(&entry->record)) {
+    } else if (const auto* arrived = std::get_if<Arrived>(&entry->record)) {
       session.arrivals.push_back(arrived->incoming.arrived_at);
     }
   }
@@ -35,7 +35,7 @@ SessionFile read_session(const std::string& path) {
 }
 
 std::optional<TimePoint> change_to(const SessionFile& file, SiteState state, TimePoint since) {
-  const auto found = std::ranges::find_if(file.transitions, [&](const record::Transition& change) {
+  const auto found = std::ranges::find_if(file.transitions, [&](const Transition& change) {
     return change.to == state && change.at >= since;
   });
   if (found == file.transitions.end()) return std::nullopt;
@@ -54,7 +54,7 @@ ForceStep largest_force_step(const SessionFile& file, Duration span) {
   ForceStep largest;
   std::size_t oldest = 0;
   for (std::size_t newest = 0; newest < file.ticks.size(); ++newest) {
-    const record::SiteTick& tick = file.ticks[newest];
+    const SiteTick& tick = file.ticks[newest];
     while (tick.at - file.ticks[oldest].at > span) ++oldest;
     for (std::size_t other = oldest; other < newest; ++other) {
       const double step = std::abs(tick.command - file.ticks[other].command);

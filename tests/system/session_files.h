@@ -11,8 +11,8 @@ namespace palp::system_test {
 
 /// What the tests look at in a session file, in the order of the file.
 struct SessionFile {
-  std::vector<record::SiteTick> ticks;
-  std::vector<record::Transition> transitions;
+  std::vector<SiteTick> ticks;
+  std::vector<Transition> transitions;
   std::vector<TimePoint> arrivals;  ///< at the socket, of every sample of the peer
   std::uint64_t messages{};         ///< views included
   bool closed{};

@@ -18,7 +18,7 @@ void LinkUpdateDesk::serve(link::Link& link, TimePoint now) noexcept {
       (void)retired_.try_enqueue(std::move(retired));
     }
   }
-  const link::LinkHealth health = link.health(now);
+  const LinkHealth health = link.health(now);
   glance_.put({.state = health.state,
                .session_id = health.session_id,
                .newest_number = health.newest_number,

@@ -8,11 +8,11 @@
 
 #include "common/core/check.h"
 #include "common/core/conventions.h"
-#include "common/core/port_sample.h"
 #include "common/core/result.h"
 #include "common/core/site_state.h"
-#include "common/core/stroke.h"
 #include "common/core/time.h"
+#include "common/message/depth.h"
+#include "common/message/port_sample.h"
 
 namespace palp {
 namespace {

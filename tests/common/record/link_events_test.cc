@@ -16,7 +16,7 @@ class Journal {
  public:
   std::vector<NoteCode> look(LinkState state, std::uint64_t session, std::uint8_t key = 0) {
     std::vector<NoteCode> noted;
-    link::LinkHealth health;
+    LinkHealth health;
     health.state = state;
     health.session_id = session;
     health.key = key;

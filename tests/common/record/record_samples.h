@@ -100,8 +100,8 @@ inline void add_fields(Fields& out, const Arrived& a) {
           a.incoming.arrived_at);
 }
 inline void add_fields(Fields& out, const LinkStatus& s) {
-  const link::LinkHealth& h = s.health;
-  const link::ClockOffset clock = h.peer_clock.value_or(link::ClockOffset{});
+  const LinkHealth& h = s.health;
+  const ClockOffset clock = h.peer_clock.value_or(ClockOffset{});
   add_all(out,
           s.at,
           h.state,
@@ -189,7 +189,7 @@ inline void add_fields(Fields& out, const DepthEstimate& e) {
           e.fit_rms);
 }
 inline void add_fields(Fields& out, const DepthArrived& d) {
-  const link::DepthReport& r = d.report;
+  const DepthReport& r = d.report;
   add_all(out,
           d.at,
           r.number,

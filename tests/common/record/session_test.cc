@@ -50,14 +50,14 @@ PortSample any_sample() { return {any_double(), any_double(), any_double(), any_
 
 LinkStatus any_link_status() {
   LinkStatus status{.at = any_time(), .health = {}};
-  link::LinkHealth& h = status.health;
+  LinkHealth& h = status.health;
   h.state = any_of<LinkState>(kLinkStateCount);
   for (Duration* span :
        {&h.gap, &h.round_trip, &h.round_trip_min, &h.jitter, &h.delay_out, &h.delay_in}) {
     *span = any_span();
   }
   if (any<bool>()) {
-    h.peer_clock = link::ClockOffset{any_span(), any_double(), any_span(), any_time()};
+    h.peer_clock = ClockOffset{any_span(), any_double(), any_span(), any_time()};
   }
   for (std::uint64_t* count : {&h.sent,
                                &h.accepted,

@@ -38,7 +38,7 @@ TEST(SiteAccountTest, WhatTheRecorderRefusesIsCounted) {
 TEST(SiteAccountTest, TheLinksStatusIsWrittenAtTimesAndItsEventsAtOnce) {
   test::KeepingRecorder recorder;
   SiteAccount account{{.link_status_every = 10ms}, recorder};
-  link::LinkHealth health;
+  LinkHealth health;
   for (int i = 1; i <= 25; ++i) {
     (void)account.begin_tick(at(i * 1ms));
     if (i == 5) health.state = LinkState::Live;

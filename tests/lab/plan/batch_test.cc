@@ -343,7 +343,7 @@ TEST(LyingCodecTest, TellsAnotherModelEveryFiftyMilliseconds) {
   LyingCodec codec{std::make_unique<link::RawCodec>(), 3, std::chrono::milliseconds{1}};
   std::set<double> surfaces;
   for (int i = 0; i < 200; ++i) {
-    std::array<std::byte, link::kTelegramSizeMax> bytes{};
+    std::array<std::byte, message::kTelegramSizeMax> bytes{};
     const std::size_t size = codec.encode({}, bytes);
     const auto told = codec.decode(std::span{bytes}.first(size));
     ASSERT_TRUE(told);

@@ -43,7 +43,7 @@ using Misdeed = void (*)();
 class PlantedRecorder final : public record::Recorder {
  public:
   PlantedRecorder(record::Recorder& next, Misdeed misdeed) : next_{next}, misdeed_{misdeed} {}
-  bool record(const record::Record& record) noexcept override {
+  bool record(const Record& record) noexcept override {
     if (++count_ == 100 && misdeed_ != nullptr) misdeed_();
     return next_.record(record);
   }
@@ -99,7 +99,7 @@ class Desk {
   [[nodiscard]] std::uint64_t dropped() { return queue_.dropped(); }
   template <class Type>
   [[nodiscard]] std::uint64_t written() const {
-    return file_.counts().by_type[record::Record{Type{}}.index()];
+    return file_.counts().by_type[Record{Type{}}.index()];
   }
 
   template <class Status>
@@ -107,7 +107,7 @@ class Desk {
     link_updates_.destroy_retired();
     journey_.look(status);
     if (!disk_works) return;
-    queue_.drain([&](const record::Record& record) { (void)file_.write(record, status.at); });
+    queue_.drain([&](const Record& record) { (void)file_.write(record, status.at); });
   }
 
  private:
@@ -172,8 +172,8 @@ class WarmUp {
 
   [[nodiscard]] Desk& surgeon_desk() { return surgeon_desk_; }
   [[nodiscard]] Desk& patient_desk() { return patient_desk_; }
-  [[nodiscard]] link::LinkHealth surgeon_link() { return surgeon_.status().get().link; }
-  [[nodiscard]] link::LinkHealth patient_link() { return patient_.status().get().link; }
+  [[nodiscard]] LinkHealth surgeon_link() { return surgeon_.status().get().link; }
+  [[nodiscard]] LinkHealth patient_link() { return patient_.status().get().link; }
   [[nodiscard]] double contact_force_max() const { return contact_force_max_; }  ///< [N]
 
  private:
@@ -189,7 +189,7 @@ class WarmUp {
     const Duration age = now_ - kStart;
     keep_timetable(age);
     estimator_.drain();
-    estimates_.drain([](const record::Record&) {});
+    estimates_.drain([](const Record&) {});
     contact_force_max_ = std::max(contact_force_max_, tissue_.truth().contact_force);
     const bool disk_works = age < kDiskStalls || age >= kDiskWorks;
     surgeon_desk_.live(surgeon_.status().get(), disk_works);
@@ -248,7 +248,7 @@ class WarmUp {
 };
 
 /// Every reason to refuse a datagram was met, and the session went on all the same.
-void expect_busy(const link::LinkHealth& health) {
+void expect_busy(const LinkHealth& health) {
   EXPECT_GT(health.accepted, 12000U);
   EXPECT_GT(health.late, 100U);
   EXPECT_GT(health.repaired, 100U);
@@ -269,11 +269,11 @@ void expect_travelled(Desk& desk) {
   EXPECT_TRUE(desk.journey().states.all()) << desk.journey().states;
   EXPECT_GE(desk.journey().engagements, 2U);
   EXPECT_GE(desk.journey().estimates, 2U);
-  EXPECT_GT(desk.written<record::SiteTick>(), 20000U);
-  EXPECT_GT(desk.written<record::Arrived>(), 12000U);
-  EXPECT_GT(desk.written<record::LinkStatus>(), 100U);
-  EXPECT_GT(desk.written<record::Transition>(), 10U);
-  EXPECT_GE(desk.written<record::Note>(), 2U) << "of the sessions at least";
+  EXPECT_GT(desk.written<SiteTick>(), 20000U);
+  EXPECT_GT(desk.written<Arrived>(), 12000U);
+  EXPECT_GT(desk.written<LinkStatus>(), 100U);
+  EXPECT_GT(desk.written<Transition>(), 10U);
+  EXPECT_GE(desk.written<Note>(), 2U) << "of the sessions at least";
   EXPECT_GT(desk.dropped(), 0U) << "the disk stalled";
 }
 
@@ -296,7 +296,7 @@ TEST_P(RealtimeSafetyTest, BothNodesAreCleanThroughEveryStateOnAHostilePath) {
   expect_busy(warm_up.patient_link());
   expect_travelled(warm_up.surgeon_desk());
   expect_travelled(warm_up.patient_desk());
-  EXPECT_GT(warm_up.surgeon_desk().written<record::DepthArrived>(), 0U);
+  EXPECT_GT(warm_up.surgeon_desk().written<DepthArrived>(), 0U);
 }
 
 /// A misdeed and what the guard calls it.

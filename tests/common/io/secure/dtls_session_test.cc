@@ -55,7 +55,7 @@ TEST(DtlsSessionTest, NewKeysCostNoTelegram) {
   EXPECT_GE(world.surgeon->rekeyed, 8) << "two link updates for each changeover";
   EXPECT_GE(world.patient->rekeyed, 8);
   for (const Site* site : {world.surgeon.get(), world.patient.get()}) {
-    const link::LinkHealth health = site->link.health(world.now);
+    const LinkHealth health = site->link.health(world.now);
     EXPECT_EQ(health.lost + health.forged + health.replayed, 0U);
     EXPECT_EQ(site->established.size(), 1U) << "the same session all the time";
     EXPECT_GT(health.accepted, 29'000U);

@@ -107,7 +107,7 @@ struct Site {
     const link::Arrivals arrivals = link.receive(now);
     if (look) look(arrivals);
     link.send(telegram, now);
-    const link::LinkHealth health = link.health(now);
+    const LinkHealth health = link.health(now);
     take(session_endpoint.tick(now,
                                {.state = health.state,
                                 .session_id = health.session_id,
@@ -126,7 +126,7 @@ struct Site {
   std::vector<link::Established> established;
   std::vector<std::string> refused;
   std::vector<Endpoint> moved_to;
-  link::Telegram telegram;
+  Telegram telegram;
   std::function<void(const link::Arrivals&)> look;
   int closed{};
   int rekeyed{};
