@@ -41,8 +41,8 @@ void BayesEstimator::update(const TouchedPlace& place) {
   DepthModel::Input input{.touches = place.touches,
                           .surface = place.surface,
                           .noise = place.noise,
-                          .quantum = strokes_.force_quantum,
-                          .cut_off = strokes_.sensor_cut_off,
+                          .quantum = strokes_.sensor.step,
+                          .cut_off = strokes_.sensor.pole,
                           .stiffness = config_.stiffness,
                           .expected = {}};
   Settled& settled = settled_at(place);

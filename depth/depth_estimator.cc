@@ -15,6 +15,11 @@ std::variant<BayesEstimator, PaperEstimator> make(const DepthEstimatorConfig& co
 
 }  // namespace
 
+DepthEstimatorConfig with_sensor(DepthEstimatorConfig config, const ForceSensorFacts& sensor) {
+  config.strokes.sensor = sensor;
+  return config;
+}
+
 DepthEstimator::DepthEstimator(const DepthEstimatorConfig& config)
     : tracker_{config.strokes}, estimator_{make(config)} {}
 

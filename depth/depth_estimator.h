@@ -26,6 +26,10 @@ struct DepthEstimatorConfig {
   std::optional<DepthDatabase> database;  ///< nothing: the one in the program
 };
 
+/// `config` for strokes felt by that sensor.
+[[nodiscard]] DepthEstimatorConfig with_sensor(DepthEstimatorConfig config,
+                                               const ForceSensorFacts& sensor);
+
 /// Samples in, a depth for each stroke out: a tracker cuts the strokes, one of two estimators
 /// judges them. Thread: estimator; allocates.
 class DepthEstimator {

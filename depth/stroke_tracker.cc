@@ -29,13 +29,14 @@ bool StrokeTrackerConfig::same_place(const Place& one, const Place& other) const
 
 StrokeTracker::StrokeTracker(const StrokeTrackerConfig& config)
     : config_{config},
-      reading_{.pole_gain = LowPass{config.sensor_cut_off, config.period}.gain(),
+      reading_{.pole_gain = LowPass{config.sensor.pole, config.period}.gain(),
                .filter_gain = LowPass{config.filter_cut_off, config.period}.gain(),
-               .force_quantum = config.force_quantum,
-               .force_range = config.force_range,
+               .force_quantum = config.sensor.step,
+               .force_range = config.sensor.range,
                .change_force = config.change_force,
                .surface = config.surface},
       cutter_{config.cutter},
+      co_filter_{config.sensor.pole, config.period},
       position_filter_{config.filter_cut_off, config.period},
       force_filter_{config.filter_cut_off, config.period} {
   PALP_CHECK(config.fit_range > 0, "a law is read over a length");
@@ -69,11 +70,10 @@ std::optional<Stroke> StrokeTracker::take(const ContactSample& sample) {
 StrokeSample StrokeTracker::filter(const ContactSample& sample) noexcept {
   StrokeSample out{.measured = sample, .tip = sample.position};
   if (previous_) {
-    // The co-filter is a known first-order pole: undone exactly, it gives the encoder's reading.
-    out.tip = previous_->position + (sample.position - previous_->position) / reading_.pole_gain;
-    out.position = position_filter_.step(sample.position);
+    out.position = position_filter_.step(co_filter_.step(sample.position));
     out.force = force_filter_.step(sample.force);
   } else {
+    co_filter_.reset(sample.position);
     position_filter_.reset(sample.position);
     force_filter_.reset(sample.force);
     out.position = sample.position;
@@ -88,7 +88,7 @@ StrokeTracker::Measured StrokeTracker::measure() const noexcept {
   measured.position_max = loading.back().position;
   for (const StrokeSample& sample : loading) {
     measured.force_max = std::max(measured.force_max, sample.force);
-    measured.saturated |= std::abs(sample.measured.force) >= config_.force_range;
+    measured.saturated |= std::abs(sample.measured.force) >= config_.sensor.range;
     if (sample.force < config_.cutter.contact_force) continue;
     if (measured.in_contact++ == 0) measured.first_contact = sample.position;
   }

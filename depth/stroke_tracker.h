@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "common/core/device_facts.h"
 #include "common/core/filters.h"
 #include "common/core/time.h"
 #include "common/message/depth.h"
@@ -16,11 +17,9 @@
 namespace palp::depth {
 
 struct StrokeTrackerConfig {
-  double sensor_cut_off{20};      ///< [Hz], the transducer's pole: force and position carry it
+  ForceSensorFacts sensor{};      ///< whose forces these are
   double filter_cut_off{20};      ///< [Hz], low pass of the paper (section III)
   double period{1e-3};            ///< [s], of the samples
-  double force_quantum{0.05};     ///< [N], resolution of the transducer (paper II.A); 0: unknown
-  double force_range{49};         ///< [N], of the transducer (5 kgf)
   double fit_range{4e-3};         ///< [m], of eq. (2): reproduces the paper's hash values
   double noise_max{0.1};          ///< [N], rms of a sample: five times the transducer's
   std::size_t samples_min{30};    ///< of a stroke, in contact
@@ -76,6 +75,7 @@ class StrokeTracker {
   StrokeTrackerConfig config_;
   PlaceReading reading_;
   StrokeCutter cutter_;
+  LowPass co_filter_;  ///< of the tip: the sensor's pole, as the force has it
   LowPass position_filter_;
   LowPass force_filter_;
   std::optional<ContactSample> previous_;

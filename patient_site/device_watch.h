@@ -9,7 +9,7 @@ namespace palp::patient {
 
 struct DeviceWatchConfig {
   double sensor_travel{3e-3};  ///< [m], of the tip: in contact every reading changes by then
-  double contact_force{0.1};   ///< [N], two steps of the transducer: no reading of the air
+  double contact_force{0.1};   ///< [N], no reading of the air
   double force_limit{3};       ///< [N], above it the gate retreats, whatever is stuck
   double stage_error{1e-3};    ///< [m], from the tip to its target: a servo is on its way
   double stage_still{0.1e-3};  ///< [m]: that is no way

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "common/core/device_facts.h"
 #include "common/core/time.h"
 
 namespace palp::patient {
@@ -16,6 +17,8 @@ struct ForceSample {
 class ForceSensor {
  public:
   virtual ~ForceSensor() = default;
+  /// What it is: the same for as long as it lives. Thread: any.
+  [[nodiscard]] virtual ForceSensorFacts sensor_facts() const noexcept = 0;
   virtual std::optional<ForceSample> sample(TimePoint now) noexcept = 0;  ///< nullopt: none new
 };
 

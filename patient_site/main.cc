@@ -60,7 +60,6 @@ void declare_flags(config::CommandLine& line, config::Document& document, std::s
 struct Plan {
   Settings settings;
   Phantom phantom;
-  coupling::PatientCoupling law;
   site_program::RunnerConfig runner;
   record::SessionInfo info;
 };
@@ -74,8 +73,6 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   if (!address) return tl::unexpected{address.error()};
   auto phantom = make_phantom(settings->phantom);
   if (!phantom) return bad(phantom.error());
-  auto law = coupling::make_patient_coupling(settings->coupling);
-  if (!law) return bad(law.error());
   auto wrap = site_program::impaired_reception(
       settings->impairment, netem::Direction::Up, settings->seed, io::SteadyClock{}.now());
   if (!wrap) return bad(wrap.error());
@@ -83,11 +80,13 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   settings->node.gate = within_tables(settings->node.gate,
                                       simulation.surface_offset - simulation.breathing_amplitude,
                                       phantom->depth_max());
+  const PatientDevices devices = facts_of(simulation);
   site_program::RunnerConfig runner;
   runner.session = {.role = link::Role::Patient,
                     .settings_hash = settings->agreement,
                     .coupling = settings->coupling.name,
-                    .git = std::string{site_program::git_commit()}};
+                    .git = std::string{site_program::git_commit()},
+                    .devices = {.hand = {}, .stage = devices.stage, .sensor = devices.sensor}};
   runner.address = *address;
   runner.protection = settings->protection;
   runner.wrap_transport = std::move(*wrap);
@@ -96,12 +95,10 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
       site_program::session_info(link::Role::Patient, "palp-patient", settings->seed, document);
   info.metadata.emplace_back("coupling", settings->coupling.name);
   info.metadata.emplace_back("estimator", settings->estimator_kind);
+  info.metadata.emplace_back("stage", describe(devices.stage));
+  info.metadata.emplace_back("force_sensor", describe(devices.sensor));
   describe_tissue(*phantom, simulation.surface_offset, info);
-  return Plan{std::move(*settings),
-              std::move(*phantom),
-              std::move(*law),
-              std::move(runner),
-              std::move(info)};
+  return Plan{std::move(*settings), std::move(*phantom), std::move(runner), std::move(info)};
 }
 
 /// A patient site in real time, its parts in the order in which they need each other.
@@ -112,11 +109,13 @@ class Program {
       : settings_{std::move(plan.settings)},
         phantom_{std::move(plan.phantom)},
         device_{phantom_, settings_.simulation},
-        law_{std::move(plan.law)},
+        law_{coupling::make_patient_coupling(settings_.coupling, facts_of(settings_.simulation))
+                 .value()},
         link_{settings_.link, std::make_unique<link::WireCodec>()},
         runner_{plan.runner},
         recording_{settings_.record, std::move(plan.info), 2},
-        worker_{settings_.estimator, {contact_, depth_, recording_.recorder(1)}},
+        worker_{depth::with_sensor(settings_.estimator, device_.sensor_facts()),
+                {contact_, depth_, recording_.recorder(1)}},
         node_{settings_.node,
               {device_, device_, law_, link_, recording_.recorder(0), contact_, depth_}},
         began_at_{clock_.now()},

@@ -22,10 +22,11 @@ constexpr Duration kTickMax = std::chrono::milliseconds{10};
 
 }  // namespace
 
-void MotionGate::begin(double tip, const Place& place, bool can_drag) noexcept {
+void MotionGate::begin(double tip, const Place& place) noexcept {
   command_ = tip;
   velocity_ = 0;
-  plane_.begin(place, can_drag);
+  co_filter_.reset(tip);
+  plane_.begin(place);
 }
 
 void MotionGate::hold() noexcept {
@@ -34,6 +35,7 @@ void MotionGate::hold() noexcept {
 }
 
 void MotionGate::feel(double tip, double contact_force) noexcept {
+  co_filter_.step(tip);
   felt_ += kSmoothing * (contact_force - felt_);
   if (surface_of_this_place_) return;
   const double least =
@@ -47,7 +49,7 @@ void MotionGate::feel(double tip, double contact_force) noexcept {
   }
   // Contact began where Hertz' law of the expected tissue gives no force.
   const double force = std::max(felt_, config_.contact_force / 2) / config_.contact_stiffness;
-  surface_ = tip - std::cbrt(force * force);
+  surface_ = co_filter_.value() - std::cbrt(force * force);
   surface_place_ = plane_.command();
   surface_of_this_place_ = true;
 }

@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include "common/core/device_facts.h"
+#include "common/core/filters.h"
 #include "common/core/place.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
@@ -27,7 +29,7 @@ struct MotionGateConfig {
   double retreat_speed{0.03};      ///< [m/s], at force_limit; up to three times that above it
   double retract_speed{5e-3};      ///< [m/s], state Retract
   double clearance{2e-3};          ///< [m], of the tip from the surface after a retraction
-  double contact_force{0.1};       ///< [N], two steps of the transducer: felt as contact
+  double contact_force{0.1};       ///< [N], felt as contact
   double contact_stiffness{1897};  ///< [N/m^1.5], expected of tissue: how deep contact_force is
   PlaneMotionConfig plane;
 };
@@ -61,14 +63,18 @@ struct MotionAnswer {
 /// keeps that surface and what hangs on it. Thread: rt. A value.
 class MotionGate {
  public:
-  explicit MotionGate(const MotionGateConfig& config) noexcept
+  /// `period` [s] of the calls of feel().
+  explicit MotionGate(const MotionGateConfig& config,
+                      const ForceSensorFacts& sensor = {},
+                      double period = 1e-3) noexcept
       : config_{config},
+        co_filter_{sensor.pole, period},
         plane_{config.plane},
         noise_square_{config.contact_force * config.contact_force / 4} {}
 
   /// The tip stands here and nothing was commanded yet.
-  void begin(double tip, const Place& place, bool can_drag) noexcept;
-  /// Once a tick, before pass(). `tip` behind the transducer's pole, as the force is.
+  void begin(double tip, const Place& place) noexcept;
+  /// Once a tick, before pass(), with both as their devices gave them.
   void feel(double tip, double contact_force) noexcept;
   /// Catch up slowly from here: after a gap, at an engagement.
   void resynchronise() noexcept { resynchronising_ = true; }
@@ -98,6 +104,7 @@ class MotionGate {
   void note_once(MotionAnswer& answer, record::NoteCode code, double detail) noexcept;
 
   MotionGateConfig config_;
+  LowPass co_filter_;  ///< [m], of the tip: the sensor's pole, as the force has it
   double command_{};   ///< [m]
   double velocity_{};  ///< [m/s], of the command
   PlaneMotion plane_;

@@ -2,16 +2,18 @@
 
 #include <cstdint>
 
+#include "common/core/device_facts.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
 #include "common/link/telegram.h"
 #include "common/message/depth.h"
 #include "common/record/notes.h"
+#include "common/record/site_account.h"
 
 namespace palp::patient {
 
 /// How the site is, for its display. Written once a tick.
-struct PatientStatus {
+struct PatientStatus : record::SiteCounts {
   TimePoint at{};
   SiteState state{};
   record::NoteCode reason{};   ///< of the last change of state
@@ -20,8 +22,9 @@ struct PatientStatus {
   SiteState peer_state{};
   bool peer_heard{};
   LinkHealth link;
-  double position{};  ///< [m], tip
-  double velocity{};  ///< [m/s]
+  DeviceFacts peer_devices;  ///< of the session's other site
+  double position{};         ///< [m], tip
+  double velocity{};         ///< [m/s]
   Place place{};
   double contact_force{};  ///< [N], measured
   double command{};        ///< [m], to the stage
@@ -29,13 +32,9 @@ struct PatientStatus {
   record::NoteCode place_refused{};  ///< why the tip does not follow in the plane; None: it does
   double surface{};                  ///< [m], as learned
   bool surface_known{};
-  DepthEstimate depth;  ///< newest; number 0: none yet
-  std::uint64_t ticks{};
-  std::uint64_t ticks_missed{};
+  DepthEstimate depth;                   ///< newest; number 0: none yet
   std::uint64_t contact_samples{};       ///< given to the estimator
   std::uint64_t contact_samples_lost{};  ///< its queue was full
-  std::uint64_t records{};
-  std::uint64_t records_lost{};
 };
 
 }  // namespace palp::patient

@@ -27,10 +27,9 @@ AxisMotion step_axis(const AxisMotion& from,
   return {from.command + velocity * span, velocity};
 }
 
-void PlaneMotion::begin(const Place& place, bool can_drag) noexcept {
+void PlaneMotion::begin(const Place& place) noexcept {
   x_ = {.command = place.x, .velocity = 0};
   y_ = {.command = place.y, .velocity = 0};
-  can_drag_ = can_drag;
 }
 
 NoteCode PlaneMotion::follow(const Place& asked, bool in_contact, double span) noexcept {
@@ -40,7 +39,7 @@ NoteCode PlaneMotion::follow(const Place& asked, bool in_contact, double span) n
   }
   const Place place{std::clamp(asked.x, -config_.travel_x / 2, config_.travel_x / 2),
                     std::clamp(asked.y, -config_.travel_y / 2, config_.travel_y / 2)};
-  const bool may_drag = can_drag_ && config_.drag_speed > 0;
+  const bool may_drag = config_.drag_speed > 0;
   if (in_contact && !may_drag) {
     hold();
     // A hand is never quite still: only what it means to be another place is refused.

@@ -7,10 +7,11 @@ namespace palp::patient {
 
 /// Of a planar stage, as the paper's: 500 mm both ways. Places count from the middle.
 struct PlaneMotionConfig {
-  double travel_x{0.5};        ///< [m], half of it to either side
-  double travel_y{0.5};        ///< [m]
-  double speed_max{0.15};      ///< [m/s], of each axis, in the air
-  double drag_speed{0.02};     ///< [m/s], of each axis, pressed into the tissue; 0: never
+  double travel_x{0.5};    ///< [m], half of it to either side
+  double travel_y{0.5};    ///< [m]
+  double speed_max{0.15};  ///< [m/s], of each axis, in the air
+  /// [m/s], of each axis, pressed into the tissue; 0: never, as of a stage that cannot drag
+  double drag_speed{0.02};
   double acceleration_max{8};  ///< [m/s^2], of each axis
 };
 
@@ -39,8 +40,8 @@ class PlaneMotion {
  public:
   explicit PlaneMotion(const PlaneMotionConfig& config) noexcept : config_{config} {}
 
-  /// The stage stands here. `can_drag`: its axes move while the tip is pressed into the tissue.
-  void begin(const Place& place, bool can_drag) noexcept;
+  /// The stage stands here.
+  void begin(const Place& place) noexcept;
   void hold() noexcept { x_.velocity = y_.velocity = 0; }
 
   /// One step of `span` [s] towards `asked`.
@@ -53,7 +54,6 @@ class PlaneMotion {
   PlaneMotionConfig config_;
   AxisMotion x_;
   AxisMotion y_;
-  bool can_drag_{};
 };
 
 }  // namespace palp::patient

@@ -43,21 +43,12 @@ MotionGateConfig make_gate(const proto::config::MotionGate& message) {
   return gate;
 }
 
-/// A reading that rests on one of the transducer's steps is not stuck: soft tissue takes some way
-/// to the next.
-DeviceWatchConfig make_watch(const MotionGateConfig& gate, double force_quantum) {
-  constexpr double kSoftTissue = 40;  // [N/m], less than the paper's where it is barely touched
-  DeviceWatchConfig watch;
-  watch.force_limit = gate.force_limit;
-  watch.sensor_travel = std::max(watch.sensor_travel, force_quantum / kSoftTissue);
-  return watch;
-}
-
 SimulatedPhantomConfig make_simulation(const proto::config::SimulatedPhantom& message,
                                        std::uint64_t seed) {
   SimulatedPhantomConfig simulation;
   simulation.servo_frequency = message.servo_hz();
   simulation.servo_damping = message.servo_damping();
+  simulation.stage_lag = from_milli(message.stage_lag_ms());
   simulation.acceleration_max = message.acceleration_max_m_per_s2();
   simulation.speed_max = message.speed_max_m_per_s();
   simulation.encoder_step = from_micro(message.encoder_um());
@@ -83,7 +74,6 @@ Result<depth::DepthEstimatorConfig> make_estimator(const proto::config::Estimato
   config.kind =
       message.kind() == "paper" ? depth::EstimatorKind::Paper : depth::EstimatorKind::Bayes;
   depth::StrokeTrackerConfig& strokes = config.strokes;
-  strokes.sensor_cut_off = message.sensor_pole_hz();
   strokes.filter_cut_off = message.filter_hz();
   strokes.period = seconds(period);
   strokes.fit_range = from_milli(message.indentation_max_mm());
@@ -131,12 +121,11 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
   made.link = settings::make_link(message.link(), made.loop.period);
   made.node.period = made.loop.period;
   made.node.gate = make_gate(message.motion_gate());
-  made.node.sensor_cut_off = message.estimator().sensor_pole_hz();
   made.stage = message.stage();
   made.force = message.force();
   made.phantom = message.simulated_phantom().phantom();
   made.simulation = make_simulation(message.simulated_phantom(), message.seed());
-  made.node.watch = make_watch(made.node.gate, made.simulation.force_quantum);
+  made.node.watch.force_limit = made.node.gate.force_limit;
   made.estimator_kind = message.estimator().kind();
   made.estimator = *estimator;
   made.impairment = settings::make_impairment(message.impairment());

@@ -26,7 +26,24 @@ double rounded(double value, double quantum) noexcept {
   return quantum > 0 ? quantum * std::round(value / quantum) : value;
 }
 
+/// [s], as a data sheet gives it.
+double to_tenth_of_millisecond(double span) noexcept { return std::round(span * 1e4) / 1e4; }
+
 }  // namespace
+
+PatientDevices facts_of(const SimulatedPhantomConfig& config) noexcept {
+  PatientDevices facts;
+  facts.stage.speed = config.speed_max;
+  facts.stage.acceleration = config.acceleration_max;
+  facts.stage.lag = config.stage_lag;
+  facts.stage.travel_side = config.plane_travel / 2;
+  facts.stage.drags = config.can_drag;
+  facts.sensor.pole = config.sensor_cut_off;
+  facts.sensor.step = config.force_quantum;
+  facts.sensor.noise = config.force_noise;
+  facts.sensor.lag = to_tenth_of_millisecond(1 / (2 * std::numbers::pi * config.sensor_cut_off));
+  return facts;
+}
 
 SimulatedPhantom::SimulatedPhantom(const Phantom& phantom, const SimulatedPhantomConfig& config)
     : config_{config},

@@ -12,6 +12,7 @@ namespace palp::patient {
 struct SimulatedPhantomConfig {
   double servo_frequency{20};     ///< [Hz], natural frequency of the position servo
   double servo_damping{0.9};      ///< [-], its damping ratio
+  double stage_lag{14.3e-3};      ///< [s], what the stage says of it; a servo may be otherwise
   double acceleration_max{8};     ///< [m/s^2]
   double speed_max{0.15};         ///< [m/s]
   double encoder_step{5e-6};      ///< [m]; 0: exact
@@ -29,6 +30,9 @@ struct SimulatedPhantomConfig {
   double force_quantum{0.05};     ///< [N], paper II.A: resolution of the transducer; 0: exact
   std::uint64_t seed{1};          ///< of the force noise
 };
+
+/// What such devices say of themselves.
+[[nodiscard]] PatientDevices facts_of(const SimulatedPhantomConfig& config) noexcept;
 
 /// The plant's own state, for judges: nothing of it may reach a node.
 struct PhantomTruth {
@@ -50,10 +54,13 @@ class SimulatedPhantom final : public Stage, public ForceSensor {
  public:
   SimulatedPhantom(const Phantom& phantom, const SimulatedPhantomConfig& config);
 
+  [[nodiscard]] StageFacts stage_facts() const noexcept override { return facts_of(config_).stage; }
+  [[nodiscard]] ForceSensorFacts sensor_facts() const noexcept override {
+    return facts_of(config_).sensor;
+  }
   StageState read(TimePoint now) noexcept override;
   void move_to(const StageTarget& target) noexcept override;
   void halt() noexcept override;
-  [[nodiscard]] bool can_drag() const noexcept override { return config_.can_drag; }
   std::optional<ForceSample> sample(TimePoint now) noexcept override;
 
   [[nodiscard]] PhantomTruth truth() const noexcept;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/core/device_facts.h"
 #include "common/core/place.h"
 #include "common/core/time.h"
 
@@ -23,11 +24,11 @@ struct StageTarget {
 class Stage {
  public:
   virtual ~Stage() = default;
+  /// What it is: the same for as long as it lives. Thread: any.
+  [[nodiscard]] virtual StageFacts stage_facts() const noexcept = 0;
   virtual StageState read(TimePoint now) noexcept = 0;
   virtual void move_to(const StageTarget& target) noexcept = 0;  ///< target of this tick
   virtual void halt() noexcept = 0;  ///< hold here, drop the target; idempotent
-  /// A fact: x and y may move while the tip is pressed into the tissue.
-  [[nodiscard]] virtual bool can_drag() const noexcept = 0;
 };
 
 }  // namespace palp::patient

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "common/core/device_facts.h"
 #include "common/core/place.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
@@ -71,14 +72,14 @@ struct ScriptProgress {
 class HapticDevice {
  public:
   virtual ~HapticDevice() = default;
+  /// What it is: the same for as long as it lives. Thread: any.
+  [[nodiscard]] virtual HandFacts hand_facts() const noexcept = 0;
   virtual HandState read(TimePoint now) noexcept = 0;        ///< the last one again if none is new
   virtual void apply(double force) noexcept = 0;             ///< [N], + pushes out; |force| <= max
   virtual void show(const OperatorView& view) noexcept = 0;  ///< devices without a lamp ignore it
   /// The hand presses tissue, or no longer: a device that can lock its plane does so meanwhile.
   virtual void hold_in_plane(bool /*held*/) noexcept {}
   [[nodiscard]] virtual ScriptProgress progress() const noexcept { return {}; }
-  [[nodiscard]] virtual double force_max() const noexcept = 0;         ///< [N], peak
-  [[nodiscard]] virtual double force_continuous() const noexcept = 0;  ///< [N], for i^2 t
 };
 
 }  // namespace palp::surgeon

@@ -102,7 +102,8 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   runner.session = {.role = link::Role::Surgeon,
                     .settings_hash = settings->agreement,
                     .coupling = settings->coupling.name,
-                    .git = std::string{site_program::git_commit()}};
+                    .git = std::string{site_program::git_commit()},
+                    .devices = {.hand = facts_of(settings->hand), .stage = {}, .sensor = {}}};
   runner.address = *address;
   runner.protection = settings->protection;
   runner.wrap_transport = std::move(*wrap);
@@ -112,6 +113,7 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   info.metadata.emplace_back("coupling", settings->coupling.name);
   info.metadata.emplace_back("master", settings->master);
   info.metadata.emplace_back("grip", settings->grip);
+  info.metadata.emplace_back("hand", describe(facts_of(settings->hand)));
   return Plan{std::move(*settings),
               std::move(*script),
               std::move(*law),

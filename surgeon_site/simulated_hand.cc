@@ -27,6 +27,13 @@ double low_pass_gain(double cut_off, Duration span) noexcept {
 
 }  // namespace
 
+HandFacts facts_of(const SimulatedHandConfig& config) noexcept {
+  HandFacts facts;
+  facts.force_peak = config.force_max;
+  facts.force_continuous = config.force_continuous;
+  return facts;
+}
+
 SimulatedHand::SimulatedHand(const SimulatedHandConfig& config, GestureScript script)
     : config_{config},
       person_{config.person, std::move(script)},

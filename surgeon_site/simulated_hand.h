@@ -19,6 +19,9 @@ struct SimulatedHandConfig {
   double force_continuous{1.4};   ///< [N]
 };
 
+/// What such a device says of itself.
+[[nodiscard]] HandFacts facts_of(const SimulatedHandConfig& config) noexcept;
+
 /// What is true in the simulation and what no device could tell.
 struct HandTruth {
   double position{};  ///< [m]
@@ -44,10 +47,7 @@ class SimulatedHand final : public HapticDevice {
   void hold_in_plane(bool held) noexcept override { held_in_plane_ = held; }
   void show(const OperatorView& view) noexcept override { person_.see(view); }
   [[nodiscard]] ScriptProgress progress() const noexcept override { return person_.progress(); }
-  [[nodiscard]] double force_max() const noexcept override { return config_.force_max; }
-  [[nodiscard]] double force_continuous() const noexcept override {
-    return config_.force_continuous;
-  }
+  [[nodiscard]] HandFacts hand_facts() const noexcept override { return facts_of(config_); }
 
   [[nodiscard]] HandTruth truth() const noexcept;
   [[nodiscard]] bool finished() const noexcept { return person_.progress().finished; }

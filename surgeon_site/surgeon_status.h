@@ -3,16 +3,18 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "common/core/device_facts.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
 #include "common/link/telegram.h"
 #include "common/record/notes.h"
+#include "common/record/site_account.h"
 #include "surgeon_site/haptic_device.h"
 
 namespace palp::surgeon {
 
 /// What people are shown of the site: a copy per tick, crosses to the display's thread by mailbox.
-struct SurgeonStatus {
+struct SurgeonStatus : record::SiteCounts {
   TimePoint at{};
   SiteState state{};
   record::NoteCode reason{};  ///< of the last change of state
@@ -20,7 +22,8 @@ struct SurgeonStatus {
   SiteState peer_state{};
   bool peer_heard{};
   LinkHealth link;
-  double position{};  ///< [m], hand, as given to the law
+  DeviceFacts peer_devices;  ///< of the session's other site
+  double position{};         ///< [m], hand, as given to the law
   Place place{};
   double offset{};  ///< [m], clutch: hand minus tip at the last engagement
   double tip{};     ///< [m], as last heard
@@ -31,10 +34,6 @@ struct SurgeonStatus {
   DepthReport depth;
   ScriptProgress script;
   record::NoteCode refused{};  ///< why the last press of the pedal did not engage; None: it did
-  std::uint64_t ticks{};
-  std::uint64_t ticks_missed{};
-  std::uint64_t records{};       ///< handed to the recorder and taken
-  std::uint64_t records_lost{};  ///< refused by it
 };
 static_assert(std::is_trivially_copyable_v<SurgeonStatus>, "crosses threads by copy");
 

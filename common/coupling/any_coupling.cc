@@ -19,11 +19,12 @@ Result<SurgeonCoupling> make_surgeon_coupling(const CouplingConfig& config) {
   return unknown_name(config.name);
 }
 
-Result<PatientCoupling> make_patient_coupling(const CouplingConfig& config) {
+Result<PatientCoupling> make_patient_coupling(const CouplingConfig& config,
+                                              const PatientDevices& devices) {
   if (config.name == "direct") return PatientCoupling{DirectPatient{config.direct}};
-  if (config.name == "wave") return PatientCoupling{WavePatient{config.wave}};
-  if (config.name == "tdpa") return PatientCoupling{TdpaPatient{config.tdpa}};
-  if (config.name == "mmt") return PatientCoupling{MmtPatient{config.mmt}};
+  if (config.name == "wave") return PatientCoupling{WavePatient{config.wave, devices}};
+  if (config.name == "tdpa") return PatientCoupling{TdpaPatient{config.tdpa, devices}};
+  if (config.name == "mmt") return PatientCoupling{MmtPatient{config.mmt, devices}};
   return unknown_name(config.name);
 }
 

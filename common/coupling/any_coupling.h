@@ -5,6 +5,7 @@
 #include <string_view>
 #include <variant>
 
+#include "common/core/device_facts.h"
 #include "common/core/result.h"
 #include "common/coupling/coupling.h"
 #include "common/coupling/direct.h"
@@ -32,7 +33,9 @@ struct CouplingConfig {
 
 /// The half named by `config.name`, or a sentence that lists the names there are.
 [[nodiscard]] Result<SurgeonCoupling> make_surgeon_coupling(const CouplingConfig& config);
-[[nodiscard]] Result<PatientCoupling> make_patient_coupling(const CouplingConfig& config);
+/// `devices`: the site's own.
+[[nodiscard]] Result<PatientCoupling> make_patient_coupling(const CouplingConfig& config,
+                                                            const PatientDevices& devices = {});
 
 /// As std::visit, of a law that is never valueless, because no half throws while it is moved: so
 /// nothing is thrown here.
@@ -44,6 +47,12 @@ auto with_half(Law& law, const Act& act) noexcept {
   return act(*std::get_if<I>(&law));
 }
 
+/// A session begins with a site that has these devices. Until then the law assumes the usual ones.
+inline void meet(SurgeonCoupling& law, const PatientDevices& devices) noexcept {
+  with_half(law, [&](auto& half) {
+    if constexpr (requires { half.meet(devices); }) half.meet(devices);
+  });
+}
 inline void begin_epoch(SurgeonCoupling& law, double position) noexcept {
   with_half(law, [&](auto& half) { half.begin_epoch(position); });
 }

@@ -48,8 +48,8 @@ double depth_of(const ContactModel& model, double force) noexcept {
 
 ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcept
     : config_{config},
-      gain_{LowPass{config.sensor_cut_off, config.period}.gain()},
-      tip_{config.sensor_cut_off, config.period},
+      gain_{LowPass{config.sensor.pole, config.period}.gain()},
+      tip_{config.sensor.pole, config.period},
       swing_{config.period} {
   expected_[1] = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
   expected_here_ = expected_;
@@ -180,7 +180,7 @@ double ContactEstimator::predicted() const noexcept {
 /// sawtooth, smoothed (Widrow and Kollar, Quantization Noise, ch. 4).
 double ContactEstimator::rounding_bias(double force) const noexcept {
   if (dither_ <= 0) return 0;
-  return -dither_ * std::sin(2 * pi * force / config_.sensor_quantum);
+  return -dither_ * std::sin(2 * pi * force / config_.sensor.step);
 }
 
 void ContactEstimator::collect(double force) noexcept {
@@ -207,7 +207,7 @@ void ContactEstimator::collect(double force) noexcept {
 
 /// [N^2], of the mean over a box.
 double ContactEstimator::equation_noise() const noexcept {
-  return std::max(noise_square_, config_.sensor_quantum * config_.sensor_quantum / 12) / kBox;
+  return std::max(noise_square_, config_.sensor.step * config_.sensor.step / 12) / kBox;
 }
 
 void ContactEstimator::absorb() noexcept {
@@ -340,8 +340,8 @@ void ContactEstimator::step(double position, double force) noexcept {
       sense_noise(force);
       return;
     }
-    if (config_.sensor_quantum > 0 && noise_square_ > 0) {
-      const double quantum = config_.sensor_quantum;
+    if (config_.sensor.step > 0 && noise_square_ > 0) {
+      const double quantum = config_.sensor.step;
       const double ratio = noise_over_quantum(noise_square_ / (quantum * quantum));
       // Above 0.4 the correction would run ahead of what it corrects.
       dither_ = quantum / pi * std::min(0.4, std::exp(-2 * pi * pi * ratio * ratio));

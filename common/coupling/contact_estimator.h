@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "common/core/device_facts.h"
 #include "common/core/filters.h"
 #include "common/core/time.h"
 #include "common/coupling/breathing_estimator.h"
@@ -14,8 +15,7 @@ namespace palp::coupling {
 
 struct ContactEstimatorConfig {
   double period{1e-3};              ///< [s], of the control loop
-  double sensor_cut_off{20};        ///< [Hz], the transducer's own pole
-  double sensor_quantum{0.05};      ///< [N], its step; 0: none
+  ForceSensorFacts sensor{};        ///< what the force comes from
   double stiffness_expected{1897};  ///< [N/m^1.5], of plain tissue: where learning begins
   double memory{2};                 ///< [s] of motion in or near contact
   double detection_force{0.026};    ///< [N], least mean force that counts as contact

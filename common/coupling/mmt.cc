@@ -15,6 +15,12 @@ constexpr bool may_render(SiteState state) noexcept {
   return state == SiteState::Engaged || state == SiteState::Hold || state == SiteState::Retract;
 }
 
+ContactEstimatorConfig with_sensor(ContactEstimatorConfig config,
+                                   const ForceSensorFacts& sensor) noexcept {
+  config.sensor = sensor;
+  return config;
+}
+
 }  // namespace
 
 MmtSurgeon::MmtSurgeon(const MmtConfig& config) noexcept
@@ -198,9 +204,11 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   return {force, {in.position, in.velocity, force, std::monostate{}}, shown_force_};
 }
 
-MmtPatient::MmtPatient(const MmtConfig& config) noexcept
+MmtPatient::MmtPatient(const MmtConfig& config, const PatientDevices& devices) noexcept
     : config_{config},
-      estimator_{config.estimator},
+      // A target stands for a tick: what is led beyond whole ones would be led too far.
+      stage_lead_{std::floor(devices.stage.lag / config.period) * config.period},
+      estimator_{with_sensor(config.estimator, devices.sensor)},
       lead_velocity_{config.lead_cut_off, config.period} {}
 
 void MmtPatient::begin_epoch(double position) noexcept {
@@ -218,7 +226,7 @@ double MmtPatient::target(const PatientInput& in) noexcept {
     heard_at_ = in.now;
   }
   if (in.now - heard_at_ > kStale) hand_velocity_ = 0;
-  const double lead = std::min(config_.lead_max, config_.stage_lag + 0.5 * seconds(in.round_trip));
+  const double lead = std::min(config_.lead_max, stage_lead_ + 0.5 * seconds(in.round_trip));
   return hand_ + lead * lead_velocity_.step(finite_or(hand_velocity_, 0));
 }
 

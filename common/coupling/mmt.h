@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/core/device_facts.h"
 #include "common/core/filters.h"
 #include "common/core/limits.h"
 #include "common/coupling/breathing_estimator.h"
@@ -39,7 +40,6 @@ struct MmtConfig {
   double velocity_cut_off{60};  ///< [Hz]
   double fade{1};               ///< [s], of the model in Retract
   double period{1e-3};          ///< [s]
-  double stage_lag{14e-3};      ///< [s], of the position servo behind its target
   double lead_max{25e-3};       ///< [s], most that the target runs ahead of the hand's position
   double lead_cut_off{15};      ///< [Hz], of the velocity it runs ahead with
   double travel{60e-3};         ///< [m], a surface farther from 0 is not believed
@@ -102,7 +102,8 @@ class MmtSurgeon {
 /// that the tip is where the hand is; the estimator watches.
 class MmtPatient {
  public:
-  explicit MmtPatient(const MmtConfig& config) noexcept;
+  /// The estimator's sensor is that of `devices`.
+  explicit MmtPatient(const MmtConfig& config, const PatientDevices& devices = {}) noexcept;
   void begin_epoch(double position) noexcept;
   PatientOutput step(const PatientInput& in, Duration dt) noexcept;
 
@@ -110,6 +111,7 @@ class MmtPatient {
   [[nodiscard]] double target(const PatientInput& in) noexcept;
 
   MmtConfig config_;
+  double stage_lead_;  ///< [s], what the servo takes away, in whole ticks
   ContactEstimator estimator_;
   double hand_{};           ///< [m], newest
   double hand_velocity_{};  ///< [m/s], newest

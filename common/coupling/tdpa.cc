@@ -139,8 +139,10 @@ SurgeonOutput TdpaSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   return {force, {in.position, in.velocity, force, TdpaPayload{energy_in_}}, std::max(0.0, force)};
 }
 
-TdpaPatient::TdpaPatient(const TdpaConfig& config) noexcept
-    : config_{config}, tip_{config.sensor_cut_off, config.period} {}
+TdpaPatient::TdpaPatient(const TdpaConfig& config, const PatientDevices& devices) noexcept
+    : config_{config},
+      step_max_{devices.stage.speed * config.period},
+      tip_{devices.sensor.pole, config.period} {}
 
 void TdpaPatient::begin_epoch(double position) noexcept {
   energy_in_ = energy_out_ = energy_remote_ = 0;
@@ -178,8 +180,7 @@ PatientOutput TdpaPatient::step(const PatientInput& in, Duration /*dt*/) noexcep
   const double step = hand_ - hand_taken_;
   hand_taken_ = hand_;
   const double lag = hand_taken_ - target_ - step;
-  const double step_max = config_.speed_max * config_.period;
-  double move = std::clamp(step + config_.drift_rate * config_.period * lag, -step_max, step_max);
+  double move = std::clamp(step + config_.drift_rate * config_.period * lag, -step_max_, step_max_);
   if (move > 0 && force > 0) {
     const double budget = energy_remote_ - energy_out_;
     const double committed = force * std::max(0.0, target_ - tip_.value());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/core/device_facts.h"
 #include "common/core/filters.h"
 #include "common/core/limits.h"
 #include "common/coupling/coupling.h"
@@ -28,8 +29,6 @@ struct TdpaConfig {
   double creep{6e-3};          ///< [m/s], a hand this slow is at rest
   double calm{0.3};            ///< [-], of a long round trip: the force is smoothed over it
   double drift_rate{20};       ///< [1/s], of what the controller kept the stage from doing
-  double speed_max{0.15};      ///< [m/s], of the target
-  double sensor_cut_off{20};   ///< [Hz], the transducer's pole: the tip is given the same
   double fade_out{0.2};        ///< [s], in Hold
   double fade_in{0.5};         ///< [s]
   double period{1e-3};         ///< [s]
@@ -82,7 +81,7 @@ class TdpaSurgeon {
 
 class TdpaPatient {
  public:
-  explicit TdpaPatient(const TdpaConfig& config) noexcept;
+  explicit TdpaPatient(const TdpaConfig& config, const PatientDevices& devices = {}) noexcept;
   void begin_epoch(double position) noexcept;
   PatientOutput step(const PatientInput& in, Duration dt) noexcept;
 
@@ -93,8 +92,8 @@ class TdpaPatient {
   void account(double work) noexcept;
 
   TdpaConfig config_;
-  LowPass tip_;          ///< [m]
-  double tip_before_{};  ///< [m]
+  double step_max_;  ///< [m], of the target in a tick: what the stage can run
+  LowPass tip_;      ///< [m], behind the sensor's pole, as the force is
   bool started_{};
   double hand_{};           ///< [m], newest
   double hand_taken_{};     ///< [m], the part of it the target has been given

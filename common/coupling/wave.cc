@@ -17,17 +17,23 @@ void send(WavePayload& sent, double wave, double period) noexcept {
 
 }  // namespace
 
-double wave_impedance(const WaveConfig& config) noexcept {
+double wave_impedance(const WaveConfig& config, const PatientDevices& devices) noexcept {
   if (config.impedance > 0) return config.impedance;
-  return std::clamp(1.2 * config.stiffness_expected * config.stage_lag, 5.0, 15.0);
+  const double lag = devices.stage.lag + devices.sensor.lag;
+  return std::clamp(1.2 * config.stiffness_expected * lag, 5.0, 15.0);
 }
 
-WaveSurgeon::WaveSurgeon(const WaveConfig& config) noexcept
+WaveSurgeon::WaveSurgeon(const WaveConfig& config, const PatientDevices& devices) noexcept
     : config_{config},
-      impedance_{wave_impedance(config)},
+      impedance_{wave_impedance(config, devices)},
       root_{std::sqrt(2 * impedance_)},
       velocity_{config.velocity_cut_off, config.period},
       play_out_{config.period} {}
+
+void WaveSurgeon::meet(const PatientDevices& devices) noexcept {
+  impedance_ = wave_impedance(config_, devices);
+  root_ = std::sqrt(2 * impedance_);
+}
 
 void WaveSurgeon::begin_epoch(double /*position*/) noexcept {
   velocity_.reset();
@@ -48,9 +54,9 @@ SurgeonOutput WaveSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   return {force, {in.position, in.velocity, force, sent_}};
 }
 
-WavePatient::WavePatient(const WaveConfig& config) noexcept
+WavePatient::WavePatient(const WaveConfig& config, const PatientDevices& devices) noexcept
     : config_{config},
-      impedance_{wave_impedance(config)},
+      impedance_{wave_impedance(config, devices)},
       root_{std::sqrt(2 * impedance_)},
       play_out_{config.period} {}
 

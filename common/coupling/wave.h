@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/core/device_facts.h"
 #include "common/core/filters.h"
 #include "common/core/limits.h"
 #include "common/coupling/coupling.h"
@@ -10,9 +11,8 @@
 namespace palp::coupling {
 
 struct WaveConfig {
-  double impedance{0};             ///< [N s/m], b; 0: from the next two
+  double impedance{0};             ///< [N s/m], b; 0: from the next and the patient's devices
   double stiffness_expected{370};  ///< [N/m], the stiffest tissue
-  double stage_lag{22.3e-3};       ///< [s], of servo and transducer together: 2 zeta/w + 1/(2 pi f)
   /// [-], of the impedance, at the stage: the fifth more is not for it. It makes free air lighter
   /// where the echo it leaves comes back at once.
   double termination{1 / 1.2};
@@ -24,14 +24,16 @@ struct WaveConfig {
   double period{1e-3};          ///< [s]
 };
 
-/// The impedance asked for, or what keeps a stage with that lag passive on the stiffest tissue:
-/// b >= k tau, with a fifth more; 5 to 15 N s/m.
-[[nodiscard]] double wave_impedance(const WaveConfig& config) noexcept;
+/// The impedance asked for, or what keeps stage and sensor with their lag passive on the stiffest
+/// tissue: b >= k tau, with a fifth more; 5 to 15 N s/m. The same at both ends.
+[[nodiscard]] double wave_impedance(const WaveConfig& config,
+                                    const PatientDevices& devices) noexcept;
 
 /// F_h = b v - sqrt(2b) w; sends the integral and the energy of u = (b v + F_h)/sqrt(2b).
 class WaveSurgeon {
  public:
-  explicit WaveSurgeon(const WaveConfig& config) noexcept;
+  explicit WaveSurgeon(const WaveConfig& config, const PatientDevices& devices = {}) noexcept;
+  void meet(const PatientDevices& devices) noexcept;
   void begin_epoch(double position) noexcept;
   SurgeonOutput step(const SurgeonInput& in, Duration dt) noexcept;
 
@@ -49,7 +51,7 @@ class WaveSurgeon {
 /// reflects nothing, by less it does. Any t >= 0 is passive at any time.
 class WavePatient {
  public:
-  explicit WavePatient(const WaveConfig& config) noexcept;
+  explicit WavePatient(const WaveConfig& config, const PatientDevices& devices = {}) noexcept;
   void begin_epoch(double position) noexcept;
   PatientOutput step(const PatientInput& in, Duration dt) noexcept;
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "common/core/device_facts.h"
 #include "common/link/telegram.h"
 
 /// The messages that sites exchange before and after a session, as bytes (proto/link.proto).
@@ -27,7 +28,8 @@ struct Hello {
   std::uint32_t connection_id{};    ///< to be put into what is sent to the sender; 0: not known
   std::uint64_t settings_hash{};    ///< of everything both sites must agree on
   std::string coupling;
-  std::string git;  ///< for people
+  std::string git;        ///< for people
+  DeviceFacts devices{};  ///< the sender's; their numbers may be anything
 };
 
 enum class ByeReason : std::uint8_t { Leaving, Busy, Mismatch };

@@ -60,6 +60,7 @@ void Link::end_session() noexcept {
   counters_.lost += session_state_.received.missing();
   session_state_ = SessionState{};
   session_id_ = 0;
+  peer_devices_ = {};
 }
 
 LinkUpdate Link::adopt(LinkUpdate next, TimePoint now) noexcept {
@@ -80,6 +81,7 @@ LinkUpdate Link::adopt(LinkUpdate next, TimePoint now) noexcept {
     PALP_CHECK(next.protection != nullptr, "a new session has its own protection");
     end_session();
     session_id_ = next.session_id;
+    peer_devices_ = next.peer_devices;
     session_state_.began_at = now;
   }
   if (next.transport) retired.transport = std::exchange(transport_, std::move(next.transport));

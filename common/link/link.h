@@ -48,6 +48,8 @@ class Link {
   /// Once per period, before send(): drains the transport within its budget.
   [[nodiscard]] Arrivals receive(TimePoint now) noexcept;
   [[nodiscard]] LinkHealth health(TimePoint now) const noexcept;
+  /// Of the session's other site, as it said in the handshake; nothing where there is no session.
+  [[nodiscard]] const DeviceFacts& peer_devices() const noexcept { return peer_devices_; }
   /// In spare time before a tick: walks once through what sending and receiving do, with a telegram
   /// that nobody gets, because code that was not run for a millisecond runs slowly. Changes
   /// nothing.
@@ -137,6 +139,7 @@ class Link {
   std::uint32_t send_connection_{};
   std::uint32_t receive_connection_{};
   std::uint64_t session_id_{};
+  DeviceFacts peer_devices_;
   SessionState session_state_;
   LinkHealth counters_;  ///< its counters only; `lost` of former sessions
   std::uint32_t accepted_now_{};

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "common/core/device_facts.h"
 #include "common/link/packet_protection.h"
 #include "common/link/transport.h"
 
@@ -17,6 +18,7 @@ struct LinkUpdate {
   std::uint32_t receive_connection{};  ///< given out by us
   std::uint64_t
       session_id{};  ///< another one: a new session, all starts anew; 0: the session ended
+  DeviceFacts peer_devices{};  ///< of a new session's other site
   /// Only for the session that is there: where it has ended meanwhile, all comes back unused.
   bool continues{};
 };

@@ -43,6 +43,18 @@ std::string hexadecimal(std::uint64_t value) {
   return text;
 }
 
+/// Of the devices that a Hello tells of; empty where they are sound.
+std::optional<std::string> malformed_devices(const Hello& hello) {
+  const bool surgeon = hello.role == Role::Surgeon;
+  const DeviceFacts& devices = hello.devices;
+  const std::string opening = "the " + std::string{name_of(hello.role)} + "'s hello is malformed: ";
+  if (surgeon && !devices.hand) return opening + "it tells of no hand";
+  if (!surgeon && !devices.stage) return opening + "it tells of no stage";
+  if (!surgeon && !devices.sensor) return opening + "it tells of no force sensor";
+  if (const auto flaw = flaw_of(devices)) return opening + *flaw;
+  return std::nullopt;
+}
+
 }  // namespace
 
 Session::Session(SessionConfig config, std::uint64_t entropy)
@@ -92,7 +104,8 @@ ControlBytes Session::hello_to(const Pair& pair) {
                    .connection_id = pair.peer == 0 ? 0 : connection_of(pair.own, pair.peer),
                    .settings_hash = config_.settings_hash,
                    .coupling = config_.coupling,
-                   .git = config_.git}));
+                   .git = config_.git,
+                   .devices = config_.devices}));
 }
 
 SessionOutput Session::on_datagram(std::span<const std::byte> datagram, TimePoint now) {
@@ -132,6 +145,7 @@ std::optional<std::string> Session::mismatch(const Hello& hello) const {
   if (hello.role == config_.role) {
     return "both sites are " + std::string{name_of(config_.role)} + " sites";
   }
+  if (auto text = malformed_devices(hello)) return text;
   if (hello.coupling != config_.coupling) {
     return side_by_side(
         config_.role, "the sites use different couplings", config_.coupling, hello.coupling);
@@ -235,7 +249,8 @@ void Session::establish(const Hello& hello, SessionOutput& out) {
                           .send_connection = hello.connection_id,
                           .receive_connection = connection_of(present_->own, present_->peer),
                           .peer_session_id = present_->peer,
-                          .peer_git = peer_git_};
+                          .peer_git = peer_git_,
+                          .peer_devices = hello.devices};
 }
 
 ControlBytes Session::greeting() {

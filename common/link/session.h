@@ -21,6 +21,8 @@ struct SessionConfig {
   std::uint64_t settings_hash{};  ///< of everything both sites must agree on
   std::string coupling;
   std::string git;  ///< for people
+  /// Ours. The peer looks at those of our role; until said otherwise they are the simulated ones.
+  DeviceFacts devices{HandFacts{}, StageFacts{}, ForceSensorFacts{}};
   std::uint32_t protocol_version{kProtocolVersion};
   Duration repeat_first{std::chrono::milliseconds{100}};
   Duration repeat_max{std::chrono::seconds{1}};
@@ -34,6 +36,7 @@ struct Established {
   std::uint32_t receive_connection{};  ///< ours
   std::uint64_t peer_session_id{};
   std::string peer_git;
+  DeviceFacts peer_devices{};  ///< each number within its range
 };
 /// No session came about. `final`: and none will with these settings (the surgeon stops asking).
 struct Refused {

@@ -12,13 +12,15 @@
 /// What goes into a depth estimator, what comes out of it, and what of that crosses.
 namespace palp {
 
-/// One measured point. The position has passed the same 20 Hz pole as the force carries from its
-/// transducer: position and force must share their dynamics, or contact looks like hysteresis.
+/// One measured point, as the devices gave it. The force carries its sensor's pole and the tip does
+/// not: whoever compares them gives the tip the same, or contact looks like hysteresis.
 struct ContactSample {
   TimePoint at{};
-  double position{};  ///< [m], tip, behind the co-filter; the surface is the estimator's to find
+  double position{};  ///< [m], tip; the surface is the estimator's to find
   double force{};     ///< [N], as measured
   Place place;
+  Duration position_age{};  ///< of the tip's reading at `at`
+  Duration force_age{};     ///< of the force's
 };
 
 /// The result of one stroke (contact to reversal).
@@ -57,12 +59,14 @@ struct DepthReport {
 namespace message {
 
 template <std::same_as<ContactSample> S>
-inline constexpr auto fields<S> = list({.log = "ContactSample"},
+inline constexpr auto fields<S> = list({.log = "ContactReading"},
                                        aside<&S::at>("at_ns"),
-                                       field<1, &S::position>("position_m"),
+                                       field<1, &S::position>("tip_m"),
                                        field<2, &S::force>("force_n"),
                                        field<3, &S::place, &Place::x>("x_m"),
-                                       field<4, &S::place, &Place::y>("y_m"));
+                                       field<4, &S::place, &Place::y>("y_m"),
+                                       field<5, &S::position_age>("tip_age_ns"),
+                                       field<6, &S::force_age>("force_age_ns"));
 
 template <std::same_as<DepthEstimate> S>
 inline constexpr auto fields<S> = list({.log = "DepthEstimate"},

@@ -41,5 +41,11 @@ template struct BytesOf<Event>;
 template struct BytesOf<ContactSample>;
 template struct BytesOf<DepthEstimate>;
 template struct BytesOf<DepthArrived>;
+template struct BytesOf<HandReading>;
+template struct BytesOf<StageReading>;
+template struct BytesOf<ForceReading>;
+template struct BytesOf<LinkHeard>;
+template struct BytesOf<UserAsked>;
+template struct BytesOf<DevicesTold>;
 
 }  // namespace palp::message

@@ -240,5 +240,11 @@ template struct SchemaOf<Event>;
 template struct SchemaOf<ContactSample>;
 template struct SchemaOf<DepthEstimate>;
 template struct SchemaOf<DepthArrived>;
+template struct SchemaOf<HandReading>;
+template struct SchemaOf<StageReading>;
+template struct SchemaOf<ForceReading>;
+template struct SchemaOf<LinkHeard>;
+template struct SchemaOf<UserAsked>;
+template struct SchemaOf<DevicesTold>;
 
 }  // namespace palp::message

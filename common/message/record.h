@@ -14,6 +14,7 @@
 #include "common/message/field.h"
 #include "common/message/link_health.h"
 #include "common/message/port_sample.h"
+#include "common/message/readings.h"
 
 /// What a site writes down: typed and complete.
 namespace palp {
@@ -74,12 +75,30 @@ using Record = std::variant<SiteTick,
                             Transition,
                             ContactSample,
                             DepthEstimate,
-                            DepthArrived>;
+                            DepthArrived,
+                            HandReading,
+                            StageReading,
+                            ForceReading,
+                            LinkHeard,
+                            UserAsked,
+                            DevicesTold>;
 static_assert(std::is_trivially_copyable_v<Record>, "crosses threads by copy");
 
 /// Their names in summaries and reports, in the same order.
-inline constexpr std::array<const char*, std::variant_size_v<Record>> kRecordNames{
-    "tick", "arrived", "link", "note", "transition", "contact", "depth_estimate", "depth_arrived"};
+inline constexpr std::array<const char*, std::variant_size_v<Record>> kRecordNames{"tick",
+                                                                                   "arrived",
+                                                                                   "link",
+                                                                                   "note",
+                                                                                   "transition",
+                                                                                   "contact",
+                                                                                   "depth_estimate",
+                                                                                   "depth_arrived",
+                                                                                   "hand",
+                                                                                   "stage",
+                                                                                   "force",
+                                                                                   "heard",
+                                                                                   "user",
+                                                                                   "devices"};
 
 namespace message {
 

@@ -13,7 +13,7 @@ namespace palp::record {
 /// drops the record and counts it; the writer never waits.
 class QueueRecorder final : public Recorder {
  public:
-  /// 16384 records: 4 s of a site that logs 4 of them per tick.
+  /// 16384 records: 3 s of a site that logs 5 of them per tick.
   explicit QueueRecorder(std::size_t capacity = 16384);
 
   /// Thread: rt (the one writer).

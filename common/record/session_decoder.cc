@@ -70,6 +70,12 @@ Answer SessionDecoder::decode(std::string_view schema,
       if (is_named<DepthEstimate>(name)) return decode_record<DepthEstimate>(payload, at);
       if (is_named<DepthArrived>(name)) return decode_record<DepthArrived>(payload, at);
       if (is_named<TickView>(name)) return decode_view(payload, at);
+      if (is_named<HandReading>(name)) return decode_record<HandReading>(payload, at);
+      if (is_named<StageReading>(name)) return decode_record<StageReading>(payload, at);
+      if (is_named<ForceReading>(name)) return decode_record<ForceReading>(payload, at);
+      if (is_named<LinkHeard>(name)) return decode_record<LinkHeard>(payload, at);
+      if (is_named<UserAsked>(name)) return decode_record<UserAsked>(payload, at);
+      if (is_named<DevicesTold>(name)) return decode_record<DevicesTold>(payload, at);
     }
   }
   return {.verdict = Verdict::Unknown, .record = {}};

@@ -43,10 +43,16 @@ std::vector<TopicFormat> topics_of(Role site) {
                                   format<Event>(Topic::Event, site, "event")};
   if (site == Role::Surgeon) {
     topics.push_back(format<DepthArrived>(Topic::Depth, site, "depth"));
+    topics.push_back(format<HandReading>(Topic::Hand, site, "hand"));
   } else {
     topics.push_back(format<ContactSample>(Topic::Contact, site, "contact"));
     topics.push_back(format<DepthEstimate>(Topic::Depth, site, "depth"));
+    topics.push_back(format<StageReading>(Topic::Stage, site, "stage"));
+    topics.push_back(format<ForceReading>(Topic::Force, site, "force"));
   }
+  topics.push_back(format<LinkHeard>(Topic::Heard, site, "heard"));
+  topics.push_back(format<UserAsked>(Topic::User, site, "user"));
+  topics.push_back(format<DevicesTold>(Topic::Devices, site, "devices"));
   return topics;
 }
 
@@ -60,6 +66,10 @@ std::optional<Prepared> SessionEncoder::prepare(const Record& record,
                                                 std::uint64_t records_dropped) noexcept {
   using Answer = std::optional<Prepared>;
   const bool surgeon = site_ == Role::Surgeon;
+  // What the other site alone says is left out.
+  const auto of_site = [this](bool here, Topic topic, const auto& one) -> Answer {
+    return here ? Answer{write(topic, one.at, one)} : std::nullopt;
+  };
   return std::visit(
       Overloaded{[&](const SiteTick& tick) -> Answer { return write(Topic::Tick, tick.at, tick); },
                  [&](const Arrived& arrived) -> Answer {
@@ -84,18 +94,18 @@ std::optional<Prepared> SessionEncoder::prepare(const Record& record,
                                      .to = transition.to};
                    return write(Topic::Event, transition.at, event);
                  },
-                 [&](const ContactSample& sample) -> Answer {
-                   if (surgeon) return std::nullopt;
-                   return write(Topic::Contact, sample.at, sample);
-                 },
                  [&](const DepthEstimate& estimate) -> Answer {
                    if (surgeon) return std::nullopt;
                    return write(Topic::Depth, estimate.stroke_ended_at, estimate);
                  },
-                 [&](const DepthArrived& arrived) -> Answer {
-                   if (!surgeon) return std::nullopt;
-                   return write(Topic::Depth, arrived.at, arrived);
-                 }},
+                 [&](const DepthArrived& one) { return of_site(surgeon, Topic::Depth, one); },
+                 [&](const ContactSample& one) { return of_site(!surgeon, Topic::Contact, one); },
+                 [&](const HandReading& one) { return of_site(surgeon, Topic::Hand, one); },
+                 [&](const StageReading& one) { return of_site(!surgeon, Topic::Stage, one); },
+                 [&](const ForceReading& one) { return of_site(!surgeon, Topic::Force, one); },
+                 [&](const LinkHeard& one) { return of_site(true, Topic::Heard, one); },
+                 [&](const UserAsked& one) { return of_site(true, Topic::User, one); },
+                 [&](const DevicesTold& one) { return of_site(true, Topic::Devices, one); }},
       record);
 }
 

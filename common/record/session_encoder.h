@@ -15,8 +15,22 @@
 /// Records to the messages of proto/session_log.proto; one message type per topic.
 namespace palp::record {
 
-enum class Topic : std::uint8_t { Tick, TickView, Arrived, Link, Event, Contact, Depth };
-inline constexpr std::size_t kTopicCount = 7;
+enum class Topic : std::uint8_t {
+  Tick,
+  TickView,
+  Arrived,
+  Link,
+  Event,
+  Contact,
+  Depth,
+  Hand,
+  Stage,
+  Force,
+  Heard,
+  User,
+  Devices
+};
+inline constexpr std::size_t kTopicCount = 13;
 
 struct TopicFormat {
   Topic topic{};

@@ -17,9 +17,6 @@ coupling::MmtConfig make_mmt(const proto::config::Mmt& message) {
   config.air_damping = message.air_damping_n_s_per_m();
   config.repay_contact = message.repay_contact_n_s_per_m();
   config.repay_air = message.repay_air_n_s_per_m();
-  config.stage_lag = message.stage_lag_ms() * 1e-3;
-  config.estimator.sensor_cut_off = message.sensor_pole_hz();
-  config.estimator.sensor_quantum = message.sensor_quantum_mn() * 1e-3;
   config.estimator.stiffness_expected = message.stiffness_expected_n_per_m15();
   config.estimator.memory = message.memory_s();
   return config;
@@ -29,7 +26,6 @@ coupling::WaveConfig make_wave(const proto::config::Wave& message) {
   coupling::WaveConfig config;
   config.impedance = message.impedance_n_s_per_m();
   config.stiffness_expected = message.stiffness_expected_n_per_m();
-  config.stage_lag = message.stage_lag_ms() * 1e-3;
   return config;
 }
 

@@ -113,8 +113,8 @@ Response respond(const Curves& curves, const depth::StiffnessPrior& stiffness, c
 /// The transducer's pole, of everything.
 class Pole {
  public:
-  explicit Pole(const ForceSensing& sensing)
-      : gain_{LowPass{sensing.cut_off, sensing.period}.gain()} {}
+  explicit Pole(const ForceSensorFacts& sensor)
+      : gain_{LowPass{sensor.pole, 1 / sensor.rate}.gain()} {}
   const Response& step(const Response& input) {
     const auto follow = [&](double& value, double before, double now) {
       value += gain_ * (0.5 * (before + now) - value);  // between samples it sees both
@@ -143,9 +143,9 @@ std::vector<TipState> motion_of(const TapPlan& plan) {
   const double omega = 2 * std::numbers::pi / plan.tap_time;
   for (int tap = 0; tap < plan.reference_taps + plan.taps; ++tap) {
     const bool last = tap == plan.reference_taps + plan.taps - 1;
-    const double samples = (last ? 0.5 : 1) * plan.tap_time / plan.sensing.period;
+    const double samples = (last ? 0.5 : 1) * plan.tap_time * plan.sensor.rate;
     for (int i = 0; i < static_cast<int>(std::ceil(samples)); ++i) {
-      const double t = i * plan.sensing.period;
+      const double t = i / plan.sensor.rate;
       out.push_back({.indentation = -plan.clearance + swing * (1 - std::cos(omega * t)),
                      .rate = swing * omega * std::sin(omega * t),
                      .over = tap >= plan.reference_taps});
@@ -178,17 +178,17 @@ DepthBound depth_bound(const depth::DepthDatabase& database,
                        const depth::DepthDatabase::Query& truth,
                        const depth::DepthPrior& prior,
                        const depth::StiffnessPrior& stiffness,
-                       const ForceSensing& sensing,
+                       const ForceSensorFacts& sensor,
                        std::span<const TipState> motion) {
   const Curves curves{database, truth};
   System information{.matrix = {}, .right = {1}};
   System plain_information;
   double signal_squares = 0;
-  Pole pole{sensing};
+  Pole pole{sensor};
   for (const TipState& at : motion) {
     const Response& sensed = pole.step(respond(curves, stiffness, at));
     if (!(sensed.force > 0)) continue;
-    const double weight = sample_information(sensed.force, sensing.noise, sensing.quantum);
+    const double weight = sample_information(sensed.force, sensor.noise, sensor.step);
     add(information, sensed.along, weight);
     // As if there were no inclusion: what stiffness, rate and surface cannot explain.
     add(plain_information, sensed.along_plain, weight);

@@ -3,18 +3,11 @@
 #include <span>
 #include <vector>
 
+#include "common/core/device_facts.h"
 #include "depth/depth_database.h"
 #include "depth/depth_posterior.h"
 
 namespace palp::lab {
-
-/// The transducer.
-struct ForceSensing {
-  double noise{0.015};   ///< [N], rms of a sample before the steps
-  double quantum{0.05};  ///< [N]; 0: none
-  double cut_off{20};    ///< [Hz]
-  double period{1e-3};   ///< [s]
-};
 
 /// Taps of one phantom and the sensor they are felt with.
 struct TapPlan {
@@ -23,7 +16,7 @@ struct TapPlan {
   double indentation{4e-3};  ///< [m], deepest
   double clearance{10e-3};   ///< [m], where a tap begins
   double tap_time{1.0};      ///< [s], raised cosine there and back
-  ForceSensing sensing{};
+  ForceSensorFacts sensor{};
 };
 
 /// Where the tip is while one sample is taken.
@@ -43,13 +36,13 @@ struct DepthBound {
 };
 
 /// Fisher information of quantised samples about depth, radius, ratio, stiffness, rate factor and
-/// both surfaces, from derivatives of the database's curves, which pass the transducer's pole as
+/// both surfaces, from derivatives of the database's curves, which pass the sensor's pole as
 /// the force does. `stiffness.scale` and `.rate_factor` are the true ones.
 [[nodiscard]] DepthBound depth_bound(const depth::DepthDatabase& database,
                                      const depth::DepthDatabase::Query& truth,
                                      const depth::DepthPrior& prior,
                                      const depth::StiffnessPrior& stiffness,
-                                     const ForceSensing& sensing,
+                                     const ForceSensorFacts& sensor,
                                      std::span<const TipState> motion);
 
 /// Information of one sample about its mean, in 1/N^2: Gauss noise, then rounding to steps.

@@ -70,6 +70,7 @@ Result<Scenario> make_scenario(const std::string& name, const config::Document& 
   patient->node.gate = patient::within_tables(
       patient->node.gate, patient->simulation.surface_offset, phantom->depth_max());
   return Scenario{.name = name,
+                  .text = document.text(),
                   .seed = message.seed(),
                   .coupling = surgeon->coupling,
                   .link = surgeon->link,

@@ -32,7 +32,7 @@ double smallest_seen(const depth::DepthDatabase& database,
   const std::vector<TipState> motion = motion_of(plan);
   const auto seen = [&](double radius) {
     const depth::DepthDatabase::Query query{.depth = depth, .radius = radius, .ratio = ratio};
-    return depth_bound(database, query, {}, {}, plan.sensing, motion).signal >= kSeen;
+    return depth_bound(database, query, {}, {}, plan.sensor, motion).signal >= kSeen;
   };
   double low = database.grid().radii.front();
   double high = largest(database, depth, ratio);
@@ -102,7 +102,7 @@ ExitStatus run_visible(const VisibilityFlags& flags) {
   const TapPlan plan{.taps = static_cast<int>(flags.taps),
                      .reference_taps = static_cast<int>(flags.reference_taps),
                      .indentation = flags.indentation_mm * kMillimetre,
-                     .sensing = {}};
+                     .sensor = {}};
   const Visibility all = visibility(*database, plan);
   if (!flags.report.empty()) {
     config::Json out;

@@ -54,7 +54,8 @@ void LabSession::carry_out(const link::SessionOutput& output, TimePoint now) {
                           .protection = std::make_unique<link::PlainProtection>(),
                           .send_connection = met->send_connection,
                           .receive_connection = met->receive_connection,
-                          .session_id = met->session_id};
+                          .session_id = met->session_id,
+                          .peer_devices = met->peer_devices};
     (void)link_.adopt(std::move(next), clock_.local(now));
   } else if (std::holds_alternative<link::Closed>(*output.event)) {
     (void)link_.adopt({}, clock_.local(now));

@@ -41,9 +41,11 @@ class Files final {
                                    {"scenario", scenario.name},
                                    {"seed", std::to_string(scenario.seed)},
                                    {"time", "virtual"}};
+    const std::vector<record::SessionAttachment> attached{
+        {"scenario.textproto", "text/plain", scenario.text}};
     surgeon_.emplace(files.surgeon != nullptr ? *files.surgeon : null_surgeon_,
-                     record::SessionInfo{link::Role::Surgeon, metadata, {}, now});
-    record::SessionInfo patient_info{link::Role::Patient, metadata, {}, now};
+                     record::SessionInfo{link::Role::Surgeon, metadata, attached, now});
+    record::SessionInfo patient_info{link::Role::Patient, metadata, attached, now};
     patient::describe_tissue(scenario.phantom, scenario.tissue.surface_offset, patient_info);
     patient_.emplace(files.patient != nullptr ? *files.patient : null_patient_, patient_info);
   }
@@ -252,7 +254,8 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   PatientProcess patient{scenario,
                          {tissue, patient_recorder, contact, depth},
                          std::make_unique<Valve>(pipe.patient_end(), shut)};
-  patient::EstimatorWorker estimator{scenario.estimator, {contact, depth, patient_recorder}};
+  patient::EstimatorWorker estimator{depth::with_sensor(scenario.estimator, tissue.sensor_facts()),
+                                     {contact, depth, patient_recorder}};
   surgeon.start(start);
   patient.start(start);
 

@@ -21,6 +21,7 @@ namespace palp::lab {
 /// Everything that decides a run: two runs of equal scenarios give equal bits.
 struct Scenario {
   std::string name;
+  std::string text{};  ///< the document it was made of
   std::uint64_t seed{1};
   coupling::CouplingConfig coupling;
   link::LinkConfig link;

@@ -22,13 +22,26 @@ LocalClock clock_of(const Scenario& scenario, link::Role role) {
   return {role == link::Role::Surgeon ? kSurgeonAhead : kPatientAhead};
 }
 
+DeviceFacts devices_of(const Scenario& scenario, link::Role role) {
+  if (role == link::Role::Surgeon) {
+    return {.hand = surgeon::facts_of(scenario.hand), .stage = {}, .sensor = {}};
+  }
+  const PatientDevices devices = patient::facts_of(scenario.tissue);
+  return {.hand = {}, .stage = devices.stage, .sensor = devices.sensor};
+}
+
+link::Role other(link::Role role) {
+  return role == link::Role::Surgeon ? link::Role::Patient : link::Role::Surgeon;
+}
+
 /// A session as the handshake would have left it.
-link::LinkUpdate link_update(std::unique_ptr<link::Transport> transport) {
+link::LinkUpdate link_update(std::unique_ptr<link::Transport> transport, const DeviceFacts& peer) {
   return {.transport = std::move(transport),
           .protection = std::make_unique<link::PlainProtection>(),
           .send_connection = 1,
           .receive_connection = 1,
-          .session_id = 1};
+          .session_id = 1,
+          .peer_devices = peer};
 }
 
 }  // namespace
@@ -40,13 +53,16 @@ SessionSetup::SessionSetup(const Scenario& scenario,
 
 void SessionSetup::start(link::Link& link, TimePoint now) {
   if (!by_handshake(scenario_)) {
-    (void)link.adopt(link_update(std::move(end_)), now);
+    (void)link.adopt(link_update(std::move(end_), devices_of(scenario_, other(role_))), now);
     return;
   }
   // Another 64 bits for every start.
   const std::uint64_t entropy =
       random_bits(scenario_.seed, kEntropyStream + static_cast<std::uint64_t>(role_), starts_++);
-  const link::SessionConfig config{.role = role_, .coupling = scenario_.coupling.name, .git = {}};
+  const link::SessionConfig config{.role = role_,
+                                   .coupling = scenario_.coupling.name,
+                                   .git = {},
+                                   .devices = devices_of(scenario_, role_)};
   lab_session_.emplace(config, entropy, *end_, clock_, link);
 }
 

@@ -108,7 +108,9 @@ LinkHealth SurgeonProcess::health(TimePoint now) const noexcept {
 
 PatientProcess::Running::Running(PatientProcess& owner)
     : link{owner.scenario_.link, patient_codec(owner.scenario_)},
-      law{coupling::make_patient_coupling(owner.scenario_.coupling).value()},
+      law{coupling::make_patient_coupling(owner.scenario_.coupling,
+                                          patient::facts_of(owner.scenario_.tissue))
+              .value()},
       node{owner.scenario_.patient,
            {owner.device_,
             owner.device_,

@@ -32,16 +32,13 @@ class HandAtClock final : public surgeon::HapticDevice {
   void fail(FaultKind how) noexcept { failing_ = how; }
   [[nodiscard]] bool pedal_held() const noexcept { return held_; }  ///< at the last read()
 
+  [[nodiscard]] HandFacts hand_facts() const noexcept override { return hand_.hand_facts(); }
   surgeon::HandState read(TimePoint now) noexcept override;
   void apply(double force) noexcept override { hand_.apply(force); }
   void hold_in_plane(bool held) noexcept override { hand_.hold_in_plane(held); }
   void show(const surgeon::OperatorView& view) noexcept override { hand_.show(view); }
   [[nodiscard]] surgeon::ScriptProgress progress() const noexcept override {
     return hand_.progress();
-  }
-  [[nodiscard]] double force_max() const noexcept override { return hand_.force_max(); }
-  [[nodiscard]] double force_continuous() const noexcept override {
-    return hand_.force_continuous();
   }
 
  private:
@@ -59,10 +56,13 @@ class PhantomAtClock final : public patient::Stage, public patient::ForceSensor 
       : phantom_{phantom}, clock_{clock} {}
   /// One of stage or sensor; None: they work.
   void fail(FaultKind how) noexcept { failing_ = how; }
+  [[nodiscard]] StageFacts stage_facts() const noexcept override { return phantom_.stage_facts(); }
+  [[nodiscard]] ForceSensorFacts sensor_facts() const noexcept override {
+    return phantom_.sensor_facts();
+  }
   patient::StageState read(TimePoint now) noexcept override;
   void move_to(const patient::StageTarget& target) noexcept override;
   void halt() noexcept override { phantom_.halt(); }
-  [[nodiscard]] bool can_drag() const noexcept override { return phantom_.can_drag(); }
   std::optional<patient::ForceSample> sample(TimePoint now) noexcept override;
 
  private:

@@ -77,7 +77,7 @@ TEST(StrokeTrackerTest, AForceAtTheEndOfTheRangeIsInvalid) {
   const auto phantom = make_phantom("paper-10mm");
   ASSERT_TRUE(phantom);
   depth::StrokeTrackerConfig config;
-  config.force_range = 0.3;
+  config.sensor.range = 0.3;
   const auto strokes = strokes_of(*phantom, ideal_sensor(), {.taps = 1}, config);
   ASSERT_EQ(strokes.size(), 1U);
   EXPECT_EQ(strokes[0].reason, DepthReason::ForceSaturated);
@@ -114,17 +114,13 @@ TEST(StrokeTrackerTest, AStrokeThatGoesBackAndPressesOnIsNotMonotone) {
   SimulatedPhantomConfig sensor = ideal_sensor();
   sensor.start_position = -3e-3;
   SimulatedPhantom site{*phantom, sensor};
-  LowPass co_filter{20, 1e-3};
-  co_filter.reset(-3e-3);
   std::vector<depth::Stroke> strokes;
   TimePoint now{};
   for (int i = 0; i < 3000; ++i) {
     now += std::chrono::milliseconds{1};
     const StageState stage = site.read(now);
-    const auto stroke = tracker.take({.at = now,
-                                      .position = co_filter.step(stage.position),
-                                      .force = site.sample(now)->force,
-                                      .place = {}});
+    const auto stroke = tracker.take(
+        {.at = now, .position = stage.position, .force = site.sample(now)->force, .place = {}});
     if (stroke) strokes.push_back(*stroke);
     // To 3 mm, back to 2 mm, on to 4 mm, out.
     const double t = i * 1e-3;
@@ -157,13 +153,11 @@ TEST(StrokeTrackerTest, OtherTissueAtTheSamePlaceStartsAfresh) {
     config.start_position = -3e-3;
     config.start_place = kSiteB;
     SimulatedPhantom site{*phantom, config};
-    LowPass co_filter{20, 1e-3};
-    co_filter.reset(-3e-3);
     for (int i = 0; i < 2 * 1500; ++i) {
       now += std::chrono::milliseconds{1};
       const StageState stage = site.read(now);
-      if (const auto stroke = tracker.take(
-              {now, co_filter.step(stage.position), site.sample(now)->force, stage.place})) {
+      if (const auto stroke =
+              tracker.take({now, stage.position, site.sample(now)->force, stage.place})) {
         hashes.push_back(stroke->hash);
       }
       const double t = std::min((i % 1500) * 1e-3, 1.0);
@@ -183,15 +177,13 @@ TEST(StrokeTrackerTest, AHoldOnTheWayInIsStillOneStroke) {
   config.start_place = kSiteB;
   SimulatedPhantom site{*phantom, config};
   depth::StrokeTracker tracker{{}};
-  LowPass co_filter{20, 1e-3};
-  co_filter.reset(-3e-3);
   std::vector<depth::Stroke> strokes;
   TimePoint now{};
   for (int i = 0; i < 5500; ++i) {
     now += std::chrono::milliseconds{1};
     const StageState stage = site.read(now);
-    if (const auto stroke = tracker.take(
-            {now, co_filter.step(stage.position), site.sample(now)->force, stage.place})) {
+    if (const auto stroke =
+            tracker.take({now, stage.position, site.sample(now)->force, stage.place})) {
       strokes.push_back(*stroke);
     }
     const double t = i * 1e-3;

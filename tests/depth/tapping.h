@@ -36,8 +36,8 @@ inline double tapped_position(const Tapping& tapping, bool hesitant, double t) {
   return smooth - kBack / 2 * wave((t - kFrom) / kSpan);
 }
 
-/// Gives `feel` every sample, as the patient node would: 1 kHz, position behind the transducer's
-/// pole. @returns the instant of the last one.
+/// Gives `feel` every sample, as the patient node would: 1 kHz, as the devices gave it. @returns
+/// the instant of the last one.
 template <typename Feel>
 TimePoint feel_taps(const Phantom& phantom,
                     SimulatedPhantomConfig config,
@@ -47,17 +47,13 @@ TimePoint feel_taps(const Phantom& phantom,
   config.start_position = config.surface_offset - tapping.clearance;
   config.start_place = tapping.place;
   SimulatedPhantom site{phantom, config};
-  LowPass co_filter{20, 1e-3};
-  co_filter.reset(config.start_position);
   const int per_tap = static_cast<int>(std::lround((tapping.tap_time + tapping.rest_time) * 1e3));
   for (int i = 0; i < tapping.taps * per_tap; ++i) {
     now += std::chrono::milliseconds{1};
     const StageState stage = site.read(now);
     const std::optional<ForceSample> force = site.sample(now);
-    feel(ContactSample{.at = now,
-                       .position = co_filter.step(stage.position),
-                       .force = force->force,
-                       .place = stage.place});
+    feel(ContactSample{
+        .at = now, .position = stage.position, .force = force->force, .place = stage.place});
     const double t = std::min((i % per_tap) * 1e-3, tapping.tap_time) / tapping.tap_time;
     const bool hesitant = i / per_tap < tapping.hesitant;
     site.move_to({config.surface_offset + tapped_position(tapping, hesitant, t), tapping.place});

@@ -52,7 +52,13 @@ std::vector<Record> records() {
           Transition{.at = at, .from = SiteState::Parked, .to = SiteState::Clutched, .reason = 2},
           ContactSample{.at = at, .position = 1e-3, .force = 0.2},
           estimate,
-          depth};
+          depth,
+          HandReading{.at = at, .position = 1e-3, .script_phase = 2},
+          StageReading{.at = at, .position = 1e-3},
+          ForceReading{.at = at, .fresh = true, .force = 0.2},
+          LinkHeard{.at = at, .state = LinkState::Live, .session_id = 5},
+          UserAsked{.at = at, .command = {.emergency_stop = true}},
+          DevicesTold{.at = at, .facts = {HandFacts{}, StageFacts{}, ForceSensorFacts{}}}};
 }
 
 void messages(const fs::path& corpus) {

@@ -12,9 +12,10 @@ namespace {
 using record::NoteCode;
 constexpr Duration kTick = std::chrono::milliseconds{1};
 
+/// Its sensor has no pole to speak of: the tip is felt where it is.
 MotionGate gate_at(double tip, const MotionGateConfig& config = {}) {
-  MotionGate gate{config};
-  gate.begin(tip, {}, true);
+  MotionGate gate{config, ForceSensorFacts{.pole = 1e5}};
+  gate.begin(tip, {});
   return gate;
 }
 
@@ -27,6 +28,18 @@ void touch(MotionGate& gate, double tip, double force) {
   for (int i = 0; i < 100; ++i) gate.feel(tip, force);
 }
 void let_go(MotionGate& gate, double tip) { touch(gate, tip, 0); }
+
+TEST(MotionGateTest, FeelsTheTipBehindTheSensorsPoleAsItDoesTheForce) {
+  // The tip steps in and the force, already behind the pole, is felt at once: the surface is sought
+  // where the filtered tip was.
+  const auto surface_with = [](double pole) {
+    MotionGate gate{{}, ForceSensorFacts{.pole = pole}};
+    gate.begin(0, {});
+    for (int i = 0; i < 8; ++i) gate.feel(2e-3, 0.2);
+    return gate.surface().value();
+  };
+  EXPECT_LT(surface_with(20), surface_with(1e5) - 0.2e-3);
+}
 
 TEST(MotionGateTest, FollowsSlowMotionExactly) {
   MotionGate gate = gate_at(-10e-3);
@@ -267,8 +280,7 @@ TEST(MotionGateTest, DragsSlowlyWhatIsPressed) {
 }
 
 TEST(MotionGateTest, AStageThatCannotDragKeepsItsPlaceAndSaysSo) {
-  MotionGate gate{{}};
-  gate.begin(2e-3, kSiteA, false);
+  MotionGate gate = gate_at(2e-3, {.plane = {.drag_speed = 0}});
   touch(gate, 2e-3, 0.3);
   const MotionAnswer first = gate.pass({SiteState::Engaged, 2e-3, kSiteB, 2e-3, 0.3}, kTick);
   EXPECT_EQ(first.place, kSiteA);

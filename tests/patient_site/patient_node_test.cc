@@ -20,6 +20,10 @@ constexpr Duration kTick = std::chrono::milliseconds{1};
 class FaultySite final : public Stage, public ForceSensor {
  public:
   explicit FaultySite(SimulatedPhantom& site) : site_{site} {}
+  [[nodiscard]] StageFacts stage_facts() const noexcept override { return site_.stage_facts(); }
+  [[nodiscard]] ForceSensorFacts sensor_facts() const noexcept override {
+    return site_.sensor_facts();
+  }
   StageState read(TimePoint now) noexcept override {
     StageState state = site_.read(now);
     if (stage_gives_nan) state.position = std::nan("");
@@ -43,10 +47,8 @@ class FaultySite final : public Stage, public ForceSensor {
     sample->saturated = saturated;
     return sample;
   }
-  [[nodiscard]] bool can_drag() const noexcept override { return drags; }
   [[nodiscard]] StageTarget target() const { return target_; }
 
-  bool drags{true};
   bool stage_gives_nan{};
   bool stage_faulted{};
   bool stage_stuck{};
@@ -81,7 +83,7 @@ class ListRecorder final : public record::Recorder {
 struct World {
   link::TestPipe pipe;
   Phantom phantom{*make_phantom("paper-10mm")};
-  SimulatedPhantom plant{phantom, {}};
+  SimulatedPhantom plant;
   FaultySite site{plant};
   coupling::PatientCoupling law{*coupling::make_patient_coupling({})};
   link::Link patient_link{{}, link::Couple::make_codec(false)};
@@ -95,7 +97,7 @@ struct World {
   TimePoint now{};
   bool silent{};
 
-  World() {
+  explicit World(const SimulatedPhantomConfig& config = {}) : plant{phantom, config} {
     (void)surgeon_link.adopt(link::Couple::link_update(pipe.surgeon_end(), 3, 2, 1), now);
     (void)patient_link.adopt(link::Couple::link_update(pipe.patient_end(), 2, 3, 1), now);
     say.port.position = -10e-3;
@@ -387,8 +389,7 @@ bool noted(const World& world, NoteCode code) {
 }
 
 TEST(PatientNodeTest, AStageThatCannotDragSaysSo) {
-  World world;
-  world.site.drags = false;
+  World world{{.can_drag = false}};
   world.engage();
   world.move(3e-3, milliseconds{800});
   world.say.site.place = {4e-3, 3e-3};

@@ -12,9 +12,9 @@ namespace {
 using record::NoteCode;
 constexpr double kTick = 1e-3;  // [s]
 
-PlaneMotion at(const Place& place, bool can_drag = true, const PlaneMotionConfig& config = {}) {
+PlaneMotion at(const Place& place, const PlaneMotionConfig& config = {}) {
   PlaneMotion motion{config};
-  motion.begin(place, can_drag);
+  motion.begin(place);
   return motion;
 }
 
@@ -54,7 +54,7 @@ TEST(PlaneMotionTest, ArrivesExactlyAndDoesNotRunPast) {
 }
 
 TEST(PlaneMotionTest, SaysWhereItsTravelEnds) {
-  PlaneMotion motion = at(kSiteA, true, {.travel_x = 0.02, .travel_y = 0.5});
+  PlaneMotion motion = at(kSiteA, {.travel_x = 0.02, .travel_y = 0.5});
   EXPECT_EQ(motion.follow({10e-3, 0}, false, kTick), NoteCode::None);
   for (int i = 0; i < 500; ++i) {
     EXPECT_EQ(motion.follow({10.1e-3, 0}, false, kTick), NoteCode::PlaceBeyondTravel);
@@ -67,14 +67,12 @@ TEST(PlaneMotionTest, SaysWhereItsTravelEnds) {
 }
 
 TEST(PlaneMotionTest, WhatCannotDragStaysWhilePressedAndForgivesATremblingHand) {
-  for (const bool by_config : {false, true}) {
-    PlaneMotion motion = by_config ? at(kSiteA, true, {.drag_speed = 0}) : at(kSiteA, false);
-    EXPECT_EQ(motion.follow({1e-3, 0}, true, kTick), NoteCode::None);
-    EXPECT_EQ(motion.follow({0.8e-3, 0.8e-3}, true, kTick), NoteCode::DragRefused);
-    EXPECT_EQ(motion.command(), kSiteA);
-    EXPECT_EQ(motion.follow({0.8e-3, 0.8e-3}, false, kTick), NoteCode::None);
-    EXPECT_NE(motion.command(), kSiteA);
-  }
+  PlaneMotion motion = at(kSiteA, {.drag_speed = 0});
+  EXPECT_EQ(motion.follow({1e-3, 0}, true, kTick), NoteCode::None);
+  EXPECT_EQ(motion.follow({0.8e-3, 0.8e-3}, true, kTick), NoteCode::DragRefused);
+  EXPECT_EQ(motion.command(), kSiteA);
+  EXPECT_EQ(motion.follow({0.8e-3, 0.8e-3}, false, kTick), NoteCode::None);
+  EXPECT_NE(motion.command(), kSiteA);
 }
 
 TEST(PlaneMotionTest, WhatIsNoNumberIsNotFollowed) {

@@ -40,6 +40,7 @@ void add(settings_test::FieldList& list, const MotionGateConfig& gate) {
 void add(settings_test::FieldList& list, const SimulatedPhantomConfig& simulation) {
   list.add("servo_frequency", simulation.servo_frequency)
       .add("servo_damping", simulation.servo_damping)
+      .add("stage_lag", simulation.stage_lag)
       .add("acceleration_max", simulation.acceleration_max)
       .add("speed_max", simulation.speed_max)
       .add("encoder_step", simulation.encoder_step)
@@ -66,7 +67,6 @@ std::string text_of(const Settings& settings) {
   add(list, settings.coupling);
   add(list, settings.link);
   list.add("node.period", settings.node.period)
-      .add("node.sensor_cut_off", settings.node.sensor_cut_off)
       .add("node.sensor_stale", settings.node.sensor_stale)
       .add("node.link_status_every", settings.node.link_status_every);
   add(list, settings.node.gate);
@@ -74,10 +74,8 @@ std::string text_of(const Settings& settings) {
       .add("force", settings.force)
       .add("phantom", settings.phantom)
       .add("estimator_kind", settings.estimator_kind)
-      .add("estimator.sensor_cut_off", settings.estimator.strokes.sensor_cut_off)
       .add("estimator.filter_cut_off", settings.estimator.strokes.filter_cut_off)
       .add("estimator.period", settings.estimator.strokes.period)
-      .add("estimator.force_quantum", settings.estimator.strokes.force_quantum)
       .add("estimator.fit_range", settings.estimator.strokes.fit_range)
       .add("estimator.radius_min", settings.estimator.bayes.prior.radius_min)
       .add("estimator.radius_max", settings.estimator.bayes.prior.radius_max)
@@ -129,18 +127,34 @@ TEST(PatientSettingsTest, UnknownDevicesAreErrorsThatListTheKnownOnes) {
               HasSubstr("unknown force sensor 'kistler'; there are: sim"));
 }
 
-TEST(PatientSettingsTest, TheEstimatorSharesTheSensorsPole) {
-  const Settings made = settings_with({"estimator.sensor_pole_hz=15", "loop.period_us=500"});
-  EXPECT_EQ(made.estimator.strokes.sensor_cut_off, 15);
-  EXPECT_EQ(made.node.sensor_cut_off, 15);
-  EXPECT_EQ(made.estimator.strokes.period, 0.5e-3);
+TEST(PatientSettingsTest, TheEstimatorHasTheLoopsPeriod) {
+  EXPECT_EQ(settings_with({"loop.period_us=500"}).estimator.strokes.period, 0.5e-3);
 }
 
-TEST(PatientSettingsTest, ASensorOfLargeStepsMayRestOnOneForLonger) {
-  config::Document document = config::patient_document();
-  EXPECT_EQ(make_settings(document)->node.watch.sensor_travel, DeviceWatchConfig{}.sensor_travel);
-  ASSERT_TRUE(document.set("simulated_phantom.sensor_quantum_mn=400"));
-  EXPECT_GE(make_settings(document)->node.watch.sensor_travel, 10e-3);
+TEST(PatientSettingsTest, WhatADeviceSaysItselfIsNoKnob) {
+  for (const std::string path : {"coupling.wave.stage_lag_ms",
+                                 "coupling.mmt.sensor_pole_hz",
+                                 "coupling.mmt.sensor_quantum_mn",
+                                 "coupling.mmt.stage_lag_ms",
+                                 "estimator.sensor_pole_hz"}) {
+    config::Document document = config::patient_document();
+    const auto refused = document.set(path + "=20");
+    ASSERT_FALSE(refused) << path;
+    const std::string field = path.substr(path.rfind('.') + 1);
+    EXPECT_THAT(refused.error().text, HasSubstr(field));
+    const auto group = path.substr(0, path.rfind('.'));
+    std::string text = field + ": 20";
+    for (std::size_t end = group.size(); end != std::string::npos;) {
+      const std::size_t dot = group.rfind('.', end - 1);
+      text = group.substr(dot == std::string::npos ? 0 : dot + 1,
+                          end - (dot == std::string::npos ? 0 : dot + 1)) +
+             " { " + text + " }";
+      end = dot;
+    }
+    const auto in_file = document.merge(text, "site.textproto");
+    ASSERT_FALSE(in_file) << text;
+    EXPECT_THAT(in_file.error().text, HasSubstr("no field \"" + field + "\""));
+  }
 }
 
 TEST(PatientSettingsTest, BothSitesAgreeByDefault) {

@@ -42,8 +42,7 @@ class HeldDevice final : public HapticDevice {
   }
   void apply(double force) noexcept override { force_applied = force; }
   void show(const OperatorView& view) noexcept override { shown = view; }
-  [[nodiscard]] double force_max() const noexcept override { return 8.5; }
-  [[nodiscard]] double force_continuous() const noexcept override { return 1.4; }
+  [[nodiscard]] HandFacts hand_facts() const noexcept override { return {}; }
 
   HandState state;
   OperatorView shown;

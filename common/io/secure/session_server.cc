@@ -277,7 +277,8 @@ void SessionServer::Io::meet(const link::Established& session,
                         .protection = std::move(protection),
                         .send_connection = session.send_connection,
                         .receive_connection = session.receive_connection,
-                        .session_id = session.session_id};
+                        .session_id = session.session_id,
+                        .peer_devices = session.peer_devices};
   if (!(peer == connected_)) {
     Result<std::unique_ptr<link::Transport>> way = way_to(peer);
     if (!way) {

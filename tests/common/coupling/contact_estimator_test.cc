@@ -17,9 +17,9 @@ namespace {
 template <class Tissue>
 ModelPayload learn(const Tissue& tissue, double surface = 0) {
   ContactEstimatorConfig config;
-  config.sensor_quantum = 0;
+  config.sensor.step = 0;
   ContactEstimator estimator{config};
-  LowPass pole{config.sensor_cut_off, config.period / 10};
+  LowPass pole{config.sensor.pole, config.period / 10};
   double before = -3e-3;
   for (int tick = 0; tick < 7000; ++tick) {
     const double t = 1e-3 * tick;
@@ -125,9 +125,9 @@ TEST(ContactEstimatorTest, ATissueThatLetsGoOnTheWayOutIsAsStiffAsOnTheWayIn) {
 TEST(ContactEstimatorTest, TissueThatBreathesIsFoundAsStiffAsItIsAtAnyPace) {
   for (const double pace : {0.2, 0.25, 0.33}) {
     ContactEstimatorConfig config;
-    config.sensor_quantum = 0;
+    config.sensor.step = 0;
     ContactEstimator estimator{config};
-    LowPass pole{config.sensor_cut_off, config.period};
+    LowPass pole{config.sensor.pole, config.period};
     double surface = 0;
     double position = -3e-3;
     for (int tick = 0; tick < 16'000; ++tick) {
@@ -167,7 +167,7 @@ TEST(ContactEstimatorTest, OnlySaysWhatIsPassive) {
 
 TEST(ContactEstimatorTest, TheSurfaceDoesNotWalkToWhereTheTipFeltNothing) {
   ContactEstimatorConfig config;
-  config.sensor_quantum = 0;
+  config.sensor.step = 0;
   ContactEstimator estimator{config};
   double highest = 0;
   for (int tick = 0; tick < 30'000; ++tick) {
@@ -216,7 +216,7 @@ TEST(ContactEstimatorTest, WhatProvesToBeNoiseIsTakenBack) {
 
 TEST(ContactEstimatorTest, KeepsShowingTheOldPlaceUntilTheNewOneIsTouched) {
   ContactEstimatorConfig config;
-  config.sensor_quantum = 0;
+  config.sensor.step = 0;
   ContactEstimator estimator{config};
   for (int tick = 0; tick < 3000; ++tick) {
     const double position = tick < 500 ? -1e-3 : 2e-3 - 2e-3 * std::cos(0.01 * tick);

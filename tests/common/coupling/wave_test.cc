@@ -9,6 +9,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "common/core/random.h"
+#include "common/coupling/any_coupling.h"
 #include "common/coupling/play_out.h"
 
 namespace palp::coupling {
@@ -177,13 +178,37 @@ TEST(PlayOutTest, APeerThatUnderstatesItsEnergyIsPlayedNoLouderThanItSays) {
 
 TEST(WaveTest, TheImpedanceKeepsAStageWithItsLagPassiveOnTheStiffestTissue) {
   WaveConfig config;
-  EXPECT_GE(wave_impedance(config), config.stiffness_expected * config.stage_lag);
+  PatientDevices devices;
+  EXPECT_GE(wave_impedance(config, devices),
+            config.stiffness_expected * (devices.stage.lag + devices.sensor.lag));
   config.stiffness_expected = 10;
-  EXPECT_EQ(wave_impedance(config), 5);
+  EXPECT_EQ(wave_impedance(config, devices), 5);
   config.stiffness_expected = 5000;
-  EXPECT_EQ(wave_impedance(config), 15);
+  EXPECT_EQ(wave_impedance(config, devices), 15);
   config.impedance = 2;
-  EXPECT_EQ(wave_impedance(config), 2);
+  EXPECT_EQ(wave_impedance(config, devices), 2);
+}
+
+TEST(WaveTest, TheHandTakesTheImpedanceOfTheStageThatItMeets) {
+  // In free air the hand feels b v: half the lag above the least impedance, so much less of it.
+  const auto drag = [](const PatientDevices& met) {
+    SurgeonCoupling law{WaveSurgeon{{}}};
+    meet(law, met);
+    begin_epoch(law, 0);
+    SurgeonInput in;
+    in.state = SiteState::Engaged;
+    double force = 0;
+    for (int i = 1; i <= 100; ++i) {
+      in.position = i * 1e-4;
+      force = step(law, in, std::chrono::milliseconds{1}).force;
+    }
+    return force;
+  };
+  PatientDevices quick;
+  quick.stage.lag = 8e-3;
+  const double ratio = wave_impedance({}, quick) / wave_impedance({}, {});
+  EXPECT_LT(ratio, 0.8);
+  EXPECT_NEAR(drag(quick), ratio * drag({}), 1e-9);
 }
 
 TEST(WaveTest, BothPortsCarryThePowerOfTheirWaves) {

@@ -20,7 +20,10 @@ Hello some_hello() {
           .connection_id = 0xDEADBEEF,
           .settings_hash = 99,
           .coupling = "direct",
-          .git = "0123abc"};
+          .git = "0123abc",
+          .devices = {.hand = {},
+                      .stage = StageFacts{3, -0.1, 0.2, 0.3, 0.4, 5, 600, 0.07, true},
+                      .sensor = ForceSensorFacts{8, 0.09, 10, 0.011, 1200, 0.013}}};
 }
 
 TEST(CodecControlTest, HelloComesBack) {
@@ -35,6 +38,47 @@ TEST(CodecControlTest, HelloComesBack) {
   EXPECT_EQ(received->settings_hash, sent.settings_hash);
   EXPECT_EQ(received->coupling, sent.coupling);
   EXPECT_EQ(received->git, sent.git);
+  EXPECT_FALSE(received->devices.hand);
+  ASSERT_TRUE(received->devices.stage);
+  EXPECT_EQ(received->devices.stage->axes, 3U);
+  EXPECT_EQ(received->devices.stage->travel_min, -0.1);
+  EXPECT_EQ(received->devices.stage->travel_max, 0.2);
+  EXPECT_EQ(received->devices.stage->travel_side, 0.3);
+  EXPECT_EQ(received->devices.stage->speed, 0.4);
+  EXPECT_EQ(received->devices.stage->acceleration, 5);
+  EXPECT_EQ(received->devices.stage->rate, 600);
+  EXPECT_EQ(received->devices.stage->lag, 0.07);
+  EXPECT_TRUE(received->devices.stage->drags);
+  ASSERT_TRUE(received->devices.sensor);
+  EXPECT_EQ(received->devices.sensor->pole, 8);
+  EXPECT_EQ(received->devices.sensor->step, 0.09);
+  EXPECT_EQ(received->devices.sensor->range, 10);
+  EXPECT_EQ(received->devices.sensor->noise, 0.011);
+  EXPECT_EQ(received->devices.sensor->rate, 1200);
+  EXPECT_EQ(received->devices.sensor->lag, 0.013);
+}
+
+TEST(CodecControlTest, HelloOfAHandComesBack) {
+  Hello sent = some_hello();
+  sent.devices = {.hand = HandFacts{3, 4, 0.5, 600}, .stage = {}, .sensor = {}};
+  const auto received = decode_hello(encode(sent).view());
+  ASSERT_TRUE(received);
+  ASSERT_TRUE(received->devices.hand);
+  EXPECT_EQ(received->devices.hand->axes, 3U);
+  EXPECT_EQ(received->devices.hand->force_peak, 4);
+  EXPECT_EQ(received->devices.hand->force_continuous, 0.5);
+  EXPECT_EQ(received->devices.hand->rate, 600);
+  EXPECT_FALSE(received->devices.stage);
+  EXPECT_FALSE(received->devices.sensor);
+}
+
+TEST(CodecControlTest, AllHellosAreOfOneLengthWhateverDevicesTheyTellOf) {
+  Hello hello = some_hello();
+  const std::size_t size = encode(hello).size;
+  hello.devices = {};
+  EXPECT_EQ(encode(hello).size, size);
+  hello.devices.hand = HandFacts{};
+  EXPECT_EQ(encode(hello).size, size);
 }
 
 TEST(CodecControlTest, ByeComesBack) {

@@ -1,4 +1,6 @@
 // What strangers, liars and other versions can do to a Session.
+#include <cmath>
+
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -74,7 +76,7 @@ TEST(SessionStrangersTest, SitesThatDifferRefuseEachOtherInOneSentence) {
   };
   std::vector<Case> cases(4, {config_of(Role::Surgeon), config_of(Role::Patient), {}});
   cases[0].patient.protocol_version = kProtocolVersion + 1;
-  cases[0].text = "the sites speak different protocol versions: surgeon 3, patient 4";
+  cases[0].text = "the sites speak different protocol versions: surgeon 4, patient 5";
   cases[1].surgeon.coupling = "wave";
   cases[1].text = "the sites use different couplings: surgeon wave, patient direct";
   cases[2].surgeon.settings_hash = 0xAB;
@@ -106,6 +108,49 @@ TEST(SessionStrangersTest, SitesThatDifferRefuseEachOtherInOneSentence) {
     town.run(1s);
     EXPECT_EQ(town.patient->established.size(), 1U);
   }
+}
+
+TEST(SessionStrangersTest, DevicesThatCannotBeAreRefusedInOneSentence) {
+  struct Case {
+    DeviceFacts patient;
+    std::string text;
+  };
+  const DeviceFacts sound{.hand = {}, .stage = StageFacts{}, .sensor = ForceSensorFacts{}};
+  std::vector<Case> cases(4, {sound, {}});
+  cases[0].patient.stage.reset();
+  cases[0].text = "the patient's hello is malformed: it tells of no stage";
+  cases[1].patient.sensor.reset();
+  cases[1].text = "the patient's hello is malformed: it tells of no force sensor";
+  cases[2].patient.stage->speed = -1;
+  cases[2].text =
+      "the patient's hello is malformed: the stage's speed of -1 m/s is not above 0 and at most "
+      "100 m/s";
+  cases[3].patient.sensor->pole = std::nan("");
+  cases[3].text =
+      "the patient's hello is malformed: the force sensor's pole of nan Hz is not 0.1 to 1e+05 Hz";
+  for (const Case& one : cases) {
+    SessionConfig patient = config_of(Role::Patient);
+    patient.devices = one.patient;
+    Town town{config_of(Role::Surgeon), patient};
+    town.run(1s);
+    EXPECT_TRUE(town.surgeon->established.empty());
+    ASSERT_FALSE(town.surgeon->refused.empty());
+    EXPECT_EQ(town.surgeon->refused[0].text, one.text);
+  }
+}
+
+TEST(SessionStrangersTest, EachSiteLearnsTheDevicesOfTheOther) {
+  SessionConfig surgeon = config_of(Role::Surgeon);
+  surgeon.devices = {.hand = HandFacts{.force_peak = 3}, .stage = {}, .sensor = {}};
+  SessionConfig patient = config_of(Role::Patient);
+  patient.devices.stage->lag = 0.03;
+  Town town{surgeon, patient};
+  town.run(1s);
+  ASSERT_EQ(town.surgeon->established.size(), 1U);
+  ASSERT_EQ(town.patient->established.size(), 1U);
+  EXPECT_EQ(town.surgeon->established[0].peer_devices.stage->lag, 0.03);
+  EXPECT_EQ(town.patient->established[0].peer_devices.hand->force_peak, 3);
+  EXPECT_FALSE(town.patient->established[0].peer_devices.stage);
 }
 
 TEST(SessionStrangersTest, APatientDoesNotAnswerAPatient) {

@@ -31,6 +31,17 @@ void each_struct(auto&& visit) {
             ContactSample,
             DepthEstimate,
             DepthArrived,
+            HandReading,
+            StageReading,
+            ForceReading,
+            LinkHeard,
+            UserCommand,
+            UserAsked,
+            HandFacts,
+            StageFacts,
+            ForceSensorFacts,
+            DeviceFacts,
+            DevicesTold,
             TickView,
             Event>(visit);
 }
@@ -43,6 +54,12 @@ void each_log_message(auto&& visit) {
             ContactSample,
             DepthEstimate,
             DepthArrived,
+            HandReading,
+            StageReading,
+            ForceReading,
+            LinkHeard,
+            UserAsked,
+            DevicesTold,
             TickView,
             Event>(visit);
 }

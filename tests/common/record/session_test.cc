@@ -31,7 +31,7 @@ Record any_record(Role site) {
     return one;
   };
   const bool surgeon = site == Role::Surgeon;
-  switch (draw.below(surgeon ? 6 : 7)) {
+  switch (draw.below(surgeon ? 10 : 11)) {
     case 0:
       return any(SiteTick{});
     case 1:
@@ -44,8 +44,16 @@ Record any_record(Role site) {
       return any(Transition{});
     case 5:
       return surgeon ? any(DepthArrived{}) : any(DepthEstimate{});
+    case 6:
+      return surgeon ? any(HandReading{}) : any(StageReading{});
+    case 7:
+      return any(LinkHeard{});
+    case 8:
+      return any(UserAsked{});
+    case 9:
+      return any(DevicesTold{});
     default:
-      return any(ContactSample{});
+      return draw.below(2) == 0 ? any(ForceReading{}) : any(ContactSample{});
   }
 }
 

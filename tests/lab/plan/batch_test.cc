@@ -259,7 +259,8 @@ TEST(PlanTest, WhatHasNoEffectInVirtualTimeIsNoAxis) {
     ASSERT_FALSE(refused) << idle;
     EXPECT_NE(refused.error().text.find("changes nothing"), std::string::npos);
   }
-  for (const char* good : {"seed=1,2", "duration_s=3,5", "patient.estimator.sensor_pole_hz=20"}) {
+  for (const char* good :
+       {"seed=1,2", "duration_s=3,5", "patient.simulated_phantom.sensor_pole_hz=20"}) {
     EXPECT_TRUE(make_sweep("standard", {good}, 1, {.tissue = ""})) << good;
   }
 }

@@ -1,0 +1,262 @@
+#include "patient_site/patient_control.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palp::patient {
+namespace {
+
+using record::NoteCode;
+
+constexpr double kContactSteps = 2;  // of the sensor: no fewer are felt as contact
+
+MotionGateConfig within_devices(MotionGateConfig gate, const PatientDevices& devices) noexcept {
+  const StageFacts& stage = devices.stage;
+  gate.travel_min = std::max(gate.travel_min, stage.travel_min);
+  gate.travel_max = std::min(gate.travel_max, stage.travel_max);
+  gate.plane.travel_x = std::min(gate.plane.travel_x, 2 * stage.travel_side);
+  gate.plane.travel_y = std::min(gate.plane.travel_y, 2 * stage.travel_side);
+  gate.plane.speed_max = std::min(gate.plane.speed_max, stage.speed);
+  gate.plane.drag_speed = stage.drags ? std::min(gate.plane.drag_speed, stage.speed) : 0;
+  gate.plane.acceleration_max = std::min(gate.plane.acceleration_max, stage.acceleration);
+  gate.speed_max = std::min(gate.speed_max, stage.speed);
+  gate.speed_near = std::min(gate.speed_near, stage.speed);
+  gate.speed_resync = std::min(gate.speed_resync, stage.speed);
+  gate.acceleration_max = std::min(gate.acceleration_max, stage.acceleration);
+  gate.contact_force = std::max(gate.contact_force, kContactSteps * devices.sensor.step);
+  return gate;
+}
+
+/// A reading that rests on one of the sensor's steps is not stuck: soft tissue takes some way to
+/// the next.
+DeviceWatchConfig allowing_for(DeviceWatchConfig watch, const ForceSensorFacts& sensor) noexcept {
+  constexpr double kSoftTissue = 40;  // [N/m], less than the paper's where it is barely touched
+  watch.sensor_travel = std::max(watch.sensor_travel, sensor.step / kSoftTissue);
+  watch.contact_force = std::max(watch.contact_force, kContactSteps * sensor.step);
+  return watch;
+}
+
+}  // namespace
+
+PatientControl::PatientControl(const PatientConfig& config,
+                               const PatientDevices& devices,
+                               Parts parts) noexcept
+    : config_{config},
+      devices_{devices},
+      parts_{parts},
+      gate_{within_devices(config.gate, devices), devices.sensor, seconds(config.period)},
+      watch_{allowing_for(config.watch, devices.sensor)},
+      account_{{config.period, config.link_status_every}, parts.recorder} {}
+
+void PatientControl::note_not_finite(bool finite, bool& was_finite) noexcept {
+  if (!finite && was_finite) account_.note(NoteCode::NotFinite);
+  was_finite = finite;
+  if (!finite) device_faulted_ = true;
+}
+
+/// A device that gives no numbers is broken: the last good ones stay, and the site stops.
+void PatientControl::take_stage(const StageState& read) noexcept {
+  const bool finite =
+      std::isfinite(read.position) && std::isfinite(read.velocity) && is_finite(read.place);
+  note_not_finite(finite, stage_was_finite_);
+  device_faulted_ = device_faulted_ || read.faulted;
+  now_.velocity = 0;
+  if (!begun_) stage_sampled_at_ = now_.at;
+  if (!finite) return;
+  now_.position = read.position;
+  now_.velocity = read.velocity;
+  now_.place = read.place;
+  stage_sampled_at_ = read.sampled_at;
+  if (!begun_) gate_.begin(read.position, read.place);
+}
+
+void PatientControl::take_force(const std::optional<ForceSample>& read) noexcept {
+  if (!begun_) force_sampled_at_ = now_.at;
+  if (read) {
+    const bool finite = std::isfinite(read->force);
+    note_not_finite(finite, force_was_finite_);
+    device_faulted_ = device_faulted_ || read->saturated;
+    if (finite) {
+      now_.contact_force = read->force;
+      force_sampled_at_ = std::max(force_sampled_at_, read->sampled_at);
+    }
+  }
+  if (now_.at - force_sampled_at_ > config_.sensor_stale) device_faulted_ = true;
+}
+
+/// Only while the tip has somewhere to go: the state is that of the tick before, and so the target.
+void PatientControl::watch_devices(Duration dt) noexcept {
+  if (now_.state != SiteState::Engaged) {
+    watch_.reset();
+    return;
+  }
+  const bool stuck = watch_.stuck({.tip = now_.position,
+                                   .target = now_.command,
+                                   .force = now_.contact_force,
+                                   .in_tissue = gate_.inside(now_.position)},
+                                  dt);
+  device_faulted_ = device_faulted_ || stuck;
+}
+
+SupervisorOutput PatientControl::supervise(const PatientInputs& given) noexcept {
+  SupervisorInput in;
+  in.link = given.link.state;
+  in.session_id = given.link.session_id;
+  in.peer = given.arrived.peer;
+  in.peer_heard = given.arrived.peer_heard;
+  in.emergency_stop = given.user.emergency_stop;
+  in.device_faulted = device_faulted_;
+  in.force_exceeded = now_.contact_force > config_.gate.force_stop;
+  in.local_reset = given.user.resets != resets_;
+  in.free_to_follow = gate_.free_to_follow(now_.position);
+  in.retracted = gate_.retracted(now_.position);
+  in.contact_force = now_.contact_force;
+  resets_ = given.user.resets;
+  return supervisor_.step(in);
+}
+
+void PatientControl::record_decision(const SupervisorOutput& decision, SiteState before) noexcept {
+  now_.state = decision.state;
+  now_.epoch = decision.epoch;
+  if (decision.session_began) account_.note(NoteCode::SessionBegan);
+  if (decision.reason != NoteCode::None) now_.reason = decision.reason;
+  account_.transition(before, decision.state, decision.reason);
+  if (decision.engaged_now) now_.refused = NoteCode::None;
+  if (decision.refused != NoteCode::None) {
+    now_.refused = decision.refused;
+    account_.note(decision.refused, decision.detail);
+  }
+}
+
+/// Samples may cause motion in Engaged only: in every other state the law does not see them.
+coupling::PatientInput PatientControl::law_input(const link::Arrivals& arrived) const noexcept {
+  coupling::PatientInput in;
+  in.now = now_.at;
+  in.state = now_.state;
+  in.position = now_.position;
+  in.velocity = now_.velocity;
+  in.contact_force = now_.contact_force;
+  in.place = now_.place;
+  if (now_.state == SiteState::Engaged) in.arrived = arrived.samples;
+  in.round_trip = now_.link.round_trip;
+  return in;
+}
+
+MotionAnswer PatientControl::limit(double target, const Place& place, Duration dt) noexcept {
+  const MotionAnswer answer = gate_.pass({.state = now_.state,
+                                          .position = target,
+                                          .place = place,
+                                          .tip = now_.position,
+                                          .contact_force = now_.contact_force},
+                                         dt);
+  if (answer.note != NoteCode::None) account_.note(answer.note, answer.detail);
+  if (answer.place_note != NoteCode::None) {
+    account_.note(answer.place_note, distance(place, answer.place));
+  }
+  now_.place_refused = answer.place_refused;
+  now_.command = answer.position;
+  now_.gate_acted = answer.acted;
+  now_.surface_known = gate_.surface().has_value();
+  now_.surface = gate_.surface().value_or(0);
+  return answer;
+}
+
+PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
+  const Duration dt = account_.begin_tick(in.now);
+  now_.at = in.now;
+  device_faulted_ = false;
+  take_stage(in.stage);
+  take_force(in.force);
+  gate_.feel(now_.position, now_.contact_force);
+  watch_devices(dt);
+  begun_ = true;
+
+  session_began_ = in.link.session_id != now_.link.session_id;
+  if (session_began_) now_.peer_devices = in.peer_devices;
+  now_.link = in.link;
+  now_.peer_heard = in.arrived.peer_heard;
+  now_.peer_state = in.arrived.peer.state;
+  account_.arrived(in.arrived);
+
+  const SiteState before = now_.state;
+  const SupervisorOutput decision = supervise(in);
+  record_decision(decision, before);
+  if (decision.engaged_now) coupling::begin_epoch(parts_.law, gate_.command());
+  if (decision.engaged_now || decision.resumed_now) gate_.resynchronise();
+
+  const coupling::PatientOutput wanted = coupling::step(parts_.law, law_input(in.arrived), dt);
+  const bool place_asked = in.arrived.peer_heard && now_.state == SiteState::Engaged;
+  const MotionAnswer answer =
+      limit(wanted.target_position, place_asked ? in.arrived.peer.place : gate_.place(), dt);
+  now_.depth = in.depth;
+  return {.halt = answer.halt,
+          .target = {answer.position, answer.place},
+          .to_peer = {{now_.state, now_.epoch, now_.place, depth_report()}, wanted.to_surgeon}};
+}
+
+void PatientControl::write_down(const PatientInputs& in, const PatientOutputs& out) noexcept {
+  if (now_.state == SiteState::Engaged) give_contact_sample();
+  account_.record(SiteTick{.at = now_.at,
+                           .state = now_.state,
+                           .epoch = now_.epoch,
+                           .position = now_.position,
+                           .velocity = now_.velocity,
+                           .force = now_.contact_force,
+                           .place = now_.place,
+                           .command = now_.command,
+                           .gate_acted = now_.gate_acted,
+                           .round_trip = now_.link.round_trip,
+                           .sent = out.to_peer.port});
+  account_.link(in.link);
+  record_readings(in);
+  static_cast<record::SiteCounts&>(now_) = account_.counts();
+}
+
+/// The inputs, so that they can be given again.
+void PatientControl::record_readings(const PatientInputs& in) noexcept {
+  if (account_.first_tick()) {
+    const DeviceFacts own{.hand = {}, .stage = devices_.stage, .sensor = devices_.sensor};
+    account_.record(DevicesTold{.at = in.now, .of_peer = false, .facts = own});
+  }
+  if (session_began_) {
+    account_.record(DevicesTold{.at = in.now, .of_peer = true, .facts = in.peer_devices});
+  }
+  account_.user(in.user);
+  account_.record(StageReading{.at = in.now,
+                               .age = elapsed(in.stage.sampled_at, in.now),
+                               .position = in.stage.position,
+                               .velocity = in.stage.velocity,
+                               .place = in.stage.place,
+                               .at_limit = in.stage.at_limit,
+                               .faulted = in.stage.faulted});
+  const ForceSample force = in.force.value_or(ForceSample{.sampled_at = in.now});
+  account_.record(ForceReading{.at = in.now,
+                               .fresh = in.force.has_value(),
+                               .age = elapsed(force.sampled_at, in.now),
+                               .force = force.force,
+                               .saturated = force.saturated});
+  account_.heard(in.link, in.arrived, in.depth.number);
+}
+
+void PatientControl::give_contact_sample() noexcept {
+  const bool taken = parts_.contact.try_enqueue({.at = now_.at,
+                                                 .position = now_.position,
+                                                 .force = now_.contact_force,
+                                                 .place = now_.place,
+                                                 .position_age = now_.at - stage_sampled_at_,
+                                                 .force_age = now_.at - force_sampled_at_});
+  ++(taken ? now_.contact_samples : now_.contact_samples_lost);
+}
+
+DepthReport PatientControl::depth_report() const noexcept {
+  return {.number = now_.depth.number,
+          .verdict = now_.depth.verdict,
+          .reason = now_.depth.reason,
+          .depth = now_.depth.depth,
+          .depth_stddev = now_.depth.depth_stddev,
+          .depth_low = now_.depth.depth_low,
+          .depth_high = now_.depth.depth_high,
+          .hash = now_.depth.hash};
+}
+
+}  // namespace palp::patient

@@ -1,0 +1,184 @@
+#include "lab/run/replay.h"
+
+#include <cmath>
+#include <variant>
+
+#include <gtest/gtest.h>
+
+#include "common/config/document.h"
+#include "common/record/session_reader.h"
+#include "common/record/session_writer.h"
+#include "lab/plan/scenario_file.h"
+#include "lab/run/run.h"
+
+// Goal: a session file holds all that decided a session. Method: whole sessions in virtual time,
+// with jitter, loss, a blackout and devices that fail, are written to files in memory; from a file
+// alone, a new control and a new law must record the same again, bit for bit.
+
+namespace palp::lab {
+namespace {
+
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
+
+/// The first touches over a path that jitters, loses and falls silent, with one fault.
+Scenario rough(const std::string& coupling, FaultKind fault) {
+  auto document = load_scenario("metro").value();
+  for (const std::string path : {"surgeon.coupling.name", "patient.coupling.name"}) {
+    EXPECT_TRUE(document.set(path + "=" + coupling));
+  }
+  EXPECT_TRUE(document.set("surgeon.engagement.forced=true"));
+  for (const char* way : {"up", "down"}) {
+    EXPECT_TRUE(document.set(std::string{way} + ".spec=delay 10ms 4ms loss 5%"));
+  }
+  Scenario scenario = make_scenario("metro", document).value();
+  scenario.duration = 14s;
+  scenario.fault = {fault, 5s, 300ms};
+  scenario.blackout_at_script_time = 7s;
+  return scenario;
+}
+
+struct Files {
+  record::MemorySink surgeon;
+  record::MemorySink patient;
+};
+
+Files session_of(const Scenario& scenario) {
+  Files files;
+  (void)simulate(scenario, {.surgeon = &files.surgeon, .patient = &files.patient});
+  return files;
+}
+
+struct Replays {
+  ReplayReport surgeon;
+  ReplayReport patient;
+};
+
+/// What the file says of the sites' settings.
+Scenario scenario_of(std::span<const std::byte> file) {
+  record::SessionReader reader{file};
+  (void)reader.next();
+  auto document = config::scenario_document();
+  const auto merged = document.merge(reader.attachment("scenario.textproto").value(), "file");
+  EXPECT_TRUE(merged) << merged.error().text;
+  return make_scenario("file", document).value();
+}
+
+/// From the files alone.
+Replays replay(const Files& files) {
+  const Scenario scenario = scenario_of(files.surgeon.bytes());
+  const auto surgeon = replay_surgeon(files.surgeon.bytes(), scenario.surgeon, scenario.coupling);
+  const auto patient = replay_patient(
+      files.patient.bytes(), scenario.patient, scenario.coupling, scenario.estimator);
+  EXPECT_TRUE(surgeon) << surgeon.error().text;
+  EXPECT_TRUE(patient) << patient.error().text;
+  return {surgeon.value_or(ReplayReport{}), patient.value_or(ReplayReport{})};
+}
+
+template <class T>
+std::vector<T> all(std::span<const std::byte> file) {
+  std::vector<T> found;
+  record::SessionReader reader{file};
+  while (const auto entry = reader.next()) {
+    if (const T* one = std::get_if<T>(&entry->record)) found.push_back(*one);
+  }
+  return found;
+}
+
+void expect_same_again(const std::string& coupling, FaultKind fault) {
+  SCOPED_TRACE(coupling + ", " + std::string{to_string(fault)});
+  const Files files = session_of(rough(coupling, fault));
+  const Replays again = replay(files);
+  EXPECT_EQ(again.surgeon.difference, "");
+  EXPECT_EQ(again.patient.difference, "");
+  EXPECT_EQ(again.surgeon.ticks, all<SiteTick>(files.surgeon.bytes()).size());
+  EXPECT_EQ(again.patient.ticks, all<SiteTick>(files.patient.bytes()).size());
+  EXPECT_EQ(again.surgeon.ticks, 14'000U);
+  EXPECT_EQ(again.patient.estimates, all<DepthEstimate>(files.patient.bytes()).size());
+  // Or nothing was at stake: engaged, held by the blackout or stopped by the fault, and again.
+  EXPECT_GT(all<Transition>(files.surgeon.bytes()).size(), 4U);
+  EXPECT_GT(all<Transition>(files.patient.bytes()).size(), 4U);
+}
+
+TEST(ReplayTest, DirectDoesTheSameAgainFromItsFiles) {
+  expect_same_again("direct", FaultKind::LiftPedal);
+}
+
+TEST(ReplayTest, WaveDoesTheSameAgainFromItsFiles) {
+  expect_same_again("wave", FaultKind::LiftPedal);
+}
+
+TEST(ReplayTest, TdpaDoesTheSameAgainFromItsFiles) {
+  expect_same_again("tdpa", FaultKind::LiftPedal);
+}
+
+TEST(ReplayTest, MmtDoesTheSameAgainFromItsFiles) {
+  expect_same_again("mmt", FaultKind::LiftPedal);
+}
+
+TEST(ReplayTest, DevicesThatFailDoSoAgain) {
+  for (const FaultKind fault : kDeviceFaults) {
+    SCOPED_TRACE(to_string(fault));
+    Scenario scenario = rough("mmt", fault);
+    scenario.duration = 8s;
+    const Replays again = replay(session_of(scenario));
+    EXPECT_EQ(again.surgeon.difference, "");
+    EXPECT_EQ(again.patient.difference, "");
+  }
+}
+
+TEST(ReplayTest, EstimatesComeAgainToo) {
+  Scenario scenario = rough("mmt", FaultKind::None);
+  scenario.blackout_at_script_time = {};
+  scenario.duration = 24s;
+  const Files files = session_of(scenario);
+  const Replays again = replay(files);
+  EXPECT_EQ(again.patient.difference, "");
+  EXPECT_GE(again.patient.estimates, 4U);
+  EXPECT_EQ(again.patient.estimates, all<DepthEstimate>(files.patient.bytes()).size());
+  EXPECT_FALSE(all<DepthArrived>(files.surgeon.bytes()).empty());
+}
+
+/// The file once more, each record as `change` wants it.
+template <class Change>
+std::vector<std::byte> altered(std::span<const std::byte> file, link::Role site, Change change) {
+  record::MemorySink sink;
+  {
+    record::SessionWriter writer{sink, {.site = site}};
+    record::SessionReader reader{file};
+    while (auto entry = reader.next()) {
+      if (change(entry->record)) (void)writer.write(entry->record, entry->logged_at);
+    }
+  }
+  return {sink.bytes().begin(), sink.bytes().end()};
+}
+
+TEST(ReplayTest, OneBitOfOneReadingIsADifference) {
+  const Scenario scenario = rough("mmt", FaultKind::None);
+  const Files files = session_of(scenario);
+  int hands = 0;
+  const auto changed = altered(files.surgeon.bytes(), link::Role::Surgeon, [&](Record& record) {
+    auto* hand = std::get_if<HandReading>(&record);
+    if (hand != nullptr && ++hands == 9000) hand->position = std::nextafter(hand->position, 1);
+    return true;
+  });
+  const auto again = replay_surgeon(changed, scenario.surgeon, scenario.coupling);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->ticks, 9000U);
+  EXPECT_NE(again->difference.find("'tick'"), std::string::npos) << again->difference;
+}
+
+TEST(ReplayTest, AFileWithoutReadingsIsRefusedInOneSentence) {
+  const Scenario scenario = rough("mmt", FaultKind::None);
+  const Files files = session_of(scenario);
+  const auto without = altered(files.patient.bytes(), link::Role::Patient, [](auto& record) {
+    return !std::holds_alternative<ForceReading>(record);
+  });
+  const auto refused = replay_patient(without, scenario.patient, scenario.coupling, std::nullopt);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().text,
+            "the tick at 1.000000 s has no reading of stage or sensor in the file");
+}
+
+}  // namespace
+}  // namespace palp::lab

@@ -1,0 +1,133 @@
+#include "patient_site/patient_control.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/fake_recorder.h"
+
+namespace palp::patient {
+namespace {
+
+using std::chrono_literals::operator""ms;
+
+/// A site whose inputs a test makes up.
+struct Bench {
+  explicit Bench(const PatientDevices& facts = {}, const PatientConfig& config = {})
+      : control{config, facts, {law, recorder, contact}} {}
+
+  PatientOutputs tick() {
+    in.now += 1ms;
+    in.stage.sampled_at = in.now - stage_age;
+    in.force = ForceSample{.sampled_at = in.now - force_age, .force = force};
+    return control.step(in);
+  }
+  /// Engaged, the surgeon's hand at `hand`.
+  PatientOutputs engaged_tick(double hand) {
+    in.link.state = LinkState::Live;
+    in.link.session_id = 1;
+    in.arrived.peer_heard = true;
+    const bool clutched = control.status().state == SiteState::Clutched;
+    const bool engaged = control.status().state == SiteState::Engaged;
+    in.arrived.peer.state = clutched || engaged ? SiteState::Engaged : SiteState::Clutched;
+    in.arrived.peer.epoch = clutched || engaged ? 1 : 0;
+    sample.sample.position = hand;
+    sample.fresh = true;
+    ++sample.number;
+    in.arrived.samples = {&sample, 1};
+    return tick();
+  }
+
+  coupling::PatientCoupling law{coupling::DirectPatient{{}}};
+  test::KeepingRecorder recorder;
+  SpscQueue<ContactSample> contact{1024};
+  PatientControl control;
+  PatientInputs in;
+  Incoming sample;
+  Duration stage_age{};
+  Duration force_age{};
+  double force{};  ///< [N]
+};
+
+TEST(PatientControlTest, NeverRunsFasterThanTheStageSaysItCan) {
+  for (const double speed : {0.15, 0.02}) {
+    PatientDevices facts;
+    facts.stage.speed = speed;
+    Bench bench{facts};
+    for (int i = 0; i < 10; ++i) bench.engaged_tick(0);
+    ASSERT_EQ(bench.control.status().state, SiteState::Engaged);
+    double before = bench.control.status().command;
+    double fastest = 0;
+    for (int i = 0; i < 200; ++i) {
+      bench.in.stage.position = before;
+      const double now = bench.engaged_tick(-40e-3).target.position;
+      fastest = std::max(fastest, std::abs(now - before) / 1e-3);
+      before = now;
+    }
+    EXPECT_NEAR(fastest, speed, 1e-9);
+  }
+}
+
+TEST(PatientControlTest, ASensorOfLargeStepsMayRestOnOneForLongerAndFeelsContactLater) {
+  const auto stopped_after = [](double step) {
+    PatientDevices facts;
+    facts.sensor.step = step;
+    Bench bench{facts};
+    bench.force = 0.4;
+    for (int i = 0; i < 10; ++i) bench.engaged_tick(0);
+    int ticks = 0;
+    while (bench.control.status().state == SiteState::Engaged && ticks < 1000) {
+      bench.in.stage.position = 20e-6 * ++ticks;
+      bench.engaged_tick(0);
+    }
+    return bench.in.stage.position;
+  };
+  EXPECT_GT(stopped_after(0.2), stopped_after(0.05) + 1e-3);
+}
+
+TEST(PatientControlTest, ContactSamplesAreRawAndSayHowOldTheyAre) {
+  Bench bench;
+  bench.stage_age = 2ms;
+  bench.force_age = 7ms;
+  for (int i = 0; i < 10; ++i) bench.engaged_tick(0);
+  bench.in.stage.position = 1.25e-3;  // a step, which no filter would follow at once
+  bench.force = 0.05;
+  bench.engaged_tick(0);
+  ContactSample last;
+  while (bench.contact.try_dequeue(last)) continue;
+  EXPECT_EQ(last.at, bench.in.now);
+  EXPECT_EQ(last.position, 1.25e-3);
+  EXPECT_EQ(last.force, 0.05);
+  EXPECT_EQ(last.position_age, 2ms);
+  EXPECT_EQ(last.force_age, 7ms);
+}
+
+TEST(PatientControlTest, ItsDevicesAndThePeersAreWrittenDownOnce) {
+  PatientDevices facts;
+  facts.stage.lag = 0.03;
+  Bench bench{facts};
+  bench.in.peer_devices.hand = HandFacts{.force_peak = 3};
+  bench.tick();
+  for (int i = 0; i < 5; ++i) bench.engaged_tick(0);
+  const auto told = bench.recorder.all<DevicesTold>();
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_FALSE(told[0].of_peer);
+  EXPECT_EQ(told[0].facts.stage->lag, 0.03);
+  EXPECT_TRUE(told[1].of_peer);
+  EXPECT_EQ(told[1].facts.hand->force_peak, 3);
+  EXPECT_EQ(bench.control.status().peer_devices.hand->force_peak, 3);
+}
+
+TEST(PatientControlTest, ATicksRecordsEndWithWhatTheLinkSaid) {
+  Bench bench;
+  for (int i = 0; i < 20; ++i) bench.engaged_tick(0);
+  std::size_t ticks = 0;
+  for (const Record& record : bench.recorder.records()) {
+    if (std::holds_alternative<LinkHeard>(record)) ++ticks;
+  }
+  EXPECT_EQ(ticks, 20U);
+  EXPECT_EQ(bench.recorder.all<StageReading>().size(), 20U);
+  EXPECT_EQ(bench.recorder.all<ForceReading>().size(), 20U);
+  EXPECT_TRUE(std::holds_alternative<LinkHeard>(bench.recorder.records().back()));
+}
+
+}  // namespace
+}  // namespace palp::patient
