@@ -18,7 +18,8 @@ std::string refusal_text(const PatientStatus& status) {
 
 std::string status_line(const PatientStatus& status) {
   return record::state_text(status.state, status.reason, status.refused) + "  " +
-         health_text(status.link) + number_text("  tip ", status.position / kMillimetre, 2, " mm") +
+         link::health_text(status.link) +
+         number_text("  tip ", status.position / kMillimetre, 2, " mm") +
          number_text("  contact ", status.contact_force, 2, " N  ") + refusal_text(status) +
          depth_line_of(status.depth);
 }

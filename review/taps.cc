@@ -4,6 +4,7 @@
 #include <map>
 
 #include "common/core/median.h"
+#include "common/core/place_text.h"
 #include "judge/depth_summary.h"
 #include "judge/excursions.h"
 #include "review/text.h"

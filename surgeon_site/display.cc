@@ -27,7 +27,7 @@ std::string progress_text(const ScriptProgress& script) {
 
 std::string status_line(const SurgeonStatus& status) {
   return record::state_text(status.state, status.reason, status.refused) + "  " +
-         health_text(status.link) + number_text("  force ", status.force, 2, " N  ") +
+         link::health_text(status.link) + number_text("  force ", status.force, 2, " N  ") +
          depth_line_of(status.depth) + progress_text(status.script);
 }
 

@@ -9,6 +9,7 @@
 
 #include "common/core/check.h"
 #include "common/core/conventions.h"
+#include "common/core/place_text.h"
 
 namespace palp::surgeon {
 namespace {
