@@ -2,8 +2,7 @@
 //   netem_relay_bench latency|rate|hold [ROUNDS [SECONDS]]
 //   netem_relay_bench trace NAME...       replays traces at their own send times
 // Times are the kernel's receive stamps against the sender's clock before its send call, less the
-// median of the direct way. A round in which other guests took more than 0.5 % of the machine is
-// discarded.
+// median of the direct way. Rounds with over 0.5 % of the machine taken by others do not count.
 #include <algorithm>
 #include <array>
 #include <atomic>

@@ -44,7 +44,8 @@ constexpr std::array<std::string_view, 32> kRooms{"common/core",
                                                   "proto",
                                                   "tests"};
 
-/// What files may include besides their own room and core: rooms, or single headers.
+/// What files may include besides their own room and core: rooms, all sub-rooms of one ("netem/*"),
+/// or single headers.
 struct Arrow {
   std::string_view from;  ///< pattern of paths; the first row that matches counts
   std::vector<std::string_view> to;
@@ -63,14 +64,14 @@ const std::vector<Arrow>& arrows() {
       {"common/io/realtime/*", {"common/io/process"}},
       {"common/io/net/*",
        {"common/io/process", "common/io/realtime", "common/message", "common/link"}},
-      {"common/io/secure/*", {"common/io", "common/message", "common/link"}},
+      {"common/io/secure/*", {"common/io/*", "common/message", "common/link"}},
       {"common/plot/*", {}},
       // The emulator as a program; its library sees nothing but the seam.
       {"netem/model/*", {"common/link/transport.h"}},
       {"netem/syntax/*", {"netem/model"}},
       {"netem/relay/*",
-       {"netem/model", "netem/syntax", "common/link/transport.h", "common/io", "common/config"}},
-      {"netem/main.cc", {"netem", "common/io", "common/config"}},
+       {"netem/model", "netem/syntax", "common/link/transport.h", "common/io/*", "common/config"}},
+      {"netem/main.cc", {"netem/*", "common/io/*", "common/config"}},
       // What the two programs of a session do alike: it puts parts together, as their main.cc does.
       {"site_program/*",
        {"common/config",
@@ -78,8 +79,8 @@ const std::vector<Arrow>& arrows() {
         "common/message",
         "common/link",
         "common/record",
-        "common/io",
-        "netem"}},
+        "common/io/*",
+        "netem/*"}},
       {"fem/main.cc", {"common/config"}},
       {"fem/*_command.*", {"common/config", "common/plot"}},
       // How far off the database is between its points: read as the estimators read it.
@@ -97,9 +98,9 @@ const std::vector<Arrow>& arrows() {
         "common/record",
         "common/config",
         "common/settings",
-        "common/io",
-        "netem"}},
-      {"surgeon_site/devices/*", {"surgeon_site/haptic_device.h", "common/io"}},
+        "common/io/*",
+        "netem/*"}},
+      {"surgeon_site/devices/*", {"surgeon_site/haptic_device.h", "common/io/*"}},
       {"surgeon_site/settings.*",
        {"common/message",
         "common/coupling",
@@ -118,10 +119,10 @@ const std::vector<Arrow>& arrows() {
         "common/record",
         "common/config",
         "common/settings",
-        "common/io",
-        "netem"}},
+        "common/io/*",
+        "netem/*"}},
       {"patient_site/devices/*",
-       {"patient_site/stage.h", "patient_site/force_sensor.h", "common/io"}},
+       {"patient_site/stage.h", "patient_site/force_sensor.h", "common/io/*"}},
       {"patient_site/settings.*",
        {"depth",
         "common/message",
@@ -140,7 +141,7 @@ const std::vector<Arrow>& arrows() {
         "patient_site",
         "depth",
         "judge",
-        "netem",
+        "netem/model",
         "common/message",
         "common/coupling",
         "common/link",
@@ -151,16 +152,17 @@ const std::vector<Arrow>& arrows() {
         "patient_site",
         "depth",
         "judge",
-        "netem",
+        "netem/model",
+        "netem/syntax",
         "common/message",
         "common/coupling",
         "common/link",
         "common/config",
         "common/settings"}},
       {"lab/report/*",
-       {"lab/run", "lab/plan", "judge", "common/message", "common/config", "common/plot"}},
+       {"lab/run", "lab/plan", "depth", "judge", "common/message", "common/config", "common/plot"}},
       {"lab/*",
-       {"lab",
+       {"lab/*",
         "common/coupling",
         "common/config",
         "common/io/process/process_time.h",
@@ -231,9 +233,10 @@ bool matches_any(std::string_view path, const std::vector<std::string_view>& pat
   return std::ranges::any_of(patterns, [&](auto pattern) { return matches(path, pattern); });
 }
 
-/// A room or one of its sub-rooms.
-bool lies_in(std::string_view room, std::string_view outer) {
-  return room == outer || (room.starts_with(outer) && room.substr(outer.size()).starts_with('/'));
+/// A room itself, or "netem/*": its sub-rooms.
+bool names_room(std::string_view entry, std::string_view room) {
+  return entry == room ||
+         (entry.ends_with("/*") && room.starts_with(entry.substr(0, entry.size() - 1)));
 }
 
 bool arrow_allowed(const Source& source, const std::string& target) {
@@ -243,7 +246,7 @@ bool arrow_allowed(const Source& source, const std::string& target) {
   for (const Arrow& arrow : arrows()) {
     if (!matches(source.path, arrow.from)) continue;
     return std::ranges::any_of(arrow.to,
-                               [&](auto one) { return one == target || lies_in(to, one); });
+                               [&](auto one) { return one == target || names_room(one, to); });
   }
   return false;
 }
