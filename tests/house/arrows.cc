@@ -48,6 +48,7 @@ struct Arrow {
   std::vector<std::string_view> to;
 };
 
+/// One list.
 const std::vector<Arrow>& arrows() {
   static const std::vector<Arrow> table{
       {"common/core/*", {}},
