@@ -73,7 +73,7 @@ inline CopyOutcome ExactModel::untouched(const Arrival& arrival) const noexcept 
 std::size_t ExactModel::next_troubled(const Arrival& arrival, TimePoint at) noexcept {
   const Chances original = chances_.next(index_);
   if (flood_ > 0) chances_.wake();
-  const PathCondition path = path_.at(at, index_);
+  const PathCondition path = path_.calm(at) ? PathCondition{.onward = at} : path_.at(at, index_);
   const std::size_t count = 1 + (original.duplicate ? 1U : 0U) + flood_;
   std::size_t room = arrival.room;
   for (std::size_t copy = 0; copy < count; ++copy) {
