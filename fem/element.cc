@@ -47,6 +47,12 @@ State state_of(const ElementGeometry& geometry, const ElementVector& u) {
   return state;
 }
 
+double pressure_at(const ElementGeometry::Point& point, const Pressure& coefficients) {
+  double pressure = 0;
+  for (std::size_t k = 0; k < 3; ++k) pressure += coefficients[k] * point.pressure[k];
+  return pressure;
+}
+
 /// Adds w B^T A B, block by block: rr, zr (rows z, columns r), zz.
 void add_tangent(const ElementGeometry::Point& point,
                  const GradientMatrix& a,
@@ -177,14 +183,13 @@ ElementForces internal_forces(const ElementGeometry& geometry,
   out.volume_ratio_min = state.ratio_min;
   if (!(state.ratio_min > 0)) return out;
   out.energy = material.bulk() * state.volumetric;
+  Pressure own = state.dilation;
+  for (double& coefficient : own) coefficient *= material.bulk();
   for (std::size_t p = 0; p < 9; ++p) {
     const ElementGeometry::Point& point = geometry.points[p];
     const Gradient& f = state.gradients[p];
     const Gradient c = cofactor(f);
-    double pressure = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      pressure += material.bulk() * state.dilation[k] * point.pressure[k];
-    }
+    const double pressure = pressure_at(point, own);
     const double j = volume_ratio(f);
     double i1 = 0;
     for (const double component : f) i1 += component * component;
@@ -205,6 +210,65 @@ ElementForces internal_forces(const ElementGeometry& geometry,
 
 namespace {
 
+/// What the points of an element add up to: blocks of the stiffness at constant volume, and the
+/// derivative of the moments of J.
+struct Sums {
+  Blocks rr{};
+  Blocks zr{};
+  Blocks zz{};
+  std::array<ElementVector, 3> squeeze{};
+};
+
+void add_squeeze(const ElementGeometry::Point& point,
+                 const Gradient& c,
+                 std::array<ElementVector, 3>& squeeze) {
+  for (std::size_t i = 0; i < 9; ++i) {
+    const double r =
+        point.volume * (c[0] * point.dr[i] + c[1] * point.dz[i] + c[4] * point.hoop[i]);
+    const double z = point.volume * (c[2] * point.dr[i] + c[3] * point.dz[i]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      squeeze[k][i] += point.pressure[k] * r;
+      squeeze[k][i + 9] += point.pressure[k] * z;
+    }
+  }
+}
+
+void add_force(const ElementGeometry::Point& point, const Gradient& stress, ElementVector& force) {
+  for (std::size_t i = 0; i < 9; ++i) {
+    force[i] += point.volume *
+                (stress[0] * point.dr[i] + stress[1] * point.dz[i] + stress[4] * point.hoop[i]);
+    force[i + 9] += point.volume * (stress[2] * point.dr[i] + stress[3] * point.dz[i]);
+  }
+}
+
+/// The blocks, and what the pressure adds where it follows the volume.
+void fill_tangent(const Sums& sums,
+                  const ElementGeometry& geometry,
+                  double bulk,
+                  ElementMatrix& tangent) {
+  const auto& [rr, zr, zz, squeeze] = sums;
+  for (std::size_t i = 0; i < 18; ++i) {
+    Vector3 scaled = times(geometry.mass_inverse, {squeeze[0][i], squeeze[1][i], squeeze[2][i]});
+    for (double& value : scaled) value *= bulk;
+    for (std::size_t j = 0; j < 18; ++j) {
+      const double elastic =
+          i < 9 ? (j < 9 ? rr[i][j] : zr[i][j - 9]) : (j < 9 ? zr[j][i - 9] : zz[i - 9][j - 9]);
+      tangent[i][j] = elastic + scaled[0] * squeeze[0][j] + scaled[1] * squeeze[1][j] +
+                      scaled[2] * squeeze[2][j];
+    }
+  }
+}
+
+/// Small strains: the undeformed element's tangent holds everywhere.
+void follow_tangent(const ElementVector& displacement, ElementResponse& out) {
+  out.energy = 0;
+  for (std::size_t i = 0; i < 18; ++i) {
+    out.force[i] = 0;
+    for (std::size_t j = 0; j < 18; ++j) out.force[i] += out.tangent[i][j] * displacement[j];
+    out.energy += 0.5 * out.force[i] * displacement[i];
+  }
+}
+
 /// `given`: the pressure of the tangent, if not the displacements' own.
 ElementResponse response(const ElementGeometry& geometry,
                          const Material& material,
@@ -218,63 +282,30 @@ ElementResponse response(const ElementGeometry& geometry,
   if (!(state.ratio_min > 0)) return out;
   const double bulk = material.bulk();
   out.energy = bulk * state.volumetric;
-  Blocks rr{};
-  Blocks zr{};
-  Blocks zz{};
-  std::array<ElementVector, 3> squeeze{};  // derivative of the moments of J
+  Pressure own = state.dilation;
+  for (double& coefficient : own) coefficient *= bulk;
+  Sums sums;
   for (std::size_t p = 0; p < 9; ++p) {
     const ElementGeometry::Point& point = geometry.points[p];
     const Gradient& f = state.gradients[p];
     Isochoric part = isochoric(f, material.shear());
     const Gradient c = cofactor(f);
-    double pressure = 0;
-    double bending = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      pressure += bulk * state.dilation[k] * point.pressure[k];
-      if (given != nullptr) bending += (*given)[k] * point.pressure[k];
-    }
-    if (given == nullptr) bending = pressure;
     out.energy += point.volume * part.energy;
     if (finite) {
+      const double pressure = pressure_at(point, own);
+      const double bending = given != nullptr ? pressure_at(point, *given) : pressure;
       const GradientMatrix h = volume_curvature(f);
       for (std::size_t i = 0; i < 5; ++i) {
         part.stress[i] += pressure * c[i];
         for (std::size_t j = 0; j < 5; ++j) part.tangent[i][j] += bending * h[i][j];
       }
     }
-    add_tangent(point, part.tangent, rr, zr, zz);
-    for (std::size_t i = 0; i < 9; ++i) {
-      const double r =
-          point.volume * (c[0] * point.dr[i] + c[1] * point.dz[i] + c[4] * point.hoop[i]);
-      const double z = point.volume * (c[2] * point.dr[i] + c[3] * point.dz[i]);
-      for (std::size_t k = 0; k < 3; ++k) {
-        squeeze[k][i] += point.pressure[k] * r;
-        squeeze[k][i + 9] += point.pressure[k] * z;
-      }
-      out.force[i] += point.volume * (part.stress[0] * point.dr[i] + part.stress[1] * point.dz[i] +
-                                      part.stress[4] * point.hoop[i]);
-      out.force[i + 9] +=
-          point.volume * (part.stress[2] * point.dr[i] + part.stress[3] * point.dz[i]);
-    }
+    add_tangent(point, part.tangent, sums.rr, sums.zr, sums.zz);
+    add_squeeze(point, c, sums.squeeze);
+    add_force(point, part.stress, out.force);
   }
-  for (std::size_t i = 0; i < 18; ++i) {
-    Vector3 scaled = times(geometry.mass_inverse, {squeeze[0][i], squeeze[1][i], squeeze[2][i]});
-    for (double& value : scaled) value *= bulk;
-    for (std::size_t j = 0; j < 18; ++j) {
-      const double elastic =
-          i < 9 ? (j < 9 ? rr[i][j] : zr[i][j - 9]) : (j < 9 ? zr[j][i - 9] : zz[i - 9][j - 9]);
-      out.tangent[i][j] = elastic + scaled[0] * squeeze[0][j] + scaled[1] * squeeze[1][j] +
-                          scaled[2] * squeeze[2][j];
-    }
-  }
-  if (!finite) {
-    out.energy = 0;
-    for (std::size_t i = 0; i < 18; ++i) {
-      out.force[i] = 0;
-      for (std::size_t j = 0; j < 18; ++j) out.force[i] += out.tangent[i][j] * displacement[j];
-      out.energy += 0.5 * out.force[i] * displacement[i];
-    }
-  }
+  fill_tangent(sums, geometry, bulk, out.tangent);
+  if (!finite) follow_tangent(displacement, out);
   return out;
 }
 

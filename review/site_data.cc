@@ -22,7 +22,6 @@ struct Collector {
                            .force = tick.force,
                            .place = tick.place});
   }
-  void operator()(const Arrived&) const {}
   void operator()(const LinkStatus& status) const {
     data.last_link = status;
     if (status.health.state == LinkState::Live && status.health.round_trip > Duration{0}) {
@@ -31,9 +30,9 @@ struct Collector {
   }
   void operator()(const Transition& transition) const { data.transitions.push_back(transition); }
   void operator()(const DepthEstimate& estimate) const { data.estimates.push_back(estimate); }
-  void operator()(const Note&) const {}
-  void operator()(const ContactSample&) const {}
   void operator()(const DepthArrived& arrived) const { data.reports.push_back(arrived); }
+  template <class Other>
+  void operator()(const Other& /*is of no use here*/) const {}
 };
 
 }  // namespace

@@ -2,23 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "common/coupling/contact_model.h"
-#include "common/coupling/rounding.h"
 
 namespace palp::coupling {
 namespace {
 
-using std::numbers::pi;
-
 constexpr double kPullMost = 5;        // [-], of the elastic force
 constexpr double kGridStep = 0.05e-3;  // [m]
 constexpr std::size_t kMiddle = 32;
-constexpr double kMeanGain = 0.1;              // per tick: 10 ms
-constexpr std::uint32_t kBox = 5;              // ticks per equation: what the pole lets through
-constexpr std::uint32_t kNoiseTicks = 1000;    // 1 s in the air
-constexpr std::uint32_t kNoiseTicksMin = 200;  // before them nobody knows what noise is
+constexpr double kMeanGain = 0.1;            // per tick: 10 ms
+constexpr std::uint32_t kBox = 5;            // ticks per equation: what the pole lets through
 constexpr double kMisplaced = 2e-3;          // [m], below the surface as believed, and nothing felt
 constexpr std::uint32_t kForgetShapes = 60;  // ticks until the filtered shapes are zero again
 constexpr double kFullSpeed = 2e-3;          // [m/s], of the tip: below it data repeat themselves
@@ -49,35 +43,27 @@ double depth_of(const ContactModel& model, double force) noexcept {
 ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcept
     : config_{config},
       gain_{LowPass{config.sensor.pole, config.period}.gain()},
-      tip_{config.sensor.pole, config.period},
+      sensed_{.tip = {config.sensor.pole, config.period}},
       swing_{config.period} {
   expected_[1] = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
-  expected_here_ = expected_;
+  here_.expected = expected_;
 }
 
 double ContactEstimator::surface_of(std::size_t candidate) const noexcept {
   return centre_ + kGridStep * (static_cast<double>(candidate) - static_cast<double>(kMiddle));
 }
 
-/// Before the first contact every reading is noise.
-void ContactEstimator::sense_noise(double force) noexcept {
-  if (placed_ || noise_ticks_ >= 4 * kNoiseTicks) return;
-  ++noise_ticks_;
-  const double share = 1.0 / std::min(noise_ticks_, kNoiseTicks);
-  noise_square_ += share * (force * force - noise_square_);
-}
-
 void ContactEstimator::place_grid(double centre) noexcept {
   centre_ = centre;
   for (Lane& lane : right_) lane.fill(0);
-  for (Lane& lane : box_) lane.fill(0);
+  for (Lane& lane : box_.terms) lane.fill(0);
   for (Lane& lane : normal_) lane.fill(0);
   square_ = 0;
-  box_force_ = 0;
-  box_count_ = 0;
-  box_tip_ = tip_.value();
+  box_.force = 0;
+  box_.count = 0;
+  box_.tip = sensed_.tip.value();
   for (std::size_t i = 0; i < kCandidates; ++i) {
-    const double xi = std::max(0.0, tip_.value() - surface_of(i)) / kModelDepthScale;
+    const double xi = std::max(0.0, sensed_.tip.value() - surface_of(i)) / kModelDepthScale;
     const auto shapes = model_shapes(xi);
     for (std::size_t term = 0; term < kModelTerms; ++term) shapes_[term][i] = shapes[term];
     found_[i] = expected_;
@@ -89,13 +75,13 @@ void ContactEstimator::place_grid(double centre) noexcept {
 
 void ContactEstimator::new_place() noexcept {
   swing_.new_place();
-  contact_here_ = false;
-  deepest_ = -1;
-  deepest_in_air_ = -1;
+  here_.contact = false;
+  here_.deepest = -1;
+  here_.deepest_in_air = -1;
   if (!placed_) return;
   std::copy(model_.c.begin(), model_.c.end(), expected_.begin());
   std::copy(model_.relaxing.begin(), model_.relaxing.end(), expected_.begin() + kModelTerms);
-  expected_here_ = expected_;
+  here_.expected = expected_;
   place_grid(model_.surface);
 }
 
@@ -103,19 +89,19 @@ void ContactEstimator::new_place() noexcept {
 /// forgotten.
 void ContactEstimator::begin_again() noexcept {
   swing_ = BreathingEstimator{config_.period};
-  expected_ = expected_here_;
-  tip_.reset(raw_tip_);
-  tip_mean_ = raw_tip_mean_;
+  expected_ = here_.expected;
+  sensed_.tip.reset(sensed_.raw_tip);
+  sensed_.tip_mean = sensed_.raw_tip_mean;
   ContactModel believed{0, {}, kModelDepthMax};
   std::copy_n(expected_.begin(), kModelTerms, believed.c.begin());
-  place_grid(tip_mean_ - depth_of(believed, force_mean_));
+  place_grid(sensed_.tip_mean - depth_of(believed, sensed_.force_mean));
 }
 
 /// What passed for a contact was noise: there is no tissue here.
 void ContactEstimator::withdraw() noexcept {
-  placed_ = contact_here_ = false;
-  doubtful_ = 0;
-  expected_ = expected_here_;
+  placed_ = here_.contact = false;
+  doubt_.ticks = 0;
+  expected_ = here_.expected;
   ++model_.version;
   model_.c = {};
   model_.relaxing = {};
@@ -160,60 +146,53 @@ double ContactEstimator::elastic() const noexcept {
 /// becomes better.
 void ContactEstimator::relax() noexcept {
   const double now = elastic();
-  for (std::size_t k = 0; k < past_.size(); ++k) {
-    past_[k] += config_.period / kModelTimes[k] * (now - past_[k]);
+  for (std::size_t k = 0; k < beside_.past.size(); ++k) {
+    beside_.past[k] += config_.period / kModelTimes[k] * (now - beside_.past[k]);
     // Tissue does not pull.
-    beside_[k] = std::max(now - past_[k], -kPullMost * now);
+    beside_.terms[k] = std::max(now - beside_.past[k], -kPullMost * now);
   }
-  beside_.back() = now * tip_speed_;
+  beside_.terms.back() = now * sensed_.tip_speed;
 }
 
 double ContactEstimator::predicted() const noexcept {
   double force = elastic();
-  for (std::size_t k = 0; k < beside_.size(); ++k) {
-    force += found_[best_][kModelTerms + k] * beside_[k];
+  for (std::size_t k = 0; k < beside_.terms.size(); ++k) {
+    force += found_[best_][kModelTerms + k] * beside_.terms[k];
   }
   return force;
 }
 
-/// Mean error of a rounding sensor at `force`, with noise as dither: first harmonic of the
-/// sawtooth, smoothed (Widrow and Kollar, Quantization Noise, ch. 4).
-double ContactEstimator::rounding_bias(double force) const noexcept {
-  if (dither_ <= 0) return 0;
-  return -dither_ * std::sin(2 * pi * force / config_.sensor.step);
-}
-
 void ContactEstimator::collect(double force) noexcept {
   if (ticks_outside_ >= kForgetShapes) {
-    box_count_ = 0;
+    box_.count = 0;
     return;
   }
-  if (box_count_ == 0) {
-    for (Lane& lane : box_) lane.fill(0);
-    box_force_ = 0;
+  if (box_.count == 0) {
+    for (Lane& lane : box_.terms) lane.fill(0);
+    box_.force = 0;
   }
   for (std::size_t term = 0; term < kModelTerms; ++term) {
-    for (std::size_t i = 0; i < kCandidates; ++i) box_[term][i] += shapes_[term][i];
+    for (std::size_t i = 0; i < kCandidates; ++i) box_.terms[term][i] += shapes_[term][i];
   }
-  for (std::size_t k = 0; k < beside_.size(); ++k) {
-    for (double& sum : box_[kModelTerms + k]) sum += beside_[k];
+  for (std::size_t k = 0; k < beside_.terms.size(); ++k) {
+    for (double& sum : box_.terms[kModelTerms + k]) sum += beside_.terms[k];
   }
-  box_force_ += force - (model_.version > 0 ? rounding_bias(predicted()) : 0);
-  if (++box_count_ < kBox) return;
-  box_count_ = 0;
+  box_.force += force - (model_.version > 0 ? noise_.bias(predicted(), config_.sensor.step) : 0);
+  if (++box_.count < kBox) return;
+  box_.count = 0;
   absorb();
   search();
 }
 
 /// [N^2], of the mean over a box.
 double ContactEstimator::equation_noise() const noexcept {
-  return std::max(noise_square_, config_.sensor.step * config_.sensor.step / 12) / kBox;
+  return std::max(noise_.mean_square(), config_.sensor.step * config_.sensor.step / 12) / kBox;
 }
 
 void ContactEstimator::absorb() noexcept {
-  const double inward = tip_.value() - box_tip_;
+  const double inward = sensed_.tip.value() - box_.tip;
   const double travelled = std::abs(inward);
-  box_tip_ = tip_.value();
+  box_.tip = sensed_.tip.value();
   // A tip that stands still in a breathing tissue sees stiffness times motion of the surface, and
   // cannot tell a soft tissue that moves much from a stiff one that moves little: motion can.
   const bool breathes = model_.swing_rate > 0;
@@ -225,8 +204,8 @@ void ContactEstimator::absorb() noexcept {
   if (inward < 0) weight *= kOutwardWeight;
   const double keep = 1 - weight * config_.period * kBox / config_.memory;
   const double scale = 1.0 / kBox;
-  const double force = box_force_ * scale;
-  for (Lane& lane : box_) {
+  const double force = box_.force * scale;
+  for (Lane& lane : box_.terms) {
     for (double& shape : lane) shape *= scale;
   }
   square_ = keep * square_ + weight * force * force;
@@ -234,11 +213,12 @@ void ContactEstimator::absorb() noexcept {
   for (std::size_t row = 0; row < kTerms; ++row) {
     for (std::size_t column = row; column < kTerms; ++column, ++at) {
       for (std::size_t i = 0; i < kCandidates; ++i) {
-        normal_[at][i] = keep * normal_[at][i] + weight * box_[row][i] * box_[column][i];
+        normal_[at][i] =
+            keep * normal_[at][i] + weight * box_.terms[row][i] * box_.terms[column][i];
       }
     }
     for (std::size_t i = 0; i < kCandidates; ++i) {
-      right_[row][i] = keep * right_[row][i] + weight * force * box_[row][i];
+      right_[row][i] = keep * right_[row][i] + weight * force * box_.terms[row][i];
     }
   }
 }
@@ -264,7 +244,7 @@ void ContactEstimator::search() noexcept {
   ++turn_;
   best_ = won;
   publish(winner);
-  if (surface_of(best_) < deepest_in_air_ - kAstray) return begin_again();
+  if (surface_of(best_) < here_.deepest_in_air - kAstray) return begin_again();
   if (best_ < kEdge || best_ + kEdge >= kCandidates) {
     expected_ = winner.c;
     place_grid(surface_of(best_));
@@ -283,82 +263,89 @@ void ContactEstimator::publish(const Solution& solution) noexcept {
     model_.relaxing = {};
     model_.surface = swing_.surface();
   }
-  model_.depth_max = std::max(0.0, deepest_ - model_.surface);
+  model_.depth_max = std::max(0.0, here_.deepest - model_.surface);
 }
 
 /// Where the surface must be for the present force: depth and force through the same filters.
 void ContactEstimator::watch_surface(double position) noexcept {
-  raw_tip_ += gain_ * (position - raw_tip_);
-  raw_tip_mean_ += kMeanGain * (raw_tip_ - raw_tip_mean_);
+  sensed_.raw_tip += gain_ * (position - sensed_.raw_tip);
+  sensed_.raw_tip_mean += kMeanGain * (sensed_.raw_tip - sensed_.raw_tip_mean);
   swing_.step();
   if (model_.version == 0) return;
   double gain = 1;
-  double elastic = force_mean_;
-  for (std::size_t k = 0; k < past_.size(); ++k) {
+  double elastic = sensed_.force_mean;
+  for (std::size_t k = 0; k < beside_.past.size(); ++k) {
     gain += model_.relaxing[k];
-    elastic += model_.relaxing[k] * past_[k];
+    elastic += model_.relaxing[k] * beside_.past[k];
   }
-  swing_.see(raw_tip_mean_, elastic / gain);
+  swing_.see(sensed_.raw_tip_mean, elastic / gain);
 }
 
-void ContactEstimator::step(double position, double force) noexcept {
-  if (!started_) {
-    raw_tip_ = raw_tip_mean_ = position;
-    started_ = true;
-    position_before_ = position;
-    tip_.reset(position);
-    tip_mean_ = position;
+double ContactEstimator::sense(double position, double force) noexcept {
+  if (!sensed_.started) {
+    sensed_.raw_tip = sensed_.raw_tip_mean = position;
+    sensed_.started = true;
+    sensed_.position_before = position;
+    sensed_.tip.reset(position);
+    sensed_.tip_mean = position;
   }
   // The transducer's pole acted all through the period: the tip was half-way on average.
-  const double moving = 0.5 * (position + position_before_);
-  position_before_ = position;
+  const double moving = 0.5 * (position + sensed_.position_before);
+  sensed_.position_before = position;
   const Swing swing = swing_.swing();
   model_.swing = swing.now;
   model_.swing_quadrature = swing.quadrature;
   model_.swing_rate = swing.rate;
   const double halfway = moving - swing.now;  // as if the surface stood still
-  const double tip_before = tip_.value();
-  tip_.step(halfway);
-  tip_speed_ = (tip_.value() - tip_before) / config_.period;
-  force_mean_ += kMeanGain * (force - force_mean_);
-  tip_mean_ += kMeanGain * (tip_.value() - tip_mean_);
+  const double tip_before = sensed_.tip.value();
+  sensed_.tip.step(halfway);
+  sensed_.tip_speed = (sensed_.tip.value() - tip_before) / config_.period;
+  sensed_.force_mean += kMeanGain * (force - sensed_.force_mean);
+  sensed_.tip_mean += kMeanGain * (sensed_.tip.value() - sensed_.tip_mean);
 
   watch_surface(moving);
+  return halfway;
+}
 
-  const double noise = std::sqrt(noise_square_);
+/// `threshold` [N]: from here on a mean force counts as contact.
+void ContactEstimator::doubt(double threshold) noexcept {
+  if (doubt_.ticks == 0) return;
+  --doubt_.ticks;
+  if (sensed_.tip.value() < doubt_.tip - kDoubtRetreat) doubt_.ticks = 0;
+  if (doubt_.ticks > 0 && sensed_.force_mean < kDoubtShare * threshold) withdraw();
+}
+
+void ContactEstimator::begin_contact() noexcept {
+  noise_.settle(config_.sensor.step);
+  const double depth = std::cbrt(std::pow(sensed_.force_mean / config_.stiffness_expected, 2));
+  place_grid(sensed_.tip_mean - depth);
+  Solution prior;
+  prior.c = expected_;
+  here_.deepest = sensed_.tip_mean;
+  doubt_.tip = sensed_.tip.value();
+  doubt_.ticks = kDoubtTicks;
+  publish(prior);
+}
+
+void ContactEstimator::step(double position, double force) noexcept {
+  const double halfway = sense(position, force);
   // Six standard deviations of a mean over 10 ms.
-  const double threshold = std::max(config_.detection_force, 1.4 * noise);
-  const bool contact = force_mean_ >= threshold && noise_ticks_ >= kNoiseTicksMin;
-  if (placed_ && !contact && tip_.value() > centre_ + kMisplaced) placed_ = false;
-  if (doubtful_ > 0) {
-    --doubtful_;
-    if (tip_.value() < doubted_ - kDoubtRetreat) doubtful_ = 0;
-    if (doubtful_ > 0 && force_mean_ < kDoubtShare * threshold) withdraw();
-  }
+  const double threshold = std::max(config_.detection_force, 1.4 * noise_.deviation());
+  const bool contact = sensed_.force_mean >= threshold && noise_.known();
+  if (placed_ && !contact && sensed_.tip.value() > centre_ + kMisplaced) placed_ = false;
+  doubt(threshold);
   if (!placed_) {
     if (!contact) {
-      sense_noise(force);
+      noise_.listen(force);  // before the first contact every reading is noise
       return;
     }
-    if (config_.sensor.step > 0 && noise_square_ > 0) {
-      const double quantum = config_.sensor.step;
-      const double ratio = noise_over_quantum(noise_square_ / (quantum * quantum));
-      // Above 0.4 the correction would run ahead of what it corrects.
-      dither_ = quantum / pi * std::min(0.4, std::exp(-2 * pi * pi * ratio * ratio));
-    }
-    const double depth = std::cbrt(std::pow(force_mean_ / config_.stiffness_expected, 2));
-    place_grid(tip_mean_ - depth);
-    Solution prior;
-    prior.c = expected_;
-    deepest_ = tip_mean_;
-    doubted_ = tip_.value();
-    doubtful_ = kDoubtTicks;
-    publish(prior);
+    begin_contact();
   }
-  if (!contact && contact_here_) deepest_in_air_ = std::max(deepest_in_air_, raw_tip_);
+  if (!contact && here_.contact)
+    here_.deepest_in_air = std::max(here_.deepest_in_air, sensed_.raw_tip);
   if (contact) {
-    contact_here_ = true;
-    deepest_ = std::max(deepest_, tip_.value());
+    here_.contact = true;
+    here_.deepest = std::max(here_.deepest, sensed_.tip.value());
   }
   filter_shapes(halfway);
   relax();

@@ -8,6 +8,7 @@
 #include "common/core/filters.h"
 #include "common/core/time.h"
 #include "common/coupling/breathing_estimator.h"
+#include "common/coupling/sensor_noise.h"
 #include "common/message/port_sample.h"
 
 /// The patient's half of `mmt` at work: finds the contact model behind positions and forces.
@@ -53,7 +54,10 @@ class ContactEstimator {
     double cost{};  ///< [N^2]
   };
 
-  void sense_noise(double force) noexcept;
+  /// @returns the way the tip went in this period, half of it on average, the surface at rest [m].
+  [[nodiscard]] double sense(double position, double force) noexcept;
+  void doubt(double threshold) noexcept;
+  void begin_contact() noexcept;
   void place_grid(double centre) noexcept;
   void filter_shapes(double position) noexcept;
   void collect(double force) noexcept;
@@ -65,59 +69,75 @@ class ContactEstimator {
   void watch_surface(double position) noexcept;
   [[nodiscard]] Solution solve(std::size_t candidate) noexcept;
   [[nodiscard]] double surface_of(std::size_t candidate) const noexcept;
-  [[nodiscard]] double rounding_bias(double force) const noexcept;
   [[nodiscard]] double equation_noise() const noexcept;
   void relax() noexcept;
   [[nodiscard]] double elastic() const noexcept;
   [[nodiscard]] double predicted() const noexcept;
 
+  /// What is sensed, in a frame that moves with the surface and, `raw`, in one that does not.
+  struct Sensed {
+    bool started{};
+    double position_before{};  ///< [m]
+    LowPass tip;               ///< [m], behind the transducer's pole
+    double tip_speed{};        ///< [m/s]
+    double force_mean{};       ///< [N], over 10 ms
+    double tip_mean{};         ///< [m], over 10 ms
+    double raw_tip{};          ///< [m], behind the transducer's pole
+    double raw_tip_mean{};     ///< [m], as tip_mean
+  };
+  /// The first contact may prove to be noise.
+  struct Doubt {
+    std::uint32_t ticks{};  ///< for so long
+    double tip{};           ///< [m], where it was
+  };
+  /// Some ticks make one equation.
+  struct Box {
+    alignas(64) std::array<Lane, kTerms> terms{};  ///< sum
+    double force{};                                ///< [N], sum
+    std::uint32_t count{};
+    double tip{};  ///< [m], where the last box ended
+  };
+  /// What comes beside the shapes.
+  struct Beside {
+    std::array<double, kModelTimes.size()> past{};  ///< [N], elastic force, averaged
+    /// For each time the elastic force less its past [N], and the elastic force times the tip's
+    /// speed [N m/s].
+    std::array<double, kTerms - kModelTerms> terms{};
+  };
+  /// What was felt at this place.
+  struct Here {
+    bool contact{};
+    double deepest{};           ///< [m], tip in contact
+    double deepest_in_air{-1};  ///< [m], tip that felt nothing, between contacts
+    Terms expected{};           ///< [N], before anything was felt
+  };
+
   ContactEstimatorConfig config_;
   double gain_;  ///< [-], of the transducer's pole
-
-  // What is sensed.
-  bool started_{};
-  double position_before_{};  ///< [m]
-  LowPass tip_;               ///< [m], behind the transducer's pole
-  double tip_speed_{};        ///< [m/s]
-  double force_mean_{};       ///< [N], over 10 ms
-  double tip_mean_{};         ///< [m], over 10 ms
-  double noise_square_{};     ///< [N^2], of a reading in the air
-  std::uint32_t noise_ticks_{};
-  double dither_{};  ///< [-], amplitude of the rounding bias over its largest
+  Sensed sensed_;
+  SensorNoise noise_;
 
   // The grid.
   bool placed_{};
-  bool contact_here_{};
-  std::uint32_t doubtful_{};  ///< ticks in which the first contact may prove to be noise
-  double doubted_{};          ///< [m], the tip where it was
-  double centre_{};           ///< [m]
+  Doubt doubt_;
+  double centre_{};  ///< [m]
   std::uint32_t ticks_outside_{};
   alignas(64) std::array<Lane, kModelTerms> shapes_{};  ///< [-], filtered
-  alignas(64) std::array<Lane, kTerms> box_{};          ///< sum over the box
-  alignas(64) std::array<Lane, kPairs> normal_{};       ///< [-]
-  alignas(64) std::array<Lane, kTerms> right_{};        ///< [N]
-  double square_{};                                     ///< [N^2]
-  double box_force_{};                                  ///< [N]
-  std::array<double, kModelTimes.size()> past_{};       ///< [N], elastic force, averaged
-  /// What comes beside the shapes: for each time the elastic force less its past [N], and the
-  /// elastic force times the tip's speed [N m/s].
-  std::array<double, kTerms - kModelTerms> beside_{};
-  std::uint32_t box_count_{};
-  double box_tip_{};  ///< [m], where the last box ended
+  Box box_;
+  alignas(64) std::array<Lane, kPairs> normal_{};  ///< [-]
+  alignas(64) std::array<Lane, kTerms> right_{};   ///< [N]
+  double square_{};                                ///< [N^2]
+  Beside beside_;
 
   // What is known.
   std::array<Terms, kCandidates> found_{};  ///< the last solution of each
   std::size_t best_{};
   std::uint32_t turn_{};
   Terms expected_{};           ///< [N]
-  Terms expected_here_{};      ///< [N], before anything was felt at this place
   double surface_expected_{};  ///< [m]
   ModelPayload model_;
   BreathingEstimator swing_;
-  double raw_tip_mean_{};      ///< [m], as tip_mean_, in a frame that does not swing
-  double raw_tip_{};           ///< [m], behind the transducer's pole
-  double deepest_{};           ///< [m], tip in contact at this place
-  double deepest_in_air_{-1};  ///< [m], tip that felt nothing, between contacts at this place
+  Here here_;
 };
 
 }  // namespace palp::coupling

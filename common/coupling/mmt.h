@@ -17,6 +17,7 @@
 /// fixed amount.
 namespace palp::coupling {
 
+/// One list, as message Mmt of the configuration has it.
 struct MmtConfig {
   double tank_start{1e-3};  ///< [J], and the guarantee: the most the hand can ever gain
   double tank_max{3e-3};    ///< [J]

@@ -1,75 +1,56 @@
 #include "common/record/notes.h"
 
+#include <algorithm>
+#include <array>
+
 namespace palp::record {
+namespace {
+
+struct Text {
+  NoteCode code;
+  std::string_view text;
+};
+
+constexpr std::array kTexts{
+    Text{NoteCode::None, ""},
+    Text{NoteCode::LinkReady, "link ready"},
+    Text{NoteCode::PedalPressed, "pedal pressed"},
+    Text{NoteCode::PedalReleased, "pedal released"},
+    Text{NoteCode::PeerEngaged, "peer engaged"},
+    Text{NoteCode::PeerClutched, "peer clutched"},
+    Text{NoteCode::PeerRetracting, "peer is retracting"},
+    Text{NoteCode::PeerStopped, "peer stopped"},
+    Text{NoteCode::GapHold, "nothing arrived: hold"},
+    Text{NoteCode::GapLost, "nothing arrived for long: link lost"},
+    Text{NoteCode::GapOver, "samples arrive again"},
+    Text{NoteCode::LinkDown, "no session with the peer"},
+    Text{NoteCode::RetractDone, "retracted, clear of the tissue"},
+    Text{NoteCode::ForceLimit, "force limit reached"},
+    Text{NoteCode::DeviceFault, "device fault"},
+    Text{NoteCode::EmergencyStop, "emergency stop"},
+    Text{NoteCode::LocalReset, "reset on the spot"},
+    Text{NoteCode::EngageRefusedForce, "engagement refused: contact force too high"},
+    Text{NoteCode::ForceGateClamped, "force gate limited the force on the hand"},
+    Text{NoteCode::MotionGateLimited, "motion gate limited the stage"},
+    Text{NoteCode::ForceRetreat, "contact force too high: the stage retreats"},
+    Text{NoteCode::NotFinite, "a value was not finite"},
+    Text{NoteCode::SessionBegan, "new session with the peer"},
+    Text{NoteCode::RoundTripTooLong, "round trip too long for this coupling: engagement refused"},
+    Text{NoteCode::ScriptPhase, "next phase of the script"},
+    Text{NoteCode::LinkIsDown, "the link is down: no session"},
+    Text{NoteCode::LinkIsLive, "the link is live"},
+    Text{NoteCode::LinkHolds, "the link holds: nothing arrived"},
+    Text{NoteCode::LinkIsLost, "the link is lost: nothing arrived for long"},
+    Text{NoteCode::KeysReplaced, "telegrams come under new keys"},
+    Text{NoteCode::DragRefused, "the stage cannot drag: it keeps its place while pressed"},
+    Text{NoteCode::PlaceBeyondTravel, "a place beyond the stage's travel"},
+};
+
+}  // namespace
 
 std::string_view to_string(NoteCode code) noexcept {
-  switch (code) {
-    case NoteCode::None:
-      return "";
-    case NoteCode::LinkReady:
-      return "link ready";
-    case NoteCode::PedalPressed:
-      return "pedal pressed";
-    case NoteCode::PedalReleased:
-      return "pedal released";
-    case NoteCode::PeerEngaged:
-      return "peer engaged";
-    case NoteCode::PeerClutched:
-      return "peer clutched";
-    case NoteCode::PeerRetracting:
-      return "peer is retracting";
-    case NoteCode::PeerStopped:
-      return "peer stopped";
-    case NoteCode::GapHold:
-      return "nothing arrived: hold";
-    case NoteCode::GapLost:
-      return "nothing arrived for long: link lost";
-    case NoteCode::GapOver:
-      return "samples arrive again";
-    case NoteCode::LinkDown:
-      return "no session with the peer";
-    case NoteCode::RetractDone:
-      return "retracted, clear of the tissue";
-    case NoteCode::ForceLimit:
-      return "force limit reached";
-    case NoteCode::DeviceFault:
-      return "device fault";
-    case NoteCode::EmergencyStop:
-      return "emergency stop";
-    case NoteCode::LocalReset:
-      return "reset on the spot";
-    case NoteCode::EngageRefusedForce:
-      return "engagement refused: contact force too high";
-    case NoteCode::ForceGateClamped:
-      return "force gate limited the force on the hand";
-    case NoteCode::MotionGateLimited:
-      return "motion gate limited the stage";
-    case NoteCode::ForceRetreat:
-      return "contact force too high: the stage retreats";
-    case NoteCode::NotFinite:
-      return "a value was not finite";
-    case NoteCode::SessionBegan:
-      return "new session with the peer";
-    case NoteCode::RoundTripTooLong:
-      return "round trip too long for this coupling: engagement refused";
-    case NoteCode::ScriptPhase:
-      return "next phase of the script";
-    case NoteCode::LinkIsDown:
-      return "the link is down: no session";
-    case NoteCode::LinkIsLive:
-      return "the link is live";
-    case NoteCode::LinkHolds:
-      return "the link holds: nothing arrived";
-    case NoteCode::LinkIsLost:
-      return "the link is lost: nothing arrived for long";
-    case NoteCode::KeysReplaced:
-      return "telegrams come under new keys";
-    case NoteCode::DragRefused:
-      return "the stage cannot drag: it keeps its place while pressed";
-    case NoteCode::PlaceBeyondTravel:
-      return "a place beyond the stage's travel";
-  }
-  return "unknown note";
+  const auto found = std::ranges::find(kTexts, code, &Text::code);
+  return found != kTexts.end() ? found->text : "unknown note";
 }
 
 std::string state_text(SiteState state, NoteCode reason, NoteCode refused) {

@@ -225,6 +225,86 @@ patient::SimulatedPhantomConfig seeded(patient::SimulatedPhantomConfig config, s
   return config;
 }
 
+/// The path goes dark once, if the scenario says so.
+class DarkPath {
+ public:
+  explicit DarkPath(const Scenario& scenario) : at_script_time_{scenario.blackout_at_script_time} {}
+
+  void step(TimePoint now, Duration script_time) {
+    if (at_script_time_ <= Duration{0}) return;
+    if (!from_ && script_time >= at_script_time_) from_ = now;
+    shut_ = from_ && now - *from_ < kBlackout;
+  }
+  /// As long as it is.
+  [[nodiscard]] const bool& shut() const { return shut_; }
+  [[nodiscard]] std::optional<TimePoint> from() const { return from_; }
+
+ private:
+  Duration at_script_time_;
+  std::optional<TimePoint> from_;
+  bool shut_{};
+};
+
+/// The surgeon's site with its hand and its file.
+struct SurgeonEnd {
+  SurgeonEnd(const Scenario& scenario,
+             std::unique_ptr<link::Transport> path,
+             const Simulator& world,
+             record::SessionWriter* writer,
+             Digest& digest)
+      : hand{scenario.hand, scenario.script},
+        file{world, writer},
+        recorder{digest, &file},
+        process{scenario, hand, std::move(path), recorder} {}
+
+  surgeon::SimulatedHand hand;
+  DirectRecorder file;
+  DigestRecorder recorder;
+  SurgeonProcess process;
+};
+
+/// The patient's site with its tissue, its estimator and its file.
+struct PatientEnd {
+  PatientEnd(const Scenario& scenario,
+             std::unique_ptr<link::Transport> path,
+             const Simulator& world,
+             record::SessionWriter* writer,
+             Digest& digest)
+      : tissue{scenario.phantom, seeded(scenario.tissue, scenario.seed)},
+        file{world, writer},
+        recorder{digest, &file},
+        process{scenario, {tissue, recorder, contact, depth}, std::move(path)},
+        estimator{depth::with_sensor(scenario.estimator, tissue.sensor_facts()),
+                  {contact, depth, recorder}} {}
+
+  patient::SimulatedPhantom tissue;
+  DirectRecorder file;
+  DigestRecorder recorder;
+  SpscQueue<ContactSample> contact{kContactQueue};  // one thread is both writer and reader here
+  Mailbox<DepthEstimate> depth;
+  PatientProcess process;
+  patient::EstimatorWorker estimator;
+};
+
+/// `start`: of the run.
+judge::RunMetrics judged(const Probe& probe,
+                         const Scenario& scenario,
+                         TimePoint start,
+                         std::optional<TimePoint> dark_from) {
+  judge::MetricsConfig judging{.force_cap = scenario.hand.force_max,
+                               .period = seconds(scenario.link.period)};
+  if (dark_from) {
+    judging.blackout_from = seconds(*dark_from - start);
+    judging.blackout_to = judging.blackout_from + seconds(kBlackout) + kAfterBlackout;
+  }
+  judge::RunMetrics metrics = judge::metrics_of(probe.ticks(), judging);
+  metrics.force_step_guarded = probe.force_step_max();
+  // Energy has no script: what the hand gets while it waits or lets go counts too.
+  metrics.energy_operator = std::max(0.0, -probe.work_min());
+  metrics.energy_net = std::max(0.0, -probe.net_min());
+  return metrics;
+}
+
 }  // namespace
 
 RunResult simulate(const Scenario& scenario, const RunFiles& files) {
@@ -233,53 +313,31 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   const TimePoint start = world.now();
   Digest digest;
   Files session_files{scenario, files, start};
-
-  // The path.
   netem::Pipe pipe{scenario.up, scenario.down, scenario.seed, kInFlightMax, start};
-  bool shut = false;
+  DarkPath dark{scenario};
+  const auto valve = [&](auto end) { return std::make_unique<Valve>(std::move(end), dark.shut()); };
+  SurgeonEnd surgeon{scenario, valve(pipe.surgeon_end()), world, session_files.surgeon(), digest};
+  PatientEnd patient{scenario, valve(pipe.patient_end()), world, session_files.patient(), digest};
+  surgeon.process.start(start);
+  patient.process.start(start);
 
-  // The surgeon's site.
-  surgeon::SimulatedHand hand{scenario.hand, scenario.script};
-  DirectRecorder surgeon_file{world, session_files.surgeon()};
-  DigestRecorder surgeon_recorder{digest, &surgeon_file};
-  SurgeonProcess surgeon{
-      scenario, hand, std::make_unique<Valve>(pipe.surgeon_end(), shut), surgeon_recorder};
-
-  // The patient's site.
-  patient::SimulatedPhantom tissue{scenario.phantom, seeded(scenario.tissue, scenario.seed)};
-  DirectRecorder patient_file{world, session_files.patient()};
-  DigestRecorder patient_recorder{digest, &patient_file};
-  SpscQueue<ContactSample> contact{kContactQueue};  // one thread is both writer and reader here
-  Mailbox<DepthEstimate> depth;
-  PatientProcess patient{scenario,
-                         {tissue, patient_recorder, contact, depth},
-                         std::make_unique<Valve>(pipe.patient_end(), shut)};
-  patient::EstimatorWorker estimator{depth::with_sensor(scenario.estimator, tissue.sensor_facts()),
-                                     {contact, depth, patient_recorder}};
-  surgeon.start(start);
-  patient.start(start);
-
-  Probe probe{scenario, hand, tissue};
-  FaultInjector fault_injector{scenario.fault, surgeon, patient};
+  Probe probe{scenario, surgeon.hand, patient.tissue};
+  FaultInjector fault_injector{scenario.fault, surgeon.process, patient.process};
   std::optional<TimePoint> finished_at;
-  std::optional<TimePoint> dark_from;
   const Duration period = scenario.link.period;
-  world.every({.period = period}, [&](TimePoint now) { surgeon.tick(now); });
-  world.every({.period = period}, [&](TimePoint now) { patient.tick(now); });
+  world.every({.period = period}, [&](TimePoint now) { surgeon.process.tick(now); });
+  world.every({.period = period}, [&](TimePoint now) { patient.process.tick(now); });
   world.every({.period = period}, [&](TimePoint now) {
     if (scenario.depths) {
-      estimator.drain();
+      patient.estimator.drain();
     } else {
-      drop_all(contact);
+      drop_all(patient.contact);
     }
-    const surgeon::HandTruth truth = hand.truth();
-    if (scenario.blackout_at_script_time > Duration{0}) {
-      if (!dark_from && truth.script_time >= scenario.blackout_at_script_time) dark_from = now;
-      shut = dark_from && now - *dark_from < kBlackout;
-    }
-    probe.look(surgeon, seconds(now - start), digest);
+    const surgeon::HandTruth truth = surgeon.hand.truth();
+    dark.step(now, truth.script_time);
+    probe.look(surgeon.process, seconds(now - start), digest);
     fault_injector.step(now, truth);
-    if (hand.finished() && !finished_at) finished_at = now;
+    if (surgeon.hand.finished() && !finished_at) finished_at = now;
   });
 
   const Duration limit = scenario.duration > Duration{0} ? scenario.duration : kRunMax;
@@ -293,21 +351,12 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   result.digest = digest.value();
   result.began_at = start;
   result.virtual_span = world.now() - start;
-  result.outcome = hand.progress().outcome;
-  judge::MetricsConfig judging{.force_cap = scenario.hand.force_max, .period = seconds(period)};
-  if (dark_from) {
-    judging.blackout_from = seconds(*dark_from - start);
-    judging.blackout_to = judging.blackout_from + seconds(kBlackout) + kAfterBlackout;
-  }
-  result.metrics = judge::metrics_of(probe.ticks(), judging);
-  result.metrics.force_step_guarded = probe.force_step_max();
-  // Energy has no script: what the hand gets while it waits or lets go counts too.
-  result.metrics.energy_operator = std::max(0.0, -probe.work_min());
-  result.metrics.energy_net = std::max(0.0, -probe.net_min());
+  result.outcome = surgeon.hand.progress().outcome;
+  result.metrics = judged(probe, scenario, start, dark.from());
   result.ticks = probe.take_ticks();
-  result.depths = patient_file.estimates();
-  result.surgeon_link = surgeon.health(world.now());
-  result.patient_link = patient.health(world.now());
+  result.depths = patient.file.estimates();
+  result.surgeon_link = surgeon.process.health(world.now());
+  result.patient_link = patient.process.health(world.now());
   result.records = session_files.records();
   return result;
 }

@@ -142,7 +142,8 @@ struct SlotLaw {
   bool operator==(const SlotLaw&) const = default;
 };
 
-/// What happens to the datagrams of one direction. A value; frozen once a Channel has it.
+/// What happens to the datagrams of one direction. A value; frozen once a Channel has it. One list:
+/// a law or a number for each word that can be asked for.
 struct Impairment {
   Mode mode{Mode::Exact};
   DelayLaw delay;

@@ -13,20 +13,9 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/// The kernel wakes a sleeper some 10-50 us late, one that slept deeply later still; so much of a
-/// wait is spun instead: what the late ones of the last wakings make advisable, within these.
-constexpr Duration kSpinMin = microseconds{60};
-constexpr Duration kSpinMax = microseconds{600};
-constexpr Duration kSpinSpare = microseconds{20};
-constexpr std::int64_t kSpinMemory = 128;  ///< wakings
 /// After so long a rest the caches have forgotten how to send: 50 us instead of 8.
 constexpr Duration kCold = milliseconds{1};
 constexpr Duration kLate = microseconds{60};
-/// A send call on a busy machine costs about 8 us; more is a disturbance, not a cost to lead by.
-constexpr Duration kLeadMax = microseconds{20};
-constexpr Duration kLeadStep{50};
-/// Nothing is sent earlier than this before its time.
-constexpr Duration kBunchLeadMax = microseconds{50};
 /// A SCHED_FIFO thread that is awake for 95 % of a second is stopped for the rest of it by the
 /// kernel: under a flood it naps before.
 constexpr Duration kAwakeMax = microseconds{2000};
@@ -59,8 +48,7 @@ Relay::Relay(const RelayConfig& config)
             config.datagram_max},
       stop_descriptor_{config.stop_descriptor},
       priority_{config.priority},
-      spin_{kSpinMin},
-      awake_since_{start_} {
+      timing_{start_} {
   waiting_.reserve(64);
 }
 
@@ -150,14 +138,9 @@ void Relay::tell_laws(TimePoint now) noexcept {
   law_numbers[1].store(down_.impaired_path().law_number(now), std::memory_order_relaxed);
 }
 
-/// How long before `next` to begin, so that what leaves at `next` is on time. Of several that are
-/// due together, sent one after the other, the middle one is: the error of the first and of the
-/// last is then the least it can be.
 Duration Relay::lead(Direction direction, TimePoint next) const noexcept {
-  const std::size_t together =
-      channel(direction).impaired_path().in_line_by(next + lead_, kDatagramBatch);
-  if (together < 2) return lead_;
-  return std::min(lead_ * static_cast<std::int64_t>(together + 1) / 2, kBunchLeadMax);
+  const TimePoint until = next + timing_.lead(1);
+  return timing_.lead(channel(direction).impaired_path().in_line_by(until, kDatagramBatch));
 }
 
 /// Sends what is due, in batches: their bytes stay where they are until the next push.
@@ -174,19 +157,20 @@ void Relay::release(Direction direction, TimePoint now) noexcept {
     while (count < kDatagramBatch) {
       const auto popped = channel.pop_in_place(due);
       if (!popped) break;
-      leaving_[count] = popped->decision;
-      outgoing_[count] = {popped->bytes, popped->decision.tos};
+      batch_.leaving[count] = popped->decision;
+      batch_.outgoing[count] = {popped->bytes, popped->decision.tos};
       ++count;
     }
     if (count == 0) return;
-    const std::size_t sent = known ? socket.send(std::span{outgoing_}.first(count), to) : 0;
+    const std::size_t sent = known ? socket.send(std::span{batch_.outgoing}.first(count), to) : 0;
     traffic_[static_cast<std::size_t>(direction)].unsent += count - sent;
     account(direction, sent, before);
     if (recording_on_) {
       for (std::size_t i = 0; i < count; ++i) {
-        if (leaving_[i].open) recording.left(leaving_[i], direction);
+        if (batch_.leaving[i].open) recording.left(batch_.leaving[i], direction);
         if (i < sent) {
-          recording.crossed(onto, outgoing_[i].bytes, monotonic_now(), true, outgoing_[i].tos);
+          recording.crossed(
+              onto, batch_.outgoing[i].bytes, monotonic_now(), true, batch_.outgoing[i].tos);
         }
       }
     }
@@ -203,14 +187,12 @@ void Relay::account(Direction direction, std::size_t sent, TimePoint before) noe
   const Duration each = (after - before) / static_cast<std::int64_t>(sent);
   for (std::size_t i = 0; i < sent; ++i) {
     const TimePoint left = before + each * static_cast<std::int64_t>(i + 1);
-    traffic.delay.record(left - leaving_[i].arrived_at);
-    const Duration late = left - leaving_[i].released_at;
+    traffic.delay.record(left - batch_.leaving[i].arrived_at);
+    const Duration late = left - batch_.leaving[i].released_at;
     traffic.release_error.record(late < Duration{} ? -late : late);
     if (late > kLate) ++traffic.late_releases;
   }
-  // A step up or down at each call ends where half of the calls take longer.
-  lead_ += each > lead_ ? kLeadStep : -kLeadStep;
-  lead_ = std::clamp(lead_, Duration{}, kLeadMax);
+  timing_.sent(each);
 }
 
 /// As a router that forgets a mapping: the server sees another port, and what it sends to the old
@@ -231,24 +213,24 @@ Relay::Readable Relay::rest(TimePoint now, TimePoint until) noexcept {
     const auto release = way(direction).next_release();
     if (release) next = std::min(next, *release - lead(direction, *release));
   }
-  if (real_time_ && now - awake_since_ > kAwakeMax) {
+  if (real_time_ && timing_.awake(now) > kAwakeMax) {
     const timespec nap = to_timespec(kNap);
     ::clock_nanosleep(CLOCK_MONOTONIC, 0, &nap, nullptr);
-    awake_since_ = monotonic_now();
+    timing_.slept(monotonic_now());
     return {.client_side = true, .server_side = true};
   }
   std::array<pollfd, 3> watched{{{client_side_.descriptor(), POLLIN, 0},
                                  {server_side_.descriptor(), POLLIN, 0},
                                  {stop_descriptor_, POLLIN, 0}}};
-  const TimePoint wake = std::max(next - spin_, now);
+  const TimePoint wake = std::max(next - timing_.spin(), now);
   const timespec wait = to_timespec(wake - now);
   const int ready = ::ppoll(watched.data(), watched.size(), &wait, nullptr);
   const bool slept = wait.tv_sec > 0 || wait.tv_nsec > 0;
   if (slept) {
     const TimePoint woken = monotonic_now();
-    if (woken - now > kNap / 4) awake_since_ = woken;
+    if (woken - now > kNap / 4) timing_.slept(woken);
     if (ready == 0 && woken - now > kCold) warm();
-    if (ready == 0) learn_spin(monotonic_now() - wake);
+    if (ready == 0) timing_.woken(monotonic_now() - wake);
   }
   if (ready <= 0) return {};
   stopped_ = (watched[2].revents & POLLIN) != 0;
@@ -259,12 +241,6 @@ Relay::Readable Relay::rest(TimePoint now, TimePoint until) noexcept {
 void Relay::warm() noexcept {
   if (up_.next_release()) server_side_.warm(nullptr);
   if (down_.next_release() && client_) client_side_.warm(&*client_);
-}
-
-/// Up at once, down slowly.
-void Relay::learn_spin(Duration late) noexcept {
-  const Duration wanted = std::clamp(late + kSpinSpare, kSpinMin, kSpinMax);
-  spin_ = wanted > spin_ ? wanted : spin_ - (spin_ - wanted) / kSpinMemory;
 }
 
 void Relay::show(TimePoint now) noexcept {

@@ -17,6 +17,7 @@
 #include "netem/model/path_plan.h"
 #include "netem/relay/datagram_socket.h"
 #include "netem/relay/relay_recording.h"
+#include "netem/relay/release_timing.h"
 
 namespace palp::netem {
 
@@ -110,6 +111,11 @@ class Relay {
     bool client_side{};
     bool server_side{};
   };
+  /// What leaves with one send call.
+  struct Batch {
+    std::array<Decision, kDatagramBatch> leaving;
+    std::array<OutgoingDatagram, kDatagramBatch> outgoing;
+  };
 
   void drain(Readable readable) noexcept;
   void push(Direction direction, std::span<const ReceivedDatagram> datagrams) noexcept;
@@ -122,7 +128,6 @@ class Relay {
   [[nodiscard]] Duration lead(Direction direction, TimePoint next) const noexcept;
   [[nodiscard]] Readable rest(TimePoint now, TimePoint until) noexcept;
   void warm() noexcept;
-  void learn_spin(Duration late) noexcept;
   void show(TimePoint now) noexcept;
   [[nodiscard]] Channel& way(Direction direction) noexcept {
     return direction == Direction::Up ? up_ : down_;
@@ -144,12 +149,9 @@ class Relay {
   std::optional<io::Endpoint> client_;
   std::vector<RelayCommand> waiting_;    ///< commands whose time has not come
   std::array<RelayTraffic, 2> traffic_;  ///< by Direction
-  Duration lead_{};                      ///< running median of what a send call takes
-  Duration spin_;                        ///< so long before a release it is awake
-  TimePoint awake_since_{};
+  ReleaseTiming timing_;
   TimePoint show_at_{};
-  std::array<Decision, kDatagramBatch> leaving_;
-  std::array<OutgoingDatagram, kDatagramBatch> outgoing_;
+  Batch batch_;
 };
 
 }  // namespace palp::netem

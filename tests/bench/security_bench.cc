@@ -108,6 +108,13 @@ int hellos() {
   return 0;
 }
 
+struct HandshakePath {
+  double loss{};  ///< [1]
+  Duration round_trip{};
+  Endpoint surgeon_at = *io::resolve_endpoint("127.0.0.1:1000");
+  Endpoint patient_at = *io::resolve_endpoint("127.0.0.1:2000");
+};
+
 /// One surgeon and one patient with a network of their own between them.
 struct Trial {
   Trial(const io::Credentials& surgeon_keys,
@@ -115,6 +122,26 @@ struct Trial {
         std::uint64_t id,
         TimePoint begin)
       : surgeon{surgeon_keys}, patient{patient_keys}, seed{id}, begins_at{begin} {}
+  void tick(TimePoint now, const HandshakePath& path) {
+    surgeon.call(path.patient_at, now);  // does nothing while one is running
+    surgeon.tick(now);
+    patient.tick(now);
+    post(surgeon.take_letters(), true, now, path);
+    post(patient.take_letters(), false, now, path);
+    while (!under_way.empty() && under_way.begin()->first <= now) {
+      auto first = under_way.extract(under_way.begin());
+      const auto& [up, bytes] = first.mapped();
+      (up ? patient : surgeon).hear(bytes, up ? path.surgeon_at : path.patient_at, now);
+    }
+  }
+  void post(std::vector<io::Letter> letters, bool up, TimePoint now, const HandshakePath& path) {
+    for (io::Letter& letter : letters) {
+      (up ? bytes_up : bytes_down) += letter.bytes.size();
+      const double draw = static_cast<double>(random_bits(seed, 5, sent++) >> 11U) * 0x1p-53;
+      if (draw < path.loss) continue;
+      under_way.emplace(now + path.round_trip / 2, std::pair{up, std::move(letter.bytes)});
+    }
+  }
   io::Associations surgeon;
   io::Associations patient;
   std::uint64_t seed;
@@ -130,8 +157,7 @@ int handshakes(int count, double loss, Duration round_trip, std::uint64_t seed) 
   const io::test::KeysFolder keys{"bench"};
   const auto surgeon_keys = keys.credentials(Role::Surgeon);
   const auto patient_keys = keys.credentials(Role::Patient);
-  const Endpoint surgeon_at = *io::resolve_endpoint("127.0.0.1:1000");
-  const Endpoint patient_at = *io::resolve_endpoint("127.0.0.1:2000");
+  const HandshakePath path{.loss = loss, .round_trip = round_trip};
   const io::SteadyClock clock;
   std::vector<double> all;
   constexpr int kAtOnce = 20;
@@ -153,25 +179,7 @@ int handshakes(int count, double loss, Duration round_trip, std::uint64_t seed) 
       for (auto& trial : trials) {
         const TimePoint now = clock.now();
         if (trial->took || now < trial->begins_at) continue;
-        trial->surgeon.call(patient_at, now);  // does nothing while one is running
-        trial->surgeon.tick(now);
-        trial->patient.tick(now);
-        const auto post = [&](std::vector<io::Letter> letters, bool up) {
-          for (io::Letter& letter : letters) {
-            (up ? trial->bytes_up : trial->bytes_down) += letter.bytes.size();
-            const double draw =
-                static_cast<double>(random_bits(trial->seed, 5, trial->sent++) >> 11U) * 0x1p-53;
-            if (draw < loss) continue;
-            trial->under_way.emplace(now + round_trip / 2, std::pair{up, std::move(letter.bytes)});
-          }
-        };
-        post(trial->surgeon.take_letters(), true);
-        post(trial->patient.take_letters(), false);
-        while (!trial->under_way.empty() && trial->under_way.begin()->first <= now) {
-          auto first = trial->under_way.extract(trial->under_way.begin());
-          const auto& [up, bytes] = first.mapped();
-          (up ? trial->patient : trial->surgeon).hear(bytes, up ? surgeon_at : patient_at, now);
-        }
+        trial->tick(now, path);
         if (!trial->surgeon.take_made().empty()) {
           trial->took = now - trial->begins_at;
           all.push_back(ms(*trial->took));

@@ -51,6 +51,7 @@ struct Arrow {
   std::vector<std::string_view> to;
 };
 
+/// One list.
 const std::vector<Arrow>& arrows() {
   static const std::vector<Arrow> table{
       {"common/core/*", {}},

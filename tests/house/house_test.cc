@@ -4,6 +4,7 @@
 
 #include "tests/house/arrows.h"
 #include "tests/house/rules.h"
+#include "tests/house/size_rules.h"
 #include "tests/house/source.h"
 #include "tests/house/tree_rules.h"
 
@@ -42,6 +43,8 @@ INSTANTIATE_TEST_SUITE_P(Rules,
                                          Rule{"MembersWithoutUnit", members_without_unit},
                                          Rule{"MissingPragmaOnce", missing_pragma_once},
                                          Rule{"LongFiles", long_files},
+                                         Rule{"LongFunctions", long_functions},
+                                         Rule{"CrowdedClasses", crowded_classes},
                                          Rule{"LongLines", long_lines},
                                          Rule{"HeavyFiles", heavy_files},
                                          Rule{"UnwantedWords", unwanted_words}),

@@ -73,6 +73,7 @@ SupervisorInput changed(SupervisorInput in, const auto& change) {
   return in;
 }
 
+/// One list: the table of the supervisor's states.
 std::vector<Arrow> arrows() {
   using S = SiteState;
   const auto peer = [](S state) {
