@@ -69,7 +69,7 @@ TEST(StrokeTrackerTest, FindsAShiftedSurfaceAsWell) {
   ASSERT_EQ(here.size(), there.size());
   for (std::size_t i = 0; i < here.size(); ++i) {
     EXPECT_NEAR(there[i].hash, here[i].hash, 0.002 * here[i].hash);
-    EXPECT_NEAR(there[i].place.surface - here[i].place.surface, 1.7e-3, 5e-6);
+    EXPECT_NEAR(there[i].known.surface - here[i].known.surface, 1.7e-3, 5e-6);
   }
 }
 

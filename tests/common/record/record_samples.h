@@ -44,7 +44,8 @@ inline std::vector<std::byte> small_session(int ticks, int chunk_ms) {
       writer.write(Note{.at = at_ms(k), .code = 33, .detail = 1.5}, at_ms(k));
     }
   }
-  writer.write(DepthEstimate{.number = 1, .stroke_ended_at = at_ms(ticks)}, at_ms(ticks));
+  writer.write(DepthEstimate{.number = 1, .stroke_ended_at = at_ms(ticks), .place = {}},
+               at_ms(ticks));
   writer.close();
   return {sink.bytes().begin(), sink.bytes().end()};
 }
