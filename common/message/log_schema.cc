@@ -41,9 +41,11 @@ class Builder {
 };
 
 /// FieldDescriptorProto.Type
-template <class Value>
+template <class Item, class Value>
 constexpr unsigned type_number() noexcept {
-  if constexpr (kIsText<Value>) {
+  if constexpr (std::is_base_of_v<FixedWidth, Item>) {
+    return sizeof(Value) == sizeof(std::uint64_t) ? 6 : 7;
+  } else if constexpr (kIsText<Value>) {
     return 9;
   } else if constexpr (Described<Value>) {
     return 11;
@@ -144,7 +146,7 @@ class File {
     field.name = prefix;
     field.name += of_patient_ ? item.name.patient : item.name.surgeon;
     field.number = kBase + number_in<Form::Log, Item>();
-    field.type = type_number<Value>();
+    field.type = type_number<Item, Value>();
     field.optional = std::is_base_of_v<Always, Item>;
     if constexpr (Described<Value>) {
       field.type_name = full(fields<Value>.names.log);

@@ -144,7 +144,12 @@ bool read_item(const Spread<kOffset, Where>& /*spread*/, Reading& reading, auto&
     });
   };
   if constexpr (kIsOptional<std::remove_cvref_t<decltype(within)>>) {
-    auto part = within.value_or(typename std::remove_cvref_t<decltype(within)>::value_type{});
+    typename std::remove_cvref_t<decltype(within)>::value_type part{};
+    if (within) {
+      part = *within;
+    } else {
+      clear(part);
+    }
     const bool any_before = reading.any;
     reading.any = false;
     const bool good = read_into(part);
