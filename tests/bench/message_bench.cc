@@ -69,7 +69,8 @@ void telegrams(int rounds) {
 namespace palp::record {
 
 void records(int rounds) {
-  SiteTick tick{.at = TimePoint{}, .state = SiteState::Engaged, .epoch = 3, .position = 1e-3};
+  SiteTick tick{
+      .at = TimePoint{}, .state = SiteState::Engaged, .epoch = 3, .position = 1e-3, .place = {}};
   tick.velocity = tick.force = tick.command = 0.1;
   tick.round_trip = Duration{20'000'000};
   tick.sent = {.position = 1e-3, .velocity = 0.5, .force = 0.2, .payload = {}};

@@ -50,7 +50,7 @@ std::vector<Record> records() {
           status,
           Note{.at = at, .code = 33, .detail = 1.5},
           Transition{.at = at, .from = SiteState::Parked, .to = SiteState::Clutched, .reason = 2},
-          ContactSample{.at = at, .position = 1e-3, .force = 0.2},
+          ContactSample{.at = at, .position = 1e-3, .force = 0.2, .place = {}},
           estimate,
           depth,
           HandReading{.at = at, .position = 1e-3, .script_phase = 2},

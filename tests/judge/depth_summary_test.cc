@@ -8,11 +8,11 @@ namespace palp::judge {
 namespace {
 
 DepthEstimate found(double depth) {
-  return {.verdict = DepthVerdict::Found, .hash = 0.07, .depth = depth};
+  return {.place = {}, .verdict = DepthVerdict::Found, .hash = 0.07, .depth = depth};
 }
-DepthEstimate none() { return {.verdict = DepthVerdict::None, .hash = 0.059}; }
+DepthEstimate none() { return {.place = {}, .verdict = DepthVerdict::None, .hash = 0.059}; }
 DepthEstimate invalid() {
-  return {.verdict = DepthVerdict::Invalid, .reason = DepthReason::StrokeTooShort};
+  return {.place = {}, .verdict = DepthVerdict::Invalid, .reason = DepthReason::StrokeTooShort};
 }
 
 TEST(DepthSummaryTest, NothingSaysNothing) {

@@ -7,6 +7,12 @@
 namespace palp::judge {
 namespace {
 
+Motion tip_at(double position) {
+  Motion motion;
+  motion.position = position;
+  return motion;
+}
+
 namespace test = review::test;
 using test::kSurface;
 
@@ -33,7 +39,7 @@ TEST(ExcursionsTest, FindsEachTapOnceAndEndsItsLoadingAtTheDeepestTick) {
 
 TEST(ExcursionsTest, DipJustDeepEnoughCountsAndOneLessDoesNot) {
   const auto dip = [](double depth) {
-    return std::vector<Motion>{{.position = 0}, {.position = depth}, {.position = 0}};
+    return std::vector<Motion>{tip_at(0), tip_at(depth), tip_at(0)};
   };
   EXPECT_EQ(find_excursions(dip(1.5001e-3), 0).size(), 1u);
   EXPECT_EQ(find_excursions(dip(1.4999e-3), 0).size(), 0u);
@@ -41,7 +47,7 @@ TEST(ExcursionsTest, DipJustDeepEnoughCountsAndOneLessDoesNot) {
 }
 
 TEST(ExcursionsTest, HandStillInsideAtTheEndOfTheFileIsAnExcursion) {
-  const std::vector<Motion> motion{{.position = 0}, {.position = 2e-3}, {.position = 3e-3}};
+  const std::vector<Motion> motion{tip_at(0), tip_at(2e-3), tip_at(3e-3)};
   EXPECT_EQ(find_excursions(motion, 0).size(), 1u);
   EXPECT_TRUE(find_excursions({}, 0).empty());
 }

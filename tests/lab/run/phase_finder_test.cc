@@ -10,8 +10,6 @@
 namespace palp::lab {
 namespace {
 
-using Site;
-
 TEST(PhaseFinderTest, CountsTheTapsOfEachVisit) {
   surgeon::ScriptBuilder script{300};
   for (const Place& site : {kSiteA, kSiteB, kSiteA}) {

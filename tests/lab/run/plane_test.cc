@@ -36,9 +36,9 @@ Scenario plane_scenario(const char* coupling) {
 }
 
 /// The ticks in which the pressed tip travelled along y = 2 mm.
-std::vector<RunTick> drag_of(const RunResult& result) {
-  std::vector<RunTick> drag;
-  for (const RunTick& tick : result.ticks) {
+std::vector<judge::RunTick> drag_of(const RunResult& result) {
+  std::vector<judge::RunTick> drag;
+  for (const judge::RunTick& tick : result.ticks) {
     if (tick.contact_force > 0.1 && std::abs(tick.tip_place.y - 2e-3) < 1e-6) drag.push_back(tick);
   }
   return drag;
@@ -60,14 +60,14 @@ TEST(PlaneTest, ASessionByCoordinatesEndsInOrder) {
 }
 
 TEST(PlaneTest, ADragFeelsABump) {
-  const std::vector<RunTick> drag = drag_of(simulate(plane_scenario("tdpa")));
+  const std::vector<judge::RunTick> drag = drag_of(simulate(plane_scenario("tdpa")));
   ASSERT_GT(drag.size(), 4000U);
   EXPECT_NEAR(drag.back().tip_place.x, 25e-3, 1e-6);
-  const auto strength = [](const RunTick& tick) {
+  const auto strength = [](const judge::RunTick& tick) {
     return tick.contact_force / (0.06 * std::pow(std::max(0.5, tick.tip * 1e3), 1.5));
   };
   const auto hardest = std::max_element(
-      drag.begin() + 500, drag.end() - 500, [&](const RunTick& a, const RunTick& b) {
+      drag.begin() + 500, drag.end() - 500, [&](const judge::RunTick& a, const judge::RunTick& b) {
         return strength(a) < strength(b);
       });
   EXPECT_NEAR(hardest->tip_place.x, 10e-3, 2e-3);
@@ -82,7 +82,7 @@ TEST(PlaneTest, AStageThatCannotDragStaysAndTheSessionGoesOn) {
   scenario.tissue.can_drag = false;
   const RunResult result = simulate(scenario);
   EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Completed);
-  for (const RunTick& tick : drag_of(result)) {
+  for (const judge::RunTick& tick : drag_of(result)) {
     ASSERT_NEAR(tick.tip_place.x, -5e-3, 1e-6) << "it tore at the tissue";
   }
   EXPECT_NEAR(distance(result.ticks.back().tip_place, kSiteA), 0, 1e-6) << "free again, it follows";
