@@ -22,8 +22,8 @@ struct Asked {
 /// Texts of the reports that the programs of a session wrote; empty: absent. What they would have
 /// said is then taken from the session files where these know it, else null.
 struct ProgramReports {
-  std::string surgeon;  ///< palp.site/1
-  std::string patient;  ///< palp.site/1
+  std::string surgeon;  ///< palp.site/2
+  std::string patient;  ///< palp.site/2
   std::string relay;    ///< palp.relay/1
 };
 

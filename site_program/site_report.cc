@@ -65,7 +65,7 @@ std::string to_json(const SiteReport& report) {
   const io::LoopStats& loop = report.loop;
   const LinkHealth& link = report.link;
   Json json;
-  json["schema"] = "palp.site/1";
+  json["schema"] = "palp.site/2";
   json["site"] = report.site;
   json["outcome"] = report.exit_status.outcome;
   json["reason"] = report.exit_status.reason;

@@ -28,7 +28,7 @@ class RoundTrips {
   std::optional<Duration> least_;
 };
 
-/// The account of a site's run, for scripts (schema palp.site/1).
+/// The account of a site's run, for scripts (schema palp.site/2).
 struct SiteReport {
   std::string site;  ///< "surgeon" or "patient"
   ExitStatus exit_status{config::ExitCode::CannotOpen, "cannot start", ""};

@@ -102,7 +102,7 @@ TEST(DemoReportTest, TakesWhatTheProgramsDidNotSayFromTheSessionFiles) {
 
 TEST(DemoReportTest, ReportsOfTheProgramsOutrankTheFiles) {
   const auto json =
-      report({.surgeon = R"({"schema":"palp.site/1","ticks":7,"outcome":"done","missed_ticks":3,
+      report({.surgeon = R"({"schema":"palp.site/2","ticks":7,"outcome":"done","missed_ticks":3,
                      "round_trip_p50_ms":19.5})",
               .patient = R"({"records_dropped":9})",
               .relay = R"({"up":{"jitter_ms":0.5,"sent":100,"lost":1},"down":{"received":99}})"},

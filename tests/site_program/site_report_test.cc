@@ -46,7 +46,7 @@ TEST(SiteReportTest, HasTheKeysThatScriptsRelyOn) {
                           "sessions"}) {
     EXPECT_TRUE(report.contains(key)) << key;
   }
-  EXPECT_EQ(report["schema"], "palp.site/1");
+  EXPECT_EQ(report["schema"], "palp.site/2");
   EXPECT_THAT(to_json({}), testing::StartsWith("{\n  \"schema\""));
   for (const char* key : {"malformed", "foreign", "replayed", "too_old", "forged"}) {
     EXPECT_TRUE(report["rejected"].contains(key)) << key;

@@ -43,7 +43,7 @@ class SessionTest : public ::testing::Test {
   void expect_sound_file(const std::string& site) const {
     const nlohmann::json account = report(path(site + ".json"));
     ASSERT_TRUE(account.is_object()) << site;
-    EXPECT_EQ(account["schema"], "palp.site/1");
+    EXPECT_EQ(account["schema"], "palp.site/2");
     EXPECT_EQ(account["site"], site);
     EXPECT_EQ(account["exit_code"], 0);
     EXPECT_EQ(account["records_dropped"], 0);
