@@ -74,6 +74,7 @@ SupervisorInput changed(SupervisorInput in, const auto& change) {
 }
 
 /// One list: the table of the supervisor's states.
+// NOLINTNEXTLINE(readability-function-size): a table
 std::vector<Arrow> arrows() {
   using S = SiteState;
   const auto peer = [](S state) {

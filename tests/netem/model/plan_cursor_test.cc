@@ -69,6 +69,22 @@ TEST(PlanCursorTest, WhoLooksSeldomMissesNothing) {
   }
 }
 
+TEST(PlanCursorTest, ALawFromOutsideHoldsUntilARoundBringsOneOfItsOwn) {
+  constexpr std::uint64_t kOutside = 1000;
+  PathPlan rounds;
+  rounds.changes.push_back({.at = milliseconds{10}, .kind = Change::Kind::Set});
+  rounds.changes.push_back({.at = milliseconds{20}, .kind = Change::Kind::Blackout});
+  rounds.loop = milliseconds{40};
+  PlanCursor cursor{rounds, kStart};
+  cursor.pass(kStart + milliseconds{15}, [](const PreparedChange&, TimePoint) {});
+  const auto foreseen = [&](int ms) {
+    return cursor.law_number(kStart + milliseconds{ms}, kOutside);
+  };
+  EXPECT_EQ(foreseen(45), kOutside);
+  EXPECT_EQ(foreseen(50), 1U);
+  EXPECT_EQ(foreseen(85), 1U) << "a round later, before its own law";
+}
+
 TEST(PlanCursorTest, OnlyLawsArePreparedAndNumbered) {
   EXPECT_EQ(prepare({.kind = Change::Kind::Stall}).law, nullptr);
   EXPECT_NE(prepare({.kind = Change::Kind::Set}).law, nullptr);
