@@ -130,11 +130,11 @@ std::string batch_report(const Plan& plan,
   return json.dump(2) + "\n";
 }
 
-std::string batch_summary(const Plan& plan,
-                          const std::vector<CaseResult>& results,
-                          const BatchAccount& account) {
+namespace {
+
+/// What was run, and the head of the table of metrics.
+std::string summary_head(const Plan& plan, const std::vector<CaseResult>& results) {
   std::array<char, 240> line{};
-  std::string text;
   std::snprintf(line.data(),
                 line.size(),
                 "set %s, %zu cases, seed %llu, coupling %s, tissue %s: %llu unstable\n"
@@ -150,7 +150,16 @@ std::string batch_summary(const Plan& plan,
                 "p95",
                 "max",
                 "undefined");
-  text += line.data();
+  return line.data();
+}
+
+}  // namespace
+
+std::string batch_summary(const Plan& plan,
+                          const std::vector<CaseResult>& results,
+                          const BatchAccount& account) {
+  std::array<char, 240> line{};
+  std::string text = summary_head(plan, results);
   const auto table = metric_table();
   double virtual_span = 0;
   for (const CaseResult& result : results) virtual_span += result.virtual_span;

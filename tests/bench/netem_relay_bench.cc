@@ -360,6 +360,16 @@ void hold(int rounds, Duration span) {
   }
 }
 
+/// What the relay has decided since the last call; `epoch`: of its clock, since 1970.
+void take_decisions(netem::Relay& relay, Duration epoch, std::vector<Duration>& decided) {
+  netem::RecordedDecision told;
+  while (relay.recording.decisions.try_dequeue(told)) {
+    if (told.copies > 0) decided.push_back(told.decision.released_at.time_since_epoch() + epoch);
+  }
+  netem::CapturedDatagram seen;
+  while (relay.recording.datagrams.try_dequeue(seen)) continue;
+}
+
 /// Whether each message of a trace comes when the trace says: from the kernel's stamp at the relay,
 /// which is what its decision counts from, to the kernel's stamp at the receiver.
 void replay(const std::string& name) {
@@ -383,14 +393,6 @@ void replay(const std::string& name) {
   std::vector<Duration> decided;  // since 1970
   decided.reserve(trace.points.size());
   const Duration epoch = now_on(CLOCK_REALTIME) - now_on(CLOCK_MONOTONIC);
-  const auto take_decisions = [&] {
-    netem::RecordedDecision told;
-    while (relay.recording.decisions.try_dequeue(told)) {
-      if (told.copies > 0) decided.push_back(told.decision.released_at.time_since_epoch() + epoch);
-    }
-    netem::CapturedDatagram seen;
-    while (relay.recording.datagrams.try_dequeue(seen)) continue;
-  };
   sender.connect(relay.listening_on());
   std::thread relaying{[&] {
     while (!stop) relay.serve(std::chrono::milliseconds{50});
@@ -402,7 +404,7 @@ void replay(const std::string& name) {
     sent = true;
   }};
   while (!sent) {
-    take_decisions();
+    take_decisions(relay, epoch, decided);
     std::this_thread::sleep_for(std::chrono::seconds{1});
   }
   sending.join();
@@ -410,7 +412,7 @@ void replay(const std::string& name) {
   stop = true;
   receiver.join();
   relaying.join();
-  take_decisions();
+  take_decisions(relay, epoch, decided);
   std::vector<double> off;
   for (std::size_t i = 0; i < std::min(arrivals.stamps.size(), decided.size()); ++i) {
     off.push_back(std::abs(seconds(arrivals.stamps[i] - decided[i])) * 1e6);
