@@ -82,6 +82,26 @@ std::uint64_t unstable_count(const std::vector<CaseResult>& results) {
       std::count_if(results.begin(), results.end(), [](const auto& r) { return r.unstable; }));
 }
 
+std::string metric_rows(const std::vector<CaseResult>& results) {
+  std::array<char, 240> line{};
+  std::string text;
+  const auto table = metric_table();
+  for (std::size_t metric = 0; metric < table.size(); ++metric) {
+    const Spread spread = spread_of(results, metric);
+    if (spread.undefined == results.size()) continue;
+    std::snprintf(line.data(),
+                  line.size(),
+                  "%-26s %10.4f %10.4f %10.4f %9llu\n",
+                  std::string{table[metric].name}.c_str(),
+                  spread.p50,
+                  spread.p95,
+                  spread.max,
+                  static_cast<unsigned long long>(spread.undefined));
+    text += line.data();
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string batch_report(const Plan& plan,
@@ -151,22 +171,9 @@ std::string batch_summary(const Plan& plan,
                 "max",
                 "undefined");
   text += line.data();
-  const auto table = metric_table();
+  text += metric_rows(results);
   double virtual_span = 0;
   for (const CaseResult& result : results) virtual_span += result.virtual_span;
-  for (std::size_t metric = 0; metric < table.size(); ++metric) {
-    const Spread spread = spread_of(results, metric);
-    if (spread.undefined == results.size()) continue;
-    std::snprintf(line.data(),
-                  line.size(),
-                  "%-26s %10.4f %10.4f %10.4f %9llu\n",
-                  std::string{table[metric].name}.c_str(),
-                  spread.p50,
-                  spread.p95,
-                  spread.max,
-                  static_cast<unsigned long long>(spread.undefined));
-    text += line.data();
-  }
   if (plan.name == "inc") {
     std::snprintf(line.data(),
                   line.size(),
