@@ -63,10 +63,9 @@ struct MotionAnswer {
 /// keeps that surface and what hangs on it. Thread: rt. A value.
 class MotionGate {
  public:
-  /// `period` [s] of the calls of feel().
   explicit MotionGate(const MotionGateConfig& config,
                       const ForceSensorFacts& sensor = {},
-                      double period = 1e-3) noexcept
+                      double period = 1e-3) noexcept  ///< [s], of the calls of feel()
       : config_{config},
         co_filter_{sensor.pole, period},
         plane_{config.plane},

@@ -356,9 +356,8 @@ void Link::synchronise(TimePoint now) noexcept {
 
 Duration Link::gap(TimePoint now) const noexcept {
   if (session_id_ == 0) return Duration{0};
-  return std::max(
-      Duration{0},
-      now - (session_state_.heard ? session_state_.newest_arrived_at : session_state_.began_at));
+  const SessionState& state = session_state_;
+  return std::max(Duration{0}, now - (state.heard ? state.newest_arrived_at : state.began_at));
 }
 
 void Link::warm_up() noexcept {

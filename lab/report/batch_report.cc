@@ -82,6 +82,26 @@ std::uint64_t unstable_count(const std::vector<CaseResult>& results) {
       std::count_if(results.begin(), results.end(), [](const auto& r) { return r.unstable; }));
 }
 
+std::string metric_rows(const std::vector<CaseResult>& results) {
+  std::array<char, 240> line{};
+  std::string text;
+  const auto table = metric_table();
+  for (std::size_t metric = 0; metric < table.size(); ++metric) {
+    const Spread spread = spread_of(results, metric);
+    if (spread.undefined == results.size()) continue;
+    std::snprintf(line.data(),
+                  line.size(),
+                  "%-26s %10.4f %10.4f %10.4f %9llu\n",
+                  std::string{table[metric].name}.c_str(),
+                  spread.p50,
+                  spread.p95,
+                  spread.max,
+                  static_cast<unsigned long long>(spread.undefined));
+    text += line.data();
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string batch_report(const Plan& plan,
@@ -130,11 +150,11 @@ std::string batch_report(const Plan& plan,
   return json.dump(2) + "\n";
 }
 
-namespace {
-
-/// What was run, and the head of the table of metrics.
-std::string summary_head(const Plan& plan, const std::vector<CaseResult>& results) {
+std::string batch_summary(const Plan& plan,
+                          const std::vector<CaseResult>& results,
+                          const BatchAccount& account) {
   std::array<char, 240> line{};
+  std::string text;
   std::snprintf(line.data(),
                 line.size(),
                 "set %s, %zu cases, seed %llu, coupling %s, tissue %s: %llu unstable\n"
@@ -150,32 +170,10 @@ std::string summary_head(const Plan& plan, const std::vector<CaseResult>& result
                 "p95",
                 "max",
                 "undefined");
-  return line.data();
-}
-
-}  // namespace
-
-std::string batch_summary(const Plan& plan,
-                          const std::vector<CaseResult>& results,
-                          const BatchAccount& account) {
-  std::array<char, 240> line{};
-  std::string text = summary_head(plan, results);
-  const auto table = metric_table();
+  text += line.data();
+  text += metric_rows(results);
   double virtual_span = 0;
   for (const CaseResult& result : results) virtual_span += result.virtual_span;
-  for (std::size_t metric = 0; metric < table.size(); ++metric) {
-    const Spread spread = spread_of(results, metric);
-    if (spread.undefined == results.size()) continue;
-    std::snprintf(line.data(),
-                  line.size(),
-                  "%-26s %10.4f %10.4f %10.4f %9llu\n",
-                  std::string{table[metric].name}.c_str(),
-                  spread.p50,
-                  spread.p95,
-                  spread.max,
-                  static_cast<unsigned long long>(spread.undefined));
-    text += line.data();
-  }
   if (plan.name == "inc") {
     std::snprintf(line.data(),
                   line.size(),

@@ -41,7 +41,7 @@ void telegrams(int rounds) {
   telegram.hold_us = 500;
   telegram.newest_number = 100'000;
   telegram.before_newest = ~0U;
-  telegram.telegram.site = {SiteState::Engaged, 3, 0.01, {}};
+  telegram.telegram.site = {SiteState::Engaged, 3, {.x = 0.01, .y = 0}, {}};
   telegram.telegram.site.depth = {.number = 2, .depth = 0.01, .hash = 0.07};
   telegram.older_count = 2;
   telegram.older.fill({.position = 0.001, .velocity = 0.02, .force = 0.3, .payload = {}});
@@ -69,8 +69,10 @@ void telegrams(int rounds) {
 namespace palp::record {
 
 void records(int rounds) {
-  SiteTick tick{
-      .at = TimePoint{}, .state = SiteState::Engaged, .epoch = 3, .position = 1e-3, .place = {}};
+  SiteTick tick;
+  tick.state = SiteState::Engaged;
+  tick.epoch = 3;
+  tick.position = 1e-3;
   tick.velocity = tick.force = tick.command = 0.1;
   tick.round_trip = Duration{20'000'000};
   tick.sent = {.position = 1e-3, .velocity = 0.5, .force = 0.2, .payload = {}};
@@ -86,7 +88,8 @@ void records(int rounds) {
   status.health.state = LinkState::Live;
   status.health.sent = status.health.accepted = 100'000;
   status.health.peer_clock.emplace();
-  DepthEstimate estimate{.number = 1};
+  DepthEstimate estimate;
+  estimate.number = 1;
   estimate.depth = estimate.hash = 0.01;
   const std::array<std::pair<const char*, Record>, 6> all{
       {{"tick", tick},

@@ -374,10 +374,7 @@ void take_decisions(netem::Relay& relay, Duration epoch, std::vector<Duration>& 
 /// which is what its decision counts from, to the kernel's stamp at the receiver.
 void replay(const std::string& name) {
   const auto text = netem::read_data_file(name);
-  if (!text) {
-    std::printf("%s\n", text.error().text.c_str());
-    return;
-  }
+  if (!text) return static_cast<void>(std::printf("%s\n", text.error().text.c_str()));
   const netem::DelayTrace trace = *netem::parse_delay_trace(name, *text);
   const netem::PathPlan plan{.impairment = *netem::parse_impairment("trace " + name)};
   Socket sender;
@@ -414,9 +411,8 @@ void replay(const std::string& name) {
   relaying.join();
   take_decisions(relay, epoch, decided);
   std::vector<double> off;
-  for (std::size_t i = 0; i < std::min(arrivals.stamps.size(), decided.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(arrivals.stamps.size(), decided.size()); ++i)
     off.push_back(std::abs(seconds(arrivals.stamps[i] - decided[i])) * 1e6);
-  }
   std::printf(
       "%s: sent %zu, decided %zu, arrived %zu; error p50 %.1f, p99 %.1f, p99.9 "
       "%.1f us (target of p99: 60)\n",

@@ -6,7 +6,8 @@ namespace palp::judge {
 namespace {
 
 TEST(DepthStatementTest, AFoundDepthWithAnInterval) {
-  const DepthStatement all = statement_of({.verdict = DepthVerdict::Found,
+  const DepthStatement all = statement_of({.place = {},
+                                           .verdict = DepthVerdict::Found,
                                            .depth = 0.010,
                                            .depth_stddev = 0.001,
                                            .depth_low = 0.008,
@@ -21,8 +22,11 @@ TEST(DepthStatementTest, AFoundDepthWithAnInterval) {
 }
 
 TEST(DepthStatementTest, WithoutErrorBarsThereIsNoInterval) {
-  const DepthStatement bare = statement_of(
-      {.verdict = DepthVerdict::Found, .depth = 0.010, .depth_low = 0.010, .depth_high = 0.010});
+  const DepthStatement bare = statement_of({.place = {},
+                                            .verdict = DepthVerdict::Found,
+                                            .depth = 0.010,
+                                            .depth_low = 0.010,
+                                            .depth_high = 0.010});
   EXPECT_EQ(bare.depth, 0.010);
   EXPECT_FALSE(bare.stddev);
   EXPECT_FALSE(bare.low);
@@ -30,15 +34,17 @@ TEST(DepthStatementTest, WithoutErrorBarsThereIsNoInterval) {
 }
 
 TEST(DepthStatementTest, WithoutAnInclusionOnlyWhatIsExcluded) {
-  const DepthStatement none = statement_of({.verdict = DepthVerdict::None, .depth_low = 0.012});
+  const DepthStatement none =
+      statement_of({.place = {}, .verdict = DepthVerdict::None, .depth_low = 0.012});
   EXPECT_FALSE(none.depth);
   EXPECT_FALSE(none.low);
   EXPECT_EQ(none.excluded, 0.012);
-  EXPECT_FALSE(statement_of({.verdict = DepthVerdict::None}).excluded);
+  EXPECT_FALSE(statement_of({.place = {}, .verdict = DepthVerdict::None}).excluded);
 }
 
 TEST(DepthStatementTest, WhatIsInvalidHasNoNumbers) {
-  const DepthStatement invalid = statement_of({.verdict = DepthVerdict::Invalid,
+  const DepthStatement invalid = statement_of({.place = {},
+                                               .verdict = DepthVerdict::Invalid,
                                                .depth = 0.010,
                                                .depth_stddev = 0.001,
                                                .depth_low = 0.008,

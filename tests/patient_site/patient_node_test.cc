@@ -357,6 +357,13 @@ TEST(PatientNodeTest, RefusesToEngageInTissueAndWalksOut) {
   EXPECT_EQ(world.status().state, SiteState::Engaged);
 }
 
+bool noted(const World& world, NoteCode code) {
+  for (const Note& note : world.recorder.all<Note>()) {
+    if (note.code == static_cast<std::uint16_t>(code)) return true;
+  }
+  return false;
+}
+
 TEST(PatientNodeTest, ALawThatGivesNoNumberMovesNothing) {
   World world;
   world.engage();
@@ -365,11 +372,7 @@ TEST(PatientNodeTest, ALawThatGivesNoNumberMovesNothing) {
   world.law = coupling::PatientCoupling{coupling::DirectPatient{broken}};
   world.run(milliseconds{100});
   EXPECT_NEAR(world.plant.truth().position, -10e-3, 10e-6);
-  bool noted = false;
-  for (const Note& note : world.recorder.all<Note>()) {
-    noted |= note.code == static_cast<std::uint16_t>(NoteCode::NotFinite);
-  }
-  EXPECT_TRUE(noted);
+  EXPECT_TRUE(noted(world, NoteCode::NotFinite));
 }
 
 TEST(PatientNodeTest, ChangesThePlaceWithTheSurgeon) {
@@ -379,13 +382,6 @@ TEST(PatientNodeTest, ChangesThePlaceWithTheSurgeon) {
   world.run(milliseconds{300});
   EXPECT_NEAR(distance(world.status().place, {10e-3, -4e-3}), 0, 1e-8);
   EXPECT_EQ(world.status().place_refused, NoteCode::None);
-}
-
-bool noted(const World& world, NoteCode code) {
-  for (const Note& note : world.recorder.all<Note>()) {
-    if (note.code == static_cast<std::uint16_t>(code)) return true;
-  }
-  return false;
 }
 
 TEST(PatientNodeTest, AStageThatCannotDragSaysSo) {

@@ -51,9 +51,7 @@ void set_option(udp::socket& socket, int level, int name, int value) noexcept {
 
 Endpoint found(const HostAndPort& place) {
   const Result<Endpoint> endpoint = resolve(place);
-  if (!endpoint) {
-    throw std::runtime_error{endpoint.error().text};
-  }
+  if (!endpoint) throw std::runtime_error{endpoint.error().text};
   return *endpoint;
 }
 

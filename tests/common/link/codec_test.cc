@@ -174,11 +174,12 @@ struct Border {
   double limit;
 };
 
-TEST(CodecTest, EveryNumberHasItsLimitAndMustBeFinite) {
-  const auto model = [](WireTelegram& wire) -> ModelPayload& {
-    return wire.telegram.port.payload.emplace<ModelPayload>();
-  };
-  const std::vector<Border> borders{
+ModelPayload& model_in(WireTelegram& wire) {
+  return wire.telegram.port.payload.emplace<ModelPayload>();
+}
+
+std::vector<Border> borders() {
+  return {
       {"position", [](auto& w, double x) { w.telegram.port.position = x; }, message::kLengthMax},
       {"velocity", [](auto& w, double x) { w.telegram.port.velocity = x; }, message::kSpeedMax},
       {"force", [](auto& w, double x) { w.telegram.port.force = x; }, message::kForceMax},
@@ -206,28 +207,31 @@ TEST(CodecTest, EveryNumberHasItsLimitAndMustBeFinite) {
       {"energy in",
        [](auto& w, double x) { w.telegram.port.payload = TdpaPayload{x}; },
        message::kSumMax},
-      {"c1", [&](auto& w, double x) { model(w).c[0] = x; }, message::kForceMax},
-      {"c3", [&](auto& w, double x) { model(w).c[2] = x; }, message::kForceMax},
-      {"surface", [&](auto& w, double x) { model(w).surface = x; }, message::kLengthMax},
-      {"depth_max", [&](auto& w, double x) { model(w).depth_max = x; }, message::kLengthMax},
-      {"residual", [&](auto& w, double x) { model(w).residual = x; }, message::kForceMax},
-      {"c4", [&](auto& w, double x) { model(w).c[3] = x; }, message::kForceMax},
-      {"c5", [&](auto& w, double x) { model(w).c[4] = x; }, message::kForceMax},
-      {"swing", [&](auto& w, double x) { model(w).swing = x; }, message::kLengthMax},
+      {"c1", [](auto& w, double x) { model_in(w).c[0] = x; }, message::kForceMax},
+      {"c3", [](auto& w, double x) { model_in(w).c[2] = x; }, message::kForceMax},
+      {"surface", [](auto& w, double x) { model_in(w).surface = x; }, message::kLengthMax},
+      {"depth_max", [](auto& w, double x) { model_in(w).depth_max = x; }, message::kLengthMax},
+      {"residual", [](auto& w, double x) { model_in(w).residual = x; }, message::kForceMax},
+      {"c4", [](auto& w, double x) { model_in(w).c[3] = x; }, message::kForceMax},
+      {"c5", [](auto& w, double x) { model_in(w).c[4] = x; }, message::kForceMax},
+      {"swing", [](auto& w, double x) { model_in(w).swing = x; }, message::kLengthMax},
       {"quadrature",
-       [&](auto& w, double x) { model(w).swing_quadrature = x; },
+       [](auto& w, double x) { model_in(w).swing_quadrature = x; },
        message::kLengthMax},
-      {"swing rate", [&](auto& w, double x) { model(w).swing_rate = x; }, message::kSpeedMax},
-      {"relaxing fast", [&](auto& w, double x) { model(w).relaxing[0] = x; }, message::kForceMax},
-      {"relaxing slow", [&](auto& w, double x) { model(w).relaxing[1] = x; }, message::kForceMax},
+      {"swing rate", [](auto& w, double x) { model_in(w).swing_rate = x; }, message::kSpeedMax},
+      {"relaxing fast", [](auto& w, double x) { model_in(w).relaxing[0] = x; }, message::kForceMax},
+      {"relaxing slow", [](auto& w, double x) { model_in(w).relaxing[1] = x; }, message::kForceMax},
       {"older",
        [](auto& w, double x) { w.older_count = 1, w.older[0].force = x; },
        message::kForceMax},
   };
+}
+
+TEST(CodecTest, EveryNumberHasItsLimitAndMustBeFinite) {
   WireCodec wire_codec;
   RawCodec raw;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  for (const Border& border : borders) {
+  for (const Border& border : borders()) {
     for (Codec* codec : std::initializer_list<Codec*>{&wire_codec, &raw}) {
       WireTelegram wire;
       wire.telegram.site.depth.number = 1;
