@@ -46,6 +46,9 @@ Answer decode_view(std::span<const std::byte> payload, TimePoint /*at*/) noexcep
           .record = {}};
 }
 
+/// In files before protocol 4: a contact sample whose tip had passed a filter.
+constexpr std::string_view kOldContact = "ContactSample";
+
 /// Whether `name` is what either site calls this message.
 template <class Message>
 bool is_named(std::string_view name) noexcept {
@@ -76,6 +79,7 @@ Answer SessionDecoder::decode(std::string_view schema,
       if (is_named<LinkHeard>(name)) return decode_record<LinkHeard>(payload, at);
       if (is_named<UserAsked>(name)) return decode_record<UserAsked>(payload, at);
       if (is_named<DevicesTold>(name)) return decode_record<DevicesTold>(payload, at);
+      if (name == kOldContact) return {.verdict = Verdict::Old, .record = {}};
     }
   }
   return {.verdict = Verdict::Unknown, .record = {}};

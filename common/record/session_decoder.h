@@ -14,7 +14,8 @@ class SessionDecoder {
  public:
   enum class Verdict : std::uint8_t {
     Decoded,
-    View,       ///< a sound view: derived, so there is no record of it
+    View,       ///< derived, so there is no record of it
+    Old,        ///< of files before protocol 4, and no record any more
     Unknown,    ///< a schema of somebody else
     Malformed,  ///< bytes or values that no encoder of ours makes
   };

@@ -53,10 +53,10 @@ std::vector<Record> records() {
           ContactSample{.at = at, .position = 1e-3, .force = 0.2, .place = {}},
           estimate,
           depth,
-          HandReading{.at = at, .position = 1e-3, .script_phase = 2},
-          StageReading{.at = at, .position = 1e-3},
+          HandReading{.at = at, .position = 1e-3, .place = {}, .script_phase = 2},
+          StageReading{.at = at, .position = 1e-3, .place = {}},
           ForceReading{.at = at, .fresh = true, .force = 0.2},
-          LinkHeard{.at = at, .state = LinkState::Live, .session_id = 5},
+          LinkHeard{.at = at, .state = LinkState::Live, .session_id = 5, .peer_place = {}},
           UserAsked{.at = at, .command = {.emergency_stop = true}},
           DevicesTold{.at = at, .facts = {HandFacts{}, StageFacts{}, ForceSensorFacts{}}}};
 }

@@ -25,12 +25,12 @@ TEST(CheckTest, DamagedChunkIsNamedWithItsPlace) {
   EXPECT_NE(first_fault(file).value().find("at byte"), std::string::npos);
 }
 
-/// A closed, sound container whose messages are `payloads` of ContactSample.
+/// A closed, sound container whose messages are `payloads` of ContactReading.
 std::vector<std::byte> contact_file(const std::vector<std::vector<std::byte>>& payloads,
                                     std::uint32_t sequence_step) {
   record::MemorySink sink;
   record::McapWriter writer{sink, {}};
-  const auto schema = writer.add_schema("palp.session.ContactSample", "protobuf", {});
+  const auto schema = writer.add_schema("palp.session.ContactReading", "protobuf", {});
   const auto channel = writer.add_channel(schema, "patient/contact", "protobuf");
   std::uint32_t sequence = 0;
   for (const auto& payload : payloads) {

@@ -263,13 +263,16 @@ TEST(SessionTest, TheLateralOfAnOldFileIsX) {
   const auto place = [&](std::string_view schema, unsigned number) {
     const Record record = decoder.decode(schema, one_double(number, 0.02), at_ms(0)).record;
     if (const auto* tick = std::get_if<SiteTick>(&record)) return tick->place;
-    if (const auto* contact = std::get_if<ContactSample>(&record)) return contact->place;
     return std::get<DepthEstimate>(record).place;
   };
   EXPECT_EQ(place("palp.session.SurgeonTick", 6), kSiteB);
   EXPECT_EQ(place("palp.session.PatientTick", 6), kSiteB);
-  EXPECT_EQ(place("palp.session.ContactSample", 3), kSiteB);
   EXPECT_EQ(place("palp.session.DepthEstimate", 4), kSiteB);
+}
+
+TEST(SessionTest, AContactSampleOfAnOldFileIsPassedOver) {
+  const auto verdict = SessionDecoder::decode("palp.session.ContactSample", one_double(1, 0), {});
+  EXPECT_EQ(verdict.verdict, SessionDecoder::Verdict::Old);
 }
 
 RC_GTEST_PROP(SessionTest, AnyBytesAreDecodedOrRefusedNeverTrusted, ()) {
