@@ -141,6 +141,8 @@ MotionAnswer MotionGate::pass(const MotionRequest& request, Duration dt) noexcep
   if (request.state == SiteState::Stopped) {
     hold();
     command_ = finite_or(request.tip, command_);
+    // Whatever moved it meanwhile: after a reset it sets out from where it stands.
+    if (is_finite(request.stands)) plane_.begin(request.stands);
     answer.halt = true;
   } else if (request.contact_force > config_.force_limit) {
     const double excess = request.contact_force - config_.force_limit;

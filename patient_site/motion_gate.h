@@ -41,6 +41,7 @@ struct MotionRequest {
   Place place{};           ///< place asked for
   double tip{};            ///< [m], of the stage
   double contact_force{};  ///< [N]
+  Place stands{};          ///< of the stage, in the plane
 };
 
 struct MotionAnswer {

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palp::patient {
 namespace {
 
 using record::NoteCode;
-
-constexpr double kContactSteps = 2;  // of the sensor: no fewer are felt as contact
 
 MotionGateConfig within_devices(MotionGateConfig gate, const PatientDevices& devices) noexcept {
   const StageFacts& stage = devices.stage;
@@ -22,8 +21,10 @@ MotionGateConfig within_devices(MotionGateConfig gate, const PatientDevices& dev
   gate.speed_max = std::min(gate.speed_max, stage.speed);
   gate.speed_near = std::min(gate.speed_near, stage.speed);
   gate.speed_resync = std::min(gate.speed_resync, stage.speed);
+  gate.retreat_speed = std::min(gate.retreat_speed, stage.speed / 3);  // it triples
+  gate.retract_speed = std::min(gate.retract_speed, stage.speed);
   gate.acceleration_max = std::min(gate.acceleration_max, stage.acceleration);
-  gate.contact_force = std::max(gate.contact_force, kContactSteps * devices.sensor.step);
+  gate.contact_force = std::max(gate.contact_force, felt_as_contact(devices.sensor));
   return gate;
 }
 
@@ -32,7 +33,7 @@ MotionGateConfig within_devices(MotionGateConfig gate, const PatientDevices& dev
 DeviceWatchConfig allowing_for(DeviceWatchConfig watch, const ForceSensorFacts& sensor) noexcept {
   constexpr double kSoftTissue = 40;  // [N/m], less than the paper's where it is barely touched
   watch.sensor_travel = std::max(watch.sensor_travel, sensor.step / kSoftTissue);
-  watch.contact_force = std::max(watch.contact_force, kContactSteps * sensor.step);
+  watch.contact_force = std::max(watch.contact_force, felt_as_contact(sensor));
   return watch;
 }
 
@@ -67,7 +68,7 @@ void PatientControl::take_stage(const StageState& read) noexcept {
   now_.velocity = read.velocity;
   now_.place = read.place;
   stage_sampled_at_ = read.sampled_at;
-  if (!begun_) gate_.begin(read.position, read.place);
+  if (!std::exchange(gate_begun_, true)) gate_.begin(read.position, read.place);
 }
 
 void PatientControl::take_force(const std::optional<ForceSample>& read) noexcept {
@@ -147,11 +148,12 @@ MotionAnswer PatientControl::limit(double target, const Place& place, Duration d
                                           .position = target,
                                           .place = place,
                                           .tip = now_.position,
-                                          .contact_force = now_.contact_force},
+                                          .contact_force = now_.contact_force,
+                                          .stands = now_.place},
                                          dt);
   if (answer.note != NoteCode::None) account_.note(answer.note, answer.detail);
   if (answer.place_note != NoteCode::None) {
-    account_.note(answer.place_note, distance(place, answer.place));
+    account_.note(answer.place_note, is_finite(place) ? distance(place, answer.place) : 0);
   }
   now_.place_refused = answer.place_refused;
   now_.command = answer.position;
@@ -239,12 +241,13 @@ void PatientControl::record_readings(const PatientInputs& in) noexcept {
 }
 
 void PatientControl::give_contact_sample() noexcept {
-  const bool taken = parts_.contact.try_enqueue({.at = now_.at,
-                                                 .position = now_.position,
-                                                 .force = now_.contact_force,
-                                                 .place = now_.place,
-                                                 .position_age = now_.at - stage_sampled_at_,
-                                                 .force_age = now_.at - force_sampled_at_});
+  const bool taken =
+      parts_.contact.try_enqueue({.at = now_.at,
+                                  .position = now_.position,
+                                  .force = now_.contact_force,
+                                  .place = now_.place,
+                                  .position_age = elapsed(stage_sampled_at_, now_.at),
+                                  .force_age = elapsed(force_sampled_at_, now_.at)});
   ++(taken ? now_.contact_samples : now_.contact_samples_lost);
 }
 

@@ -98,6 +98,7 @@ class PatientControl {
   record::SiteAccount account_;
   PatientStatus now_;  ///< of this tick: what is shown, and what one tick leaves to the next
   bool begun_{};
+  bool gate_begun_{};      ///< with the first reading that has numbers
   bool device_faulted_{};  ///< in this tick
   bool stage_was_finite_{true};
   bool force_was_finite_{true};

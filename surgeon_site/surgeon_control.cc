@@ -121,9 +121,9 @@ coupling::SurgeonInput SurgeonControl::law_input(const link::Arrivals& arrived,
   return in;
 }
 
-/// [N] from which the hand presses, and does not only move air: two steps of the peer's sensor.
+/// [N] from which the hand presses, and does not only move air: what the peer's sensor feels.
 double SurgeonControl::pressing_force() const noexcept {
-  return 2 * now_.peer_devices.sensor.value_or(ForceSensorFacts{}).step;
+  return felt_as_contact(now_.peer_devices.sensor.value_or(ForceSensorFacts{}));
 }
 
 SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {

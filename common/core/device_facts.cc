@@ -18,12 +18,12 @@ std::string digits(double value) {
 }
 
 struct Number {
-  const char* name;
-  double value;  ///< [unit]
-  const char* unit;
-  double least;  ///< [unit]
-  double most;   ///< [unit]
-  bool above{};  ///< `least` itself is outside
+  const char* name{};
+  double value{};  ///< [unit]
+  const char* unit{};
+  double least{};  ///< [unit]
+  double most{};   ///< [unit]
+  bool above{};    ///< `least` itself is outside
 };
 
 std::optional<std::string> flaw_in(const char* device, std::initializer_list<Number> numbers) {

@@ -11,15 +11,16 @@ namespace palp {
 
 /// Of a haptic master.
 struct HandFacts {
-  std::uint32_t axes{2};         ///< 1 to 6; the first is that of the force
+  std::uint32_t axes{3};         ///< 1 to 6; the first is that of the force, then x and y
   double force_peak{8.5};        ///< [N], 0.01 to 1000
   double force_continuous{1.4};  ///< [N], 0.01 to the peak; for i^2 t
   double rate{1000};             ///< [Hz], 1 to 100,000; of new readings
 };
 
-/// Of a stage. Travel and speed are those along the normal where nothing else is said.
+/// Of a stage. Travel is that along the normal where nothing else is said, speed and acceleration
+/// are those of each axis.
 struct StageFacts {
-  std::uint32_t axes{2};     ///< 1 to 6
+  std::uint32_t axes{3};     ///< 1 to 6; the first is the normal, then x and y
   double travel_min{-0.2};   ///< [m], -10 to travel_max; + into the tissue
   double travel_max{0.2};    ///< [m], up to 10
   double travel_side{0.25};  ///< [m], 0 to 10; along the surface, to both sides
@@ -39,6 +40,12 @@ struct ForceSensorFacts {
   double rate{1000};    ///< [Hz], 1 to 100,000; of new readings
   double lag{8e-3};     ///< [s], 0 to 10; of a reading behind the force, its pole included
 };
+
+/// [N], no less is felt as contact: two steps of the sensor, and no less than two of the paper's.
+[[nodiscard]] constexpr double felt_as_contact(const ForceSensorFacts& sensor) noexcept {
+  constexpr double kLeast = 0.1;
+  return 2 * sensor.step > kLeast ? 2 * sensor.step : kLeast;
+}
 
 /// What the laws know of the patient's devices.
 struct PatientDevices {

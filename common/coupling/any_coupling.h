@@ -14,8 +14,8 @@
 #include "common/coupling/wave.h"
 
 /// The closed set of laws. To add one: one file pair here, one line in each list below and, where
-/// it sends more than position and force, a payload in core/port_sample.h with its `oneof` member
-/// in proto/link.proto.
+/// it sends more than position and force, a payload in common/message/port_sample.h
+/// (ARCHITECTURE.md, "A coupling").
 namespace palp::coupling {
 
 using SurgeonCoupling = std::variant<DirectSurgeon, WaveSurgeon, TdpaSurgeon, MmtSurgeon>;

@@ -69,7 +69,7 @@ struct UserAsked {
 };
 
 /// Devices as they describe themselves: one's own at the first tick, the peer's when a session
-/// begins.
+/// begins; none when it ends.
 struct DevicesTold {
   TimePoint at{};
   bool of_peer{};

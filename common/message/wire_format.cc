@@ -17,7 +17,11 @@ bool WireReader::skip_field() noexcept {
     std::uint64_t tag = 0;
     std::uint64_t varint = 0;
     std::span<const std::byte> part;
+    const std::size_t before = bytes_.size();
     if (!take_varint(tag, kTagSizeMax) || tag > UINT32_MAX || tag >> 3U == 0) return false;
+    // In more bytes than it needs it may be the tag of a field that is known.
+    const bool longer = before - bytes_.size() > 1 && *(bytes_.data() - 1) == std::byte{0};
+    if (longer) return false;
     switch (tag & 7U) {
       case static_cast<unsigned>(WireType::Varint):
         if (!take_varint(varint)) return false;

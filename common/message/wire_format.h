@@ -96,6 +96,7 @@ class WireReader {
   [[nodiscard]] bool take_part(WireReader& part) noexcept { return take_bytes(part.bytes_); }
 
   /// Steps over a field that nobody here knows, groups of the old syntax included.
+  /// @returns false where it is none, or its tag takes more bytes than it needs.
   [[nodiscard]] bool skip_field() noexcept;
 
  private:

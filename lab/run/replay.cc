@@ -1,14 +1,15 @@
 #include "lab/run/replay.h"
 
+#include <algorithm>
 #include <map>
 #include <memory>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "common/core/number_text.h"
 #include "common/core/spsc_queue.h"
-#include "common/record/notes.h"
 #include "common/record/session_encoder.h"
 #include "common/record/session_reader.h"
 

@@ -292,6 +292,22 @@ TEST(MotionGateTest, AStageThatCannotDragKeepsItsPlaceAndSaysSo) {
   EXPECT_EQ(out.place_refused, NoteCode::None);
 }
 
+TEST(MotionGateTest, AStoppedStageThatWasMovedSetsOutFromWhereItStands) {
+  MotionGate gate = gate_at(-5e-3);
+  const Place moved{30e-3, -10e-3};
+  const MotionAnswer stopped = gate.pass({.state = SiteState::Stopped,
+                                          .position = -5e-3,
+                                          .place = kSiteA,
+                                          .tip = -5e-3,
+                                          .contact_force = 0,
+                                          .stands = moved},
+                                         kTick);
+  EXPECT_TRUE(stopped.halt);
+  const MotionAnswer parked = gate.pass({SiteState::Parked, -5e-3, kSiteA, -5e-3, 0, moved}, kTick);
+  EXPECT_FALSE(parked.halt);
+  EXPECT_EQ(parked.place, moved);
+}
+
 TEST(MotionGateTest, ADragKeepsTheSurfaceAndTheDepthAllowed) {
   MotionGate gate = gate_at(0);
   touch(gate, 0, 0.1);

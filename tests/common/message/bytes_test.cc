@@ -117,6 +117,12 @@ TEST(LogBytesTest, SkipsWhatItDoesNotKnowWhateverItsType) {
   EXPECT_FALSE(read_log(view(std::string{"\x00\x01", 2}), tick));  // field 0
 }
 
+TEST(LogBytesTest, RefusesATagInMoreBytesThanItNeeds) {
+  SiteTick tick;
+  EXPECT_TRUE(read_log(view(std::string{"\x08\x02", 2}), tick));
+  EXPECT_FALSE(read_log(view(std::string{"\x88\x00\x02", 3}), tick));
+}
+
 TEST(LogBytesTest, WhatComesLastCountsAndAPayloadReplacesAnother) {
   SiteTick tick;
   EXPECT_TRUE(read_log(view(std::string{"\x08\x01\x08\x02", 4}), tick));
