@@ -114,7 +114,7 @@ Prepared SessionEncoder::prepare(const TickView& view) noexcept {
 }
 
 void SessionEncoder::store(std::byte* place) const noexcept {
-  std::memcpy(place, bytes_.data(), size_);
+  if (size_ > 0) std::memcpy(place, bytes_.data(), size_);  // a message of zeros has no bytes
 }
 
 }  // namespace palp::record
