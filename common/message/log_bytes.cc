@@ -1,5 +1,7 @@
 #include "common/message/log_bytes.h"
 
+#include <tuple>
+
 #include "common/message/range.h"
 #include "common/message/read_fields.h"
 #include "common/message/write_fields.h"
@@ -26,26 +28,15 @@ bool in_log_range(const Message& message) noexcept {
   return in_range<Form::Log>(message);
 }
 
-/// Makes the three of one message.
-template <class Message>
-struct BytesOf {
-  static constexpr auto kWrite = &write_log<Message>;
-  static constexpr auto kRead = &read_log<Message>;
-  static constexpr auto kInRange = &in_log_range<Message>;
+/// Makes the three of each message.
+template <class List>
+struct BytesOf;
+template <class... Messages>
+struct BytesOf<MessageList<Messages...>> {
+  static constexpr std::tuple kWrite{&write_log<Messages>...};
+  static constexpr std::tuple kRead{&read_log<Messages>...};
+  static constexpr std::tuple kInRange{&in_log_range<Messages>...};
 };
-template struct BytesOf<SiteTick>;
-template struct BytesOf<TickView>;
-template struct BytesOf<Arrived>;
-template struct BytesOf<LinkStatus>;
-template struct BytesOf<Event>;
-template struct BytesOf<ContactSample>;
-template struct BytesOf<DepthEstimate>;
-template struct BytesOf<DepthArrived>;
-template struct BytesOf<HandReading>;
-template struct BytesOf<StageReading>;
-template struct BytesOf<ForceReading>;
-template struct BytesOf<LinkHeard>;
-template struct BytesOf<UserAsked>;
-template struct BytesOf<DevicesTold>;
+template struct BytesOf<LogMessages>;
 
 }  // namespace palp::message

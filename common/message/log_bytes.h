@@ -6,10 +6,28 @@
 #include "common/message/record.h"
 #include "common/message/tick_view.h"
 
-/// The messages of proto/session_log.proto: SiteTick, TickView, Arrived, LinkStatus, Event,
-/// ContactSample, DepthEstimate, DepthArrived. Their instants travel beside them, as stamps of the
+/// The messages of proto/session_log.proto. Their instants travel beside them, as stamps of the
 /// file. Thread: any; allocates nothing.
 namespace palp::message {
+
+template <class... Messages>
+struct MessageList {};
+
+/// All of them: what has bytes and a schema, is decoded, and is held against the .proto.
+using LogMessages = MessageList<SiteTick,
+                                TickView,
+                                Arrived,
+                                LinkStatus,
+                                Event,
+                                ContactSample,
+                                DepthEstimate,
+                                DepthArrived,
+                                HandReading,
+                                StageReading,
+                                ForceReading,
+                                LinkHeard,
+                                UserAsked,
+                                DevicesTold>;
 
 /// Larger than any message of the log.
 inline constexpr std::size_t kLogMessageSizeMax = 1024;  ///< [bytes]

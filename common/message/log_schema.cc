@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <string_view>
+#include <tuple>
 
 #include "common/message/kind.h"
 #include "common/message/text_encoding.h"
@@ -228,25 +229,14 @@ LogSchema log_schema(bool of_patient) {
           .descriptors = file.descriptor_set()};
 }
 
-/// Makes both of one message.
-template <class Message>
-struct SchemaOf {
-  static constexpr auto kName = &log_name<Message>;
-  static constexpr auto kSchema = &log_schema<Message>;
+/// Makes both of each message.
+template <class List>
+struct SchemaOf;
+template <class... Messages>
+struct SchemaOf<MessageList<Messages...>> {
+  static constexpr std::tuple kName{&log_name<Messages>...};
+  static constexpr std::tuple kSchema{&log_schema<Messages>...};
 };
-template struct SchemaOf<SiteTick>;
-template struct SchemaOf<TickView>;
-template struct SchemaOf<Arrived>;
-template struct SchemaOf<LinkStatus>;
-template struct SchemaOf<Event>;
-template struct SchemaOf<ContactSample>;
-template struct SchemaOf<DepthEstimate>;
-template struct SchemaOf<DepthArrived>;
-template struct SchemaOf<HandReading>;
-template struct SchemaOf<StageReading>;
-template struct SchemaOf<ForceReading>;
-template struct SchemaOf<LinkHeard>;
-template struct SchemaOf<UserAsked>;
-template struct SchemaOf<DevicesTold>;
+template struct SchemaOf<LogMessages>;
 
 }  // namespace palp::message

@@ -1,5 +1,7 @@
 #include "common/record/session_decoder.h"
 
+#include <type_traits>
+
 #include "common/message/log_bytes.h"
 #include "common/message/log_schema.h"
 
@@ -40,7 +42,7 @@ Answer decode_event(std::span<const std::byte> payload, TimePoint at) noexcept {
           .record = Note{.at = at, .code = event.code, .detail = event.detail}};
 }
 
-Answer decode_view(std::span<const std::byte> payload, TimePoint /*at*/) noexcept {
+Answer decode_view(std::span<const std::byte> payload) noexcept {
   TickView view;
   return {.verdict = message::read_log(payload, view) ? Verdict::View : Verdict::Malformed,
           .record = {}};
@@ -55,6 +57,32 @@ bool is_named(std::string_view name) noexcept {
   return name == message::log_name<Message>(false) || name == message::log_name<Message>(true);
 }
 
+template <class Message>
+Answer decode_as(std::span<const std::byte> payload, TimePoint at) noexcept {
+  if constexpr (std::is_same_v<Message, Event>)
+    return decode_event(payload, at);
+  else if constexpr (std::is_same_v<Message, TickView>)
+    return decode_view(payload);
+  else
+    return decode_record<Message>(payload, at);
+}
+
+/// As the message of the list that has this name.
+template <class... Messages>
+Answer decode_named(message::MessageList<Messages...> /*list*/,
+                    std::string_view name,
+                    std::span<const std::byte> payload,
+                    TimePoint at) noexcept {
+  Answer answer{.verdict = Verdict::Unknown, .record = {}};
+  const auto try_as = [&]<class Message>(std::type_identity<Message> /*message*/) {
+    if (!is_named<Message>(name)) return false;
+    answer = decode_as<Message>(payload, at);
+    return true;
+  };
+  (void)(try_as(std::type_identity<Messages>{}) || ...);
+  return answer;
+}
+
 }  // namespace
 
 Answer SessionDecoder::decode(std::string_view schema,
@@ -65,21 +93,8 @@ Answer SessionDecoder::decode(std::string_view schema,
     name.remove_prefix(message::kLogPackage.size());
     if (name.starts_with('.')) {
       name.remove_prefix(1);
-      if (is_named<SiteTick>(name)) return decode_record<SiteTick>(payload, at);
-      if (is_named<Arrived>(name)) return decode_record<Arrived>(payload, at);
-      if (is_named<ContactSample>(name)) return decode_record<ContactSample>(payload, at);
-      if (is_named<LinkStatus>(name)) return decode_record<LinkStatus>(payload, at);
-      if (is_named<Event>(name)) return decode_event(payload, at);
-      if (is_named<DepthEstimate>(name)) return decode_record<DepthEstimate>(payload, at);
-      if (is_named<DepthArrived>(name)) return decode_record<DepthArrived>(payload, at);
-      if (is_named<TickView>(name)) return decode_view(payload, at);
-      if (is_named<HandReading>(name)) return decode_record<HandReading>(payload, at);
-      if (is_named<StageReading>(name)) return decode_record<StageReading>(payload, at);
-      if (is_named<ForceReading>(name)) return decode_record<ForceReading>(payload, at);
-      if (is_named<LinkHeard>(name)) return decode_record<LinkHeard>(payload, at);
-      if (is_named<UserAsked>(name)) return decode_record<UserAsked>(payload, at);
-      if (is_named<DevicesTold>(name)) return decode_record<DevicesTold>(payload, at);
       if (name == kOldContact) return {.verdict = Verdict::Old, .record = {}};
+      return decode_named(message::LogMessages{}, name, payload, at);
     }
   }
   return {.verdict = Verdict::Unknown, .record = {}};

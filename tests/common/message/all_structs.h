@@ -47,21 +47,10 @@ void each_struct(auto&& visit) {
 }
 
 /// Those that are messages of the log.
-void each_log_message(auto&& visit) {
-  each_type<SiteTick,
-            Arrived,
-            LinkStatus,
-            ContactSample,
-            DepthEstimate,
-            DepthArrived,
-            HandReading,
-            StageReading,
-            ForceReading,
-            LinkHeard,
-            UserAsked,
-            DevicesTold,
-            TickView,
-            Event>(visit);
+template <class... Messages>
+void each_of(MessageList<Messages...> /*list*/, auto&& visit) {
+  each_type<Messages...>(visit);
 }
+void each_log_message(auto&& visit) { each_of(LogMessages{}, visit); }
 
 }  // namespace palp::message
