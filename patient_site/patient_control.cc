@@ -216,13 +216,9 @@ void PatientControl::write_down(const PatientInputs& in, const PatientOutputs& o
 
 /// The inputs, so that they can be given again.
 void PatientControl::record_readings(const PatientInputs& in) noexcept {
-  if (account_.first_tick()) {
-    const DeviceFacts own{.hand = {}, .stage = devices_.stage, .sensor = devices_.sensor};
-    account_.record(DevicesTold{.at = in.now, .of_peer = false, .facts = own});
-  }
-  if (session_began_) {
-    account_.record(DevicesTold{.at = in.now, .of_peer = true, .facts = in.peer_devices});
-  }
+  account_.devices({.hand = {}, .stage = devices_.stage, .sensor = devices_.sensor},
+                   in.peer_devices,
+                   session_began_);
   account_.user(in.user);
   account_.record(StageReading{.at = in.now,
                                .age = elapsed(in.stage.sampled_at, in.now),

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/core/result.h"
-#include "common/record/session_reader.h"
 #include "common/record/recorder.h"
+#include "common/record/session_reader.h"
 #include "judge/motion.h"
 
 namespace palp::review {

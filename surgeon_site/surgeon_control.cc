@@ -183,13 +183,7 @@ void SurgeonControl::note_script(const ScriptProgress& script) noexcept {
 
 /// The inputs, so that they can be given again.
 void SurgeonControl::record_readings(const SurgeonInputs& in) noexcept {
-  if (account_.first_tick()) {
-    const DeviceFacts own{.hand = facts_, .stage = {}, .sensor = {}};
-    account_.record(DevicesTold{.at = in.now, .of_peer = false, .facts = own});
-  }
-  if (session_began_) {
-    account_.record(DevicesTold{.at = in.now, .of_peer = true, .facts = in.peer_devices});
-  }
+  account_.devices({.hand = facts_, .stage = {}, .sensor = {}}, in.peer_devices, session_began_);
   account_.user(in.user);
   account_.record(HandReading{.at = in.now,
                               .age = elapsed(in.hand.sampled_at, in.now),

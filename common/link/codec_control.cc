@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "common/core/check.h"
+#include "common/message/device_bytes.h"
 #include "proto/link.pb.h"
 
 namespace palp::link {
@@ -31,62 +32,18 @@ bool parse(std::span<const std::byte> bytes, Message& message) {
          message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
 }
 
-/// All fields, so that every Hello is as long as its answer.
-void put(const DeviceFacts& facts, wire::Devices& out) {
-  constexpr HandFacts kNoHand{0, 0, 0, 0};
-  constexpr StageFacts kNoStage{0, 0, 0, 0, 0, 0, 0, 0, false};
-  constexpr ForceSensorFacts kNoSensor{0, 0, 0, 0, 0, 0};
-  const HandFacts hand = facts.hand.value_or(kNoHand);
-  out.set_hand_axes(hand.axes);
-  out.set_hand_force_peak_n(hand.force_peak);
-  out.set_hand_force_continuous_n(hand.force_continuous);
-  out.set_hand_rate_hz(hand.rate);
-  const StageFacts stage = facts.stage.value_or(kNoStage);
-  out.set_stage_axes(stage.axes);
-  out.set_stage_travel_min_m(stage.travel_min);
-  out.set_stage_travel_max_m(stage.travel_max);
-  out.set_stage_travel_side_m(stage.travel_side);
-  out.set_stage_speed_m_per_s(stage.speed);
-  out.set_stage_acceleration_m_per_s2(stage.acceleration);
-  out.set_stage_rate_hz(stage.rate);
-  out.set_stage_lag_s(stage.lag);
-  out.set_stage_drags(stage.drags);
-  const ForceSensorFacts sensor = facts.sensor.value_or(kNoSensor);
-  out.set_sensor_pole_hz(sensor.pole);
-  out.set_sensor_step_n(sensor.step);
-  out.set_sensor_range_n(sensor.range);
-  out.set_sensor_noise_n(sensor.noise);
-  out.set_sensor_rate_hz(sensor.rate);
-  out.set_sensor_lag_s(sensor.lag);
+void put(const DeviceFacts& facts, shared::Devices& out) {
+  std::array<std::byte, message::kDevicesSizeMax> room{};
+  const std::size_t size = message::write_devices(facts, room);
+  const bool read_back = out.ParseFromArray(room.data(), static_cast<int>(size));
+  PALP_CHECK(read_back, "the list is that of the schema");
 }
 
-DeviceFacts facts_of(const wire::Devices& in) {
+/// What protobuf has read is read again; the numbers may be anything.
+DeviceFacts facts_of(const shared::Devices& in) {
   DeviceFacts facts;
-  if (in.hand_axes() != 0) {
-    facts.hand = HandFacts{.axes = in.hand_axes(),
-                           .force_peak = in.hand_force_peak_n(),
-                           .force_continuous = in.hand_force_continuous_n(),
-                           .rate = in.hand_rate_hz()};
-  }
-  if (in.stage_axes() != 0) {
-    facts.stage = StageFacts{.axes = in.stage_axes(),
-                             .travel_min = in.stage_travel_min_m(),
-                             .travel_max = in.stage_travel_max_m(),
-                             .travel_side = in.stage_travel_side_m(),
-                             .speed = in.stage_speed_m_per_s(),
-                             .acceleration = in.stage_acceleration_m_per_s2(),
-                             .rate = in.stage_rate_hz(),
-                             .lag = in.stage_lag_s(),
-                             .drags = in.stage_drags()};
-  }
-  if (in.sensor_rate_hz() != 0) {
-    facts.sensor = ForceSensorFacts{.pole = in.sensor_pole_hz(),
-                                    .step = in.sensor_step_n(),
-                                    .range = in.sensor_range_n(),
-                                    .noise = in.sensor_noise_n(),
-                                    .rate = in.sensor_rate_hz(),
-                                    .lag = in.sensor_lag_s()};
-  }
+  const std::string bytes = in.SerializeAsString();
+  if (!message::read_devices(std::as_bytes(std::span{bytes}), facts)) return {};
   return facts;
 }
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/core/check.h"
-#include "common/message/rehearsed_telegram.h"
+#include "common/message/warm_up_telegrams.h"
 #include "common/message/wire_bytes.h"
 
 namespace palp::link {
@@ -365,7 +365,7 @@ void Link::warm_up() noexcept {
   transport_->warm_up();
   // What the next one repeats and acknowledges has to come into the caches as well.
   const Sent& last = session_state_.history[(session_state_.next_number + kHistory - 1) % kHistory];
-  Telegram telegram = message::rehearsed_telegrams()[session_state_.payload_kind];
+  Telegram telegram = message::warm_up_telegrams()[session_state_.payload_kind];
   telegram.site.epoch = last.epoch;
   const WireTelegram wire = compose(telegram, last.at + config_.period);
   const std::size_t size =

@@ -33,6 +33,7 @@ struct Names {
   std::string_view wire{};         ///< in link.proto
   std::string_view log{};          ///< in session_log.proto
   std::string_view log_patient{};  ///< there, where the patient's has another name
+  std::string_view shared{};       ///< in shared.proto: the same bytes on the wire and in the log
 };
 
 /// The name of a field, of which the unit may differ between the sites.
@@ -68,6 +69,15 @@ struct OnWire {
 };
 template <class Number>
 inline constexpr OnWire<Number> wire{};
+
+/// It is a number of this type on the wire and in the log.
+template <class Number>
+struct Everywhere {
+  using Narrow = Number;
+  static constexpr bool kInLog = true;
+};
+template <class Number>
+inline constexpr Everywhere<Number> narrow{};
 
 /// A whole number in as many bytes as it has, always.
 struct FixedWidth {};
@@ -217,7 +227,7 @@ concept Described = !std::is_same_v<decltype(fields<Struct>), const NoList>;
 template <std::size_t kCount>
 struct Enumeration {
   std::string_view name;
-  std::string_view within;  ///< the message in which it is defined; empty: none
+  std::string_view within;  ///< the message of the log in which it stands; empty: shared.proto
   std::array<std::string_view, kCount> values;
 };
 template <class... Values>
@@ -231,12 +241,12 @@ inline constexpr NoList enumerators{};
 
 /// Calls `visit` with each item of a list, or each choice of a oneof.
 template <class... Items>
-constexpr void each(const std::tuple<Items...>& items, auto&& visit) noexcept {
+constexpr void each(const std::tuple<Items...>& items, auto&& visit) {
   std::apply([&](const auto&... item) { (visit(item), ...); }, items);
 }
 /// The same until one call says false.
 template <class... Items>
-constexpr bool all(const std::tuple<Items...>& items, auto&& visit) noexcept {
+constexpr bool all(const std::tuple<Items...>& items, auto&& visit) {
   return std::apply([&](const auto&... item) { return (visit(item) && ...); }, items);
 }
 

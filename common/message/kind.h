@@ -59,7 +59,7 @@ constexpr Value from_number(NumberOf<Value> number) noexcept {
   }
 }
 
-/// The number that a field has in a form.
+/// The number that a field or a choice has in a form.
 template <Form kForm, class Item>
 constexpr unsigned number_in() noexcept {
   if constexpr (kForm == Form::Log && requires { Item::kLogNumber; }) {
@@ -69,10 +69,11 @@ constexpr unsigned number_in() noexcept {
   }
 }
 
-/// Its type in a form: `Number`, or what is narrower on the wire.
+/// Its type in a form: `Number`, or what is narrower there.
 template <Form kForm, class Item, class Number>
 constexpr auto width_of() noexcept {
-  if constexpr (kForm == Form::Wire && requires { typename Item::Narrow; }) {
+  constexpr bool kNarrow = requires { typename Item::Narrow; };
+  if constexpr (kNarrow && (kForm == Form::Wire || requires { Item::kInLog; })) {
     return typename Item::Narrow{};
   } else {
     return Number{};

@@ -55,7 +55,7 @@ constexpr unsigned type_number() noexcept {
   } else if constexpr (std::is_same_v<Value, bool>) {
     return 8;
   } else if constexpr (std::is_floating_point_v<NumberOf<Value>>) {
-    return 1;
+    return std::is_same_v<WidthOf<Form::Log, Item, NumberOf<Value>>, float> ? 2 : 1;
   } else if constexpr (std::is_signed_v<NumberOf<Value>>) {
     return 3;
   } else {
@@ -72,30 +72,51 @@ struct FieldText {
   bool of_oneof{};
 };
 
-/// One file in the making: the message and what its fields need, each once.
-class File {
+constexpr std::string_view kSharedPackage{"palp.shared"};
+constexpr std::string_view kSharedFile{"shared.proto"};
+
+/// One of the two files in the making: what the message needs, each once.
+struct File {
+  std::string_view name;
+  std::string_view package;
+  std::vector<Bytes> messages{};
+  std::vector<Bytes> enums{};
+
+  [[nodiscard]] bool empty() const noexcept { return messages.empty() && enums.empty(); }
+  [[nodiscard]] std::string full(std::string_view within) const {
+    return "." + std::string{package} + "." + std::string{within};
+  }
+  [[nodiscard]] Bytes descriptor(std::string_view imports) const {
+    Builder out;
+    out.text(1, name);
+    out.text(2, package);
+    if (!imports.empty()) out.text(3, imports);
+    for (const Bytes& one : messages) out.part(4, one);
+    for (const Bytes& one : enums) out.part(5, one);
+    out.text(12, "proto3");
+    return out.bytes();
+  }
+};
+
+class Files {
  public:
-  explicit File(bool of_patient) : of_patient_{of_patient} {}
+  explicit Files(bool of_patient) : of_patient_{of_patient} {}
 
   template <class Struct>
   void add_message(std::string_view name) {
     if (!added_.insert(std::string{name}).second) return;
-    const std::size_t place = messages_.size();
-    messages_.emplace_back();
+    std::vector<Bytes>& messages = file_of<Struct>().messages;
+    const std::size_t place = messages.size();
+    messages.emplace_back();
     Message message{.name = std::string{name}, .fields = {}, .oneof = {}, .enums = {}};
     collect<Struct, 0>(message, "");
-    messages_[place] = bytes_of(message);
+    messages[place] = bytes_of(message);
   }
 
   [[nodiscard]] Bytes descriptor_set() const {
-    Builder file;
-    file.text(1, "session_log.proto");
-    file.text(2, kLogPackage);
-    for (const Bytes& message : messages_) file.part(4, message);
-    for (const Bytes& one : enums_) file.part(5, one);
-    file.text(12, "proto3");
     Builder set;
-    set.part(1, file.bytes());
+    if (!shared_.empty()) set.part(1, shared_.descriptor(""));
+    set.part(1, log_.descriptor(shared_.empty() ? "" : shared_.name));
     return set.bytes();
   }
 
@@ -107,8 +128,17 @@ class File {
     std::vector<Bytes> enums;
   };
 
-  static std::string full(std::string_view name) {
-    return "." + std::string{kLogPackage} + "." + std::string{name};
+  template <class Struct>
+  File& file_of() noexcept {
+    return fields<Struct>.names.shared.empty() ? log_ : shared_;
+  }
+  /// Adds it where a field names it. @returns its full name.
+  template <class Struct>
+  std::string part_type() {
+    constexpr Names kNames = fields<Struct>.names;
+    const std::string_view name = kNames.shared.empty() ? kNames.log : kNames.shared;
+    add_message<Struct>(name);
+    return file_of<Struct>().full(name);
   }
 
   template <class Struct, unsigned kBase>
@@ -123,12 +153,10 @@ class File {
     if constexpr (requires { item.choices; }) {
       to.oneof = item.name;
       each(item.choices, [&]<class Choice>(const Choice& choice) {
-        const std::string_view type = fields<typename Choice::Type>.names.log;
-        add_message<typename Choice::Type>(type);
         to.fields.push_back({.name = std::string{choice.name},
-                             .number = kBase + Choice::kNumber,
+                             .number = kBase + number_in<Form::Log, Choice>(),
                              .type = 11,
-                             .type_name = full(type),
+                             .type_name = part_type<typename Choice::Type>(),
                              .optional = false,
                              .of_oneof = true});
       });
@@ -150,14 +178,14 @@ class File {
     field.type = type_number<Item, Value>();
     field.optional = std::is_base_of_v<Always, Item>;
     if constexpr (Described<Value>) {
-      field.type_name = full(fields<Value>.names.log);
-      add_message<Value>(fields<Value>.names.log);
+      field.type_name = part_type<Value>();
     } else if constexpr (std::is_enum_v<Value>) {
       constexpr auto kEnum = enumerators<Value>;
       const std::string within{kEnum.within.empty() ? "" : std::string{kEnum.within} + "."};
-      field.type_name = full(within + std::string{kEnum.name});
-      if (added_.insert(within + std::string{kEnum.name}).second) {
-        (within.empty() ? enums_ : to.enums).push_back(enum_bytes(kEnum));
+      const std::string name = within + std::string{kEnum.name};
+      field.type_name = (within.empty() ? shared_ : log_).full(name);
+      if (added_.insert(name).second) {
+        (within.empty() ? shared_.enums : to.enums).push_back(enum_bytes(kEnum));
       }
     }
     to.fields.push_back(std::move(field));
@@ -177,7 +205,6 @@ class File {
 
   /// A field that is `optional` lies in a oneof of its own, behind those of the schema.
   static Bytes bytes_of(Message& message) {
-    std::ranges::sort(message.fields, {}, &FieldText::number);
     std::vector<std::string> oneofs;
     if (!message.oneof.empty()) oneofs.push_back(message.oneof);
     Builder out;
@@ -208,8 +235,8 @@ class File {
 
   bool of_patient_;
   std::set<std::string> added_;
-  std::vector<Bytes> messages_;
-  std::vector<Bytes> enums_;
+  File shared_{.name = kSharedFile, .package = kSharedPackage};
+  File log_{.name = "session_log.proto", .package = kLogPackage};
 };
 
 }  // namespace
@@ -223,10 +250,10 @@ std::string_view log_name(bool of_patient) noexcept {
 template <class Message>
 LogSchema log_schema(bool of_patient) {
   const std::string_view name = log_name<Message>(of_patient);
-  File file{of_patient};
-  file.add_message<Message>(name);
+  Files files{of_patient};
+  files.add_message<Message>(name);
   return {.name = std::string{kLogPackage} + "." + std::string{name},
-          .descriptors = file.descriptor_set()};
+          .descriptors = files.descriptor_set()};
 }
 
 /// Makes both of each message.

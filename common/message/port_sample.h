@@ -75,32 +75,32 @@ struct Incoming {
 namespace message {
 
 template <std::same_as<WavePayload> S>
-inline constexpr auto fields<S> = list({.wire = "Wave", .log = "WavePayload"},
+inline constexpr auto fields<S> = list({.shared = "Wave"},
                                        field<1, &S::wave_integral>("wave_integral_sqrt_w_s",
                                                                    limit(kSumMax)),
                                        field<2, &S::wave_energy>("wave_energy_j", limit(kSumMax)));
 
 template <std::same_as<TdpaPayload> S>
-inline constexpr auto fields<S> = list({.wire = "Tdpa", .log = "TdpaPayload"},
+inline constexpr auto fields<S> = list({.shared = "Tdpa"},
                                        field<1, &S::energy_in>("energy_in_j", limit(kSumMax)));
 
 template <std::same_as<ModelPayload> S>
 inline constexpr auto fields<S> =
-    list({.wire = "Model", .log = "ModelPayload"},
+    list({.shared = "Model"},
          field<1, &S::version>("version"),
-         field<2, &S::c, 0>("c1_n", wire<float>, limit(kForceMax)),
-         field<3, &S::c, 1>("c2_n", wire<float>, limit(kForceMax)),
-         field<4, &S::c, 2>("c3_n", wire<float>, limit(kForceMax)),
-         field<5, &S::c, 3>("c4_n", wire<float>, limit(kForceMax)),
-         field<6, &S::c, 4>("c5_n", wire<float>, limit(kForceMax)),
-         field<7, &S::surface>("surface_m", wire<float>, limit(kLengthMax)),
-         field<8, &S::depth_max>("depth_max_m", wire<float>, limit(kLengthMax)),
-         field<9, &S::residual>("residual_n", wire<float>, limit(kForceMax)),
-         field<10, &S::swing>("swing_m", wire<float>, limit(kLengthMax)),
-         field<11, &S::swing_quadrature>("swing_quadrature_m", wire<float>, limit(kLengthMax)),
-         field<12, &S::swing_rate>("swing_rad_per_s", wire<float>, limit(kSpeedMax)),
-         field<13, &S::relaxing, 0>("relaxing_fast", wire<float>, limit(kForceMax)),
-         field<14, &S::relaxing, 1>("relaxing_slow", wire<float>, limit(kForceMax)));
+         field<2, &S::c, 0>("c1_n", narrow<float>, limit(kForceMax)),
+         field<3, &S::c, 1>("c2_n", narrow<float>, limit(kForceMax)),
+         field<4, &S::c, 2>("c3_n", narrow<float>, limit(kForceMax)),
+         field<5, &S::c, 3>("c4_n", narrow<float>, limit(kForceMax)),
+         field<6, &S::c, 4>("c5_n", narrow<float>, limit(kForceMax)),
+         field<7, &S::surface>("surface_m", narrow<float>, limit(kLengthMax)),
+         field<8, &S::depth_max>("depth_max_m", narrow<float>, limit(kLengthMax)),
+         field<9, &S::residual>("residual_n", narrow<float>, limit(kForceMax)),
+         field<10, &S::swing>("swing_m", narrow<float>, limit(kLengthMax)),
+         field<11, &S::swing_quadrature>("swing_quadrature_m", narrow<float>, limit(kLengthMax)),
+         field<12, &S::swing_rate>("swing_rad_per_s", narrow<float>, limit(kSpeedMax)),
+         field<13, &S::relaxing, 0>("relaxing_fast", narrow<float>, limit(kForceMax)),
+         field<14, &S::relaxing, 1>("relaxing_slow", narrow<float>, limit(kForceMax)));
 
 template <std::same_as<PortSample> S>
 inline constexpr auto fields<S> =
@@ -111,7 +111,7 @@ inline constexpr auto fields<S> =
          one_of<&S::payload>("payload",
                              choice<4, WavePayload>("wave", repeated_later),
                              choice<5, TdpaPayload>("tdpa"),
-                             choice<6, ModelPayload>("model")));
+                             choice<6, ModelPayload>("model", log_number<8>)));
 
 template <std::same_as<Incoming> S>
 inline constexpr auto fields<S> = list({},

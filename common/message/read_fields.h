@@ -163,20 +163,21 @@ bool read_item(const Spread<kOffset, Where>& /*spread*/, Reading& reading, auto&
 
 template <Form kForm, unsigned kBase, class Where, class... Choices>
 bool read_item(const OneOf<Where, Choices...>& one_of, Reading& reading, auto& to) noexcept {
-  constexpr Seen kAnyOfThem = (bit<kBase + Choices::kNumber>() | ...);
+  constexpr Seen kAnyOfThem = (bit<kBase + number_in<kForm, Choices>()>() | ...);
   auto& variant = Where::of(to);
+  using Variant = std::remove_cvref_t<decltype(variant)>;
   return all(one_of.choices, [&]<class Item>(const Item& /*choice*/) {
     using Chosen = typename Item::Type;
-    if (!reading.in.skip<wire_tag(kBase + Item::kNumber, WireType::Part)>()) return true;
+    constexpr unsigned kNumber = kBase + number_in<kForm, Item>();
+    if (!reading.in.skip<wire_tag(kNumber, WireType::Part)>()) return true;
     if (kStrict<kForm> && (reading.seen & kAnyOfThem) != 0) return false;
-    reading.seen |= bit<kBase + Item::kNumber>();
+    reading.seen |= bit<kNumber>();
     reading.any = true;
-    auto* chosen = std::get_if<Chosen>(&variant);
-    if (chosen == nullptr) {
-      chosen = &variant.template emplace<Chosen>();
-      clear(*chosen);
+    if (!std::holds_alternative<Chosen>(variant)) {
+      variant = Variant{std::in_place_type<Chosen>};
+      clear(*std::get_if<Chosen>(&variant));
     }
-    return read_part<kForm>(reading.in, *chosen);
+    return read_part<kForm>(reading.in, *std::get_if<Chosen>(&variant));
   });
 }
 

@@ -138,42 +138,42 @@ inline constexpr auto fields<S> = list({.log = "UserCommand"},
 template <std::same_as<HandFacts> S>
 inline constexpr auto fields<S> = list({},
                                        field<1, &S::axes>("axes", always),
-                                       field<2, &S::force_peak>("force_peak_n"),
-                                       field<3, &S::force_continuous>("force_continuous_n"),
-                                       field<4, &S::rate>("rate_hz"));
+                                       field<2, &S::force_peak>("force_peak_n", always),
+                                       field<3, &S::force_continuous>("force_continuous_n", always),
+                                       field<4, &S::rate>("rate_hz", always));
 
 template <std::same_as<StageFacts> S>
 inline constexpr auto fields<S> = list({},
                                        field<1, &S::axes>("axes", always),
-                                       field<2, &S::travel_min>("travel_min_m"),
-                                       field<3, &S::travel_max>("travel_max_m"),
-                                       field<4, &S::travel_side>("travel_side_m"),
-                                       field<5, &S::speed>("speed_m_per_s"),
-                                       field<6, &S::acceleration>("acceleration_m_per_s2"),
-                                       field<7, &S::rate>("rate_hz"),
-                                       field<8, &S::lag>("lag_s"),
-                                       field<9, &S::drags>("drags"));
+                                       field<2, &S::travel_min>("travel_min_m", always),
+                                       field<3, &S::travel_max>("travel_max_m", always),
+                                       field<4, &S::travel_side>("travel_side_m", always),
+                                       field<5, &S::speed>("speed_m_per_s", always),
+                                       field<6, &S::acceleration>("acceleration_m_per_s2", always),
+                                       field<7, &S::rate>("rate_hz", always),
+                                       field<8, &S::lag>("lag_s", always),
+                                       field<9, &S::drags>("drags", always));
 
 template <std::same_as<ForceSensorFacts> S>
 inline constexpr auto fields<S> = list({},
                                        field<1, &S::pole>("pole_hz", always),
-                                       field<2, &S::step>("step_n"),
-                                       field<3, &S::range>("range_n"),
-                                       field<4, &S::noise>("noise_n"),
-                                       field<5, &S::rate>("rate_hz"),
-                                       field<6, &S::lag>("lag_s"));
+                                       field<2, &S::step>("step_n", always),
+                                       field<3, &S::range>("range_n", always),
+                                       field<4, &S::noise>("noise_n", always),
+                                       field<5, &S::rate>("rate_hz", always),
+                                       field<6, &S::lag>("lag_s", always));
 
 template <std::same_as<DeviceFacts> S>
-inline constexpr auto fields<S> = list({},
+inline constexpr auto fields<S> = list({.shared = "Devices"},
                                        spread<0, &S::hand>("hand_"),
                                        spread<4, &S::stage>("stage_"),
                                        spread<13, &S::sensor>("sensor_"));
 
 template <std::same_as<DevicesTold> S>
-inline constexpr auto fields<S> = list({.log = "Devices"},
+inline constexpr auto fields<S> = list({.log = "DevicesTold"},
                                        aside<&S::at>("at_ns"),
                                        field<1, &S::of_peer>("of_peer"),
-                                       spread<1, &S::facts>(""));
+                                       field<2, &S::facts>("devices"));
 
 }  // namespace message
 }  // namespace palp

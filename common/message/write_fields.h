@@ -61,7 +61,7 @@ constexpr std::size_t size_max(const Spread<kOffset, Where>& /*spread*/) noexcep
 template <Form kForm, unsigned kBase, class Struct, class Where, class... Choices>
 constexpr std::size_t size_max(const OneOf<Where, Choices...>& /*one_of*/) noexcept {
   return std::max({std::size_t{0},
-                   tag_size(wire_tag(kBase + Choices::kNumber, WireType::Part)) +
+                   tag_size(wire_tag(kBase + number_in<kForm, Choices>(), WireType::Part)) +
                        part_size_max<kForm, typename Choices::Type>()...});
 }
 
@@ -163,7 +163,7 @@ void write_item(const OneOf<Where, Choices...>& one_of,
       "each alternative has its choice");
   each(one_of.choices, [&]<class Item>(const Item& /*choice*/) {
     const auto* chosen = std::get_if<typename Item::Type>(&variant);
-    constexpr std::uint16_t kTag = wire_tag(kBase + Item::kNumber, WireType::Part);
+    constexpr std::uint16_t kTag = wire_tag(kBase + number_in<kForm, Item>(), WireType::Part);
     if (chosen != nullptr) write_part<kForm, kTag>(*chosen, out);
   });
 }

@@ -46,6 +46,13 @@ void SiteAccount::link(const LinkHealth& health) noexcept {
   record(LinkStatus{now_, health});
 }
 
+void SiteAccount::devices(const DeviceFacts& own,
+                          const DeviceFacts& peer,
+                          bool peer_changed) noexcept {
+  if (first_tick()) record(DevicesTold{.at = now_, .of_peer = false, .facts = own});
+  if (peer_changed) record(DevicesTold{.at = now_, .of_peer = true, .facts = peer});
+}
+
 void SiteAccount::user(const UserCommand& command) noexcept {
   const bool same =
       command.emergency_stop == user_.emergency_stop && command.resets == user_.resets;

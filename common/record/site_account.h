@@ -34,7 +34,6 @@ class SiteAccount {
   /// A tick begins. @returns the time since the one before: a whole number of periods, so that a
   /// law's filters keep their step.
   [[nodiscard]] Duration begin_tick(TimePoint now) noexcept;
-  [[nodiscard]] bool first_tick() const noexcept { return counts_.ticks <= 1; }
   [[nodiscard]] const SiteCounts& counts() const noexcept { return counts_; }
 
   void record(const Record& record) noexcept;
@@ -44,6 +43,8 @@ class SiteAccount {
   void arrived(const link::Arrivals& arrivals) noexcept;
   /// Once a tick: its events, and its status at times.
   void link(const LinkHealth& health) noexcept;
+  /// Once a tick: one's own devices in the first, the peer's where a session has begun or ended.
+  void devices(const DeviceFacts& own, const DeviceFacts& peer, bool peer_changed) noexcept;
   /// Once a tick; recorded where it changes.
   void user(const UserCommand& command) noexcept;
   /// Once a tick, last.
@@ -52,6 +53,8 @@ class SiteAccount {
              std::uint32_t depth_number) noexcept;
 
  private:
+  [[nodiscard]] bool first_tick() const noexcept { return counts_.ticks <= 1; }
+
   SiteAccountConfig config_;
   Recorder& recorder_;
   SiteCounts counts_;

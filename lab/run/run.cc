@@ -70,16 +70,16 @@ class Files final {
 /// Writes at once: in virtual time nobody waits for a disk.
 class DirectRecorder final : public record::Recorder {
  public:
-  DirectRecorder(const Simulator& world, record::SessionWriter* writer)
-      : world_{world}, writer_{writer} {}
+  DirectRecorder(const Simulator& simulator, record::SessionWriter* writer)
+      : simulator_{simulator}, writer_{writer} {}
   bool record(const Record& record) noexcept override {
     if (const auto* estimate = std::get_if<DepthEstimate>(&record)) estimates_.push_back(*estimate);
-    return writer_ == nullptr || writer_->write(record, world_.now());
+    return writer_ == nullptr || writer_->write(record, simulator_.now());
   }
   [[nodiscard]] const std::vector<DepthEstimate>& estimates() const { return estimates_; }
 
  private:
-  const Simulator& world_;
+  const Simulator& simulator_;
   record::SessionWriter* writer_;
   std::vector<DepthEstimate> estimates_;
 };
@@ -249,11 +249,11 @@ class DarkPath {
 struct SurgeonEnd {
   SurgeonEnd(const Scenario& scenario,
              std::unique_ptr<link::Transport> path,
-             const Simulator& world,
+             const Simulator& simulator,
              record::SessionWriter* writer,
              Digest& digest)
       : hand{scenario.hand, scenario.script},
-        file{world, writer},
+        file{simulator, writer},
         recorder{digest, &file},
         process{scenario, hand, std::move(path), recorder} {}
 
@@ -267,11 +267,11 @@ struct SurgeonEnd {
 struct PatientEnd {
   PatientEnd(const Scenario& scenario,
              std::unique_ptr<link::Transport> path,
-             const Simulator& world,
+             const Simulator& simulator,
              record::SessionWriter* writer,
              Digest& digest)
       : tissue{scenario.phantom, seeded(scenario.tissue, scenario.seed)},
-        file{world, writer},
+        file{simulator, writer},
         recorder{digest, &file},
         process{scenario, {tissue, recorder, contact, depth}, std::move(path)},
         estimator{depth::with_sensor(scenario.estimator, tissue.sensor_facts()),
@@ -309,15 +309,17 @@ judge::RunMetrics judged(const Probe& probe,
 
 RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   const DenormalFlush flush;
-  Simulator world;
-  const TimePoint start = world.now();
+  Simulator simulator;
+  const TimePoint start = simulator.now();
   Digest digest;
   Files session_files{scenario, files, start};
   netem::Pipe pipe{scenario.up, scenario.down, scenario.seed, kInFlightMax, start};
   DarkPath dark{scenario};
   const auto valve = [&](auto end) { return std::make_unique<Valve>(std::move(end), dark.shut()); };
-  SurgeonEnd surgeon{scenario, valve(pipe.surgeon_end()), world, session_files.surgeon(), digest};
-  PatientEnd patient{scenario, valve(pipe.patient_end()), world, session_files.patient(), digest};
+  SurgeonEnd surgeon{
+      scenario, valve(pipe.surgeon_end()), simulator, session_files.surgeon(), digest};
+  PatientEnd patient{
+      scenario, valve(pipe.patient_end()), simulator, session_files.patient(), digest};
   surgeon.process.start(start);
   patient.process.start(start);
 
@@ -325,9 +327,9 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   FaultInjector fault_injector{scenario.fault, surgeon.process, patient.process};
   std::optional<TimePoint> finished_at;
   const Duration period = scenario.link.period;
-  world.every({.period = period}, [&](TimePoint now) { surgeon.process.tick(now); });
-  world.every({.period = period}, [&](TimePoint now) { patient.process.tick(now); });
-  world.every({.period = period}, [&](TimePoint now) {
+  simulator.every({.period = period}, [&](TimePoint now) { surgeon.process.tick(now); });
+  simulator.every({.period = period}, [&](TimePoint now) { patient.process.tick(now); });
+  simulator.every({.period = period}, [&](TimePoint now) {
     if (scenario.depths) {
       patient.estimator.drain();
     } else {
@@ -341,22 +343,22 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   });
 
   const Duration limit = scenario.duration > Duration{0} ? scenario.duration : kRunMax;
-  while (world.now() - start < limit &&
-         !(finished_at && world.now() - *finished_at > kAfterScript)) {
-    world.run_for(std::min<Duration>(std::chrono::milliseconds{100}, limit));
+  while (simulator.now() - start < limit &&
+         !(finished_at && simulator.now() - *finished_at > kAfterScript)) {
+    simulator.run_for(std::min<Duration>(std::chrono::milliseconds{100}, limit));
   }
   session_files.close();
 
   RunResult result;
   result.digest = digest.value();
   result.began_at = start;
-  result.virtual_span = world.now() - start;
+  result.virtual_span = simulator.now() - start;
   result.outcome = surgeon.hand.progress().outcome;
   result.metrics = judged(probe, scenario, start, dark.from());
   result.ticks = probe.take_ticks();
   result.depths = patient.file.estimates();
-  result.surgeon_link = surgeon.process.health(world.now());
-  result.patient_link = patient.process.health(world.now());
+  result.surgeon_link = surgeon.process.health(simulator.now());
+  result.patient_link = patient.process.health(simulator.now());
   result.records = session_files.records();
   return result;
 }

@@ -116,11 +116,11 @@ struct HandshakePath {
 };
 
 /// One surgeon and one patient with a network of their own between them.
-struct Trial {
-  Trial(const io::Credentials& surgeon_keys,
-        const io::Credentials& patient_keys,
-        std::uint64_t id,
-        TimePoint begin)
+struct Attempt {
+  Attempt(const io::Credentials& surgeon_keys,
+          const io::Credentials& patient_keys,
+          std::uint64_t id,
+          TimePoint begin)
       : surgeon{surgeon_keys}, patient{patient_keys}, seed{id}, begins_at{begin} {}
   void tick(TimePoint now, const HandshakePath& path) {
     surgeon.call(path.patient_at, now);  // does nothing while one is running
@@ -166,23 +166,24 @@ int handshakes(int count, double loss, Duration round_trip, std::uint64_t seed) 
   constexpr Duration kApart = milliseconds{15};
   const double processor_before = seconds(io::process_time().cpu);
   for (int done = 0; done < count; done += kAtOnce) {
-    std::vector<std::unique_ptr<Trial>> trials;
+    std::vector<std::unique_ptr<Attempt>> attempts;
     const TimePoint began = clock.now();
     for (int i = done; i < std::min(count, done + kAtOnce); ++i) {
-      trials.push_back(std::make_unique<Trial>(*surgeon_keys,
-                                               *patient_keys,
-                                               random_bits(seed, 1, static_cast<std::uint64_t>(i)),
-                                               began + (i - done) * kApart));
+      attempts.push_back(
+          std::make_unique<Attempt>(*surgeon_keys,
+                                    *patient_keys,
+                                    random_bits(seed, 1, static_cast<std::uint64_t>(i)),
+                                    began + (i - done) * kApart));
     }
-    int open = static_cast<int>(trials.size());
+    int open = static_cast<int>(attempts.size());
     while (open > 0 && clock.now() - began < std::chrono::seconds{30}) {
-      for (auto& trial : trials) {
+      for (auto& attempt : attempts) {
         const TimePoint now = clock.now();
-        if (trial->took || now < trial->begins_at) continue;
-        trial->tick(now, path);
-        if (!trial->surgeon.take_made().empty()) {
-          trial->took = now - trial->begins_at;
-          all.push_back(ms(*trial->took));
+        if (attempt->took || now < attempt->begins_at) continue;
+        attempt->tick(now, path);
+        if (!attempt->surgeon.take_made().empty()) {
+          attempt->took = now - attempt->begins_at;
+          all.push_back(ms(*attempt->took));
           --open;
         }
       }

@@ -17,9 +17,9 @@ using std::chrono::milliseconds;
 constexpr int kTicksMax = 500;
 
 /// Watches one end: what it hands over and counts.
-class Witness {
+class Probe {
  public:
-  Witness(Side& side, const Lane& in) : side_{side}, in_{in} {}
+  Probe(Side& side, const Lane& in) : side_{side}, in_{in} {}
 
   void before_tick(TimePoint now) {
     session_id_ = side_.link.health(now).session_id;
@@ -275,8 +275,8 @@ class Play {
   std::uint64_t session_id_{1};
   Mischief up_{*couple_.pipe.up};
   Mischief down_{*couple_.pipe.down};
-  Witness surgeon_{couple_.surgeon, *couple_.pipe.down};
-  Witness patient_{couple_.patient, *couple_.pipe.up};
+  Probe surgeon_{couple_.surgeon, *couple_.pipe.down};
+  Probe patient_{couple_.patient, *couple_.pipe.up};
   std::size_t ticks_{};
 };
 

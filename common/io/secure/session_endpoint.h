@@ -15,7 +15,7 @@
 
 namespace palp::io {
 
-/// What a Conversation wants done after an input, in the order of the members.
+/// What a SessionEndpoint wants done after an input, in the order of the members.
 struct SessionEndpointOutput {
   std::optional<link::SessionEvent> event;
   /// With Established: for the new session. Alone: replaces that of the present one.

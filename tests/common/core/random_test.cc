@@ -56,8 +56,8 @@ using Argument = std::function<std::uint64_t(std::uint64_t base, std::uint64_t c
 /// Flips each bit of one argument; each of the 64 bits of the draw must flip with probability 1/2.
 void expect_avalanche(const Argument& draw) {
   std::array<int, 64> flips{};
-  constexpr std::uint64_t kRuns = 100;
-  for (std::uint64_t trial = 0; trial < kRuns; ++trial) {
+  constexpr std::uint64_t kTrials = 100;
+  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
     for (int bit = 0; bit < 64; ++bit) {
       const std::uint64_t difference = draw(trial, trial) ^ draw(trial, trial ^ (1ULL << bit));
       for (std::size_t out = 0; out < 64; ++out) {
@@ -65,7 +65,7 @@ void expect_avalanche(const Argument& draw) {
       }
     }
   }
-  const double trials = 64.0 * static_cast<double>(kRuns);
+  const double trials = 64.0 * static_cast<double>(kTrials);
   const double standard_error = std::sqrt(trials) / 2;
   for (const int count : flips) {
     EXPECT_NEAR(count, trials / 2, kStandardErrors * standard_error);

@@ -151,20 +151,20 @@ TEST(WireCodecTest, RefusesTheSecondEarlierSampleWithoutTheFirst) {
 TEST(WireCodecTest, RefusesEnumeratorsOutOfRange) {
   WireCodec codec;
   auto message = plain_message();
-  message.mutable_site()->set_state(static_cast<wire::SiteState>(5));
+  message.mutable_site()->set_state(static_cast<shared::SiteState>(5));
   EXPECT_TRUE(codec.decode(view(message.SerializeAsString())));
   for (const int bad : {6, 255, 256, 262, -1}) {
-    message.mutable_site()->set_state(static_cast<wire::SiteState>(bad));
+    message.mutable_site()->set_state(static_cast<shared::SiteState>(bad));
     EXPECT_FALSE(codec.decode(view(message.SerializeAsString()))) << bad;
   }
   message = plain_message();
   message.mutable_site()->mutable_depth()->set_number(1);
   EXPECT_TRUE(codec.decode(view(message.SerializeAsString())));
-  message.mutable_site()->mutable_depth()->set_verdict(static_cast<wire::DepthVerdict>(3));
+  message.mutable_site()->mutable_depth()->set_verdict(static_cast<shared::DepthVerdict>(3));
   EXPECT_FALSE(codec.decode(view(message.SerializeAsString())));
   message.mutable_site()->mutable_depth()->clear_verdict();
   message.mutable_site()->mutable_depth()->set_reason(
-      static_cast<wire::DepthReason>(kDepthReasonCount));
+      static_cast<shared::DepthReason>(kDepthReasonCount));
   EXPECT_FALSE(codec.decode(view(message.SerializeAsString())));
 }
 

@@ -55,6 +55,8 @@ void draw_value(const Item& item, auto& value, Draw& draw) {
   } else if constexpr (std::is_floating_point_v<Number>) {
     if constexpr (kForm == Form::Wire && requires { item.most; }) {
       value = draw.within(item.most);
+    } else if constexpr (std::is_same_v<WidthOf<kForm, Item, Number>, float>) {
+      value = std::bit_cast<float>(static_cast<std::uint32_t>(draw.bits()));
     } else {
       value = std::bit_cast<double>(draw.bits());
     }

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "common/message/kind.h"
-#include "common/message/rehearsed_telegram.h"
+#include "common/message/warm_up_telegrams.h"
 #include "tests/common/message/all_structs.h"
 #include "tests/common/message/same.h"
 
@@ -88,9 +88,9 @@ TEST(ListTest, EnumerationsHaveAsManyNamesAsEnumerators) {
   EXPECT_EQ(enumerators<DepthReason>.values.size(), std::size_t{kDepthReasonCount});
 }
 
-TEST(RehearsedTelegramTest, NothingInAnyOfThemIsZero) {
+TEST(WarmUpTelegramsTest, NothingInAnyOfThemIsZero) {
   std::size_t kind = 0;
-  for (const Telegram& telegram : rehearsed_telegrams()) {
+  for (const Telegram& telegram : warm_up_telegrams()) {
     EXPECT_EQ(telegram.port.payload.index(), kind++);
     for (const Words& words : {words_of(telegram.site), words_of(telegram.port)}) {
       for (std::size_t i = 0; i < words.size(); ++i) {

@@ -12,6 +12,7 @@
 #include "common/message/log_schema.h"
 #include "proto/link.pb.h"
 #include "proto/session_log.pb.h"
+#include "proto/shared.pb.h"
 #include "tests/common/message/all_structs.h"
 
 namespace palp::message {
@@ -57,7 +58,9 @@ FieldDescriptor::Type type_of() {
 
 template <Form kForm, class Struct>
 std::string message_name() {
-  return std::string{kForm == Form::Wire ? fields<Struct>.names.wire : fields<Struct>.names.log};
+  constexpr Names kNames = fields<Struct>.names;
+  if (!kNames.shared.empty()) return std::string{kNames.shared};
+  return std::string{kForm == Form::Wire ? kNames.wire : kNames.log};
 }
 
 template <Form kForm, class Struct, unsigned kBase = 0>
@@ -66,11 +69,12 @@ void collect(Saids& said, bool of_patient, const std::string& prefix = {}) {
     using Value = ValueOf<Item, Struct>;
     if constexpr (requires { item.choices; }) {
       each(item.choices, [&]<class Choice>(const Choice& choice) {
-        said[std::string{choice.name}] = {.number = kBase + Choice::kNumber,
-                                          .type = FieldDescriptor::TYPE_MESSAGE,
-                                          .type_name = message_name<kForm, typename Choice::Type>(),
-                                          .optional = false,
-                                          .oneof = std::string{item.name}};
+        said[std::string{choice.name}] = {
+            .number = static_cast<int>(kBase + number_in<kForm, Choice>()),
+            .type = FieldDescriptor::TYPE_MESSAGE,
+            .type_name = message_name<kForm, typename Choice::Type>(),
+            .optional = false,
+            .oneof = std::string{item.name}};
       });
     } else if constexpr (kIsOptional<Value>) {
       collect<kForm, typename Value::value_type, kBase + Item::kBase>(
@@ -146,38 +150,47 @@ class SchemaTest : public testing::Test {
   }
 };
 
-TEST_F(SchemaTest, ListsOfTheWireAreThoseOfLinkProto) {
-  std::size_t compared = 0;
-  each_struct([&]<class Struct>() {
-    constexpr Names kNames = fields<Struct>.names;
-    if (kNames.wire.empty()) return;
-    const Descriptor* schema = find("palp.link.wire", kNames.wire);
-    ASSERT_NE(schema, nullptr) << kNames.wire;
-    Saids said;
-    if constexpr (!kNames.wire.empty()) collect<Form::Wire, Struct>(said, false);
-    expect_alike(said, *schema);
-    ++compared;
-  });
-  EXPECT_EQ(compared, 7U);
-}
-
-TEST_F(SchemaTest, ListsOfTheLogAreThoseOfSessionLogProto) {
+/// Compares the lists that name a message there, in one form. @returns the names.
+template <Form kForm>
+std::set<std::string> compare_with(const std::string& package,
+                                   std::string_view Names::*name_of,
+                                   bool of_patient = false) {
   std::set<std::string> compared;
   each_struct([&]<class Struct>() {
     constexpr Names kNames = fields<Struct>.names;
-    for (const bool of_patient : {false, true}) {
-      const std::string_view name =
-          of_patient && !kNames.log_patient.empty() ? kNames.log_patient : kNames.log;
-      if (name.empty() || !compared.insert(std::string{name}).second) continue;
-      const Descriptor* schema = find("palp.session", name);
-      ASSERT_NE(schema, nullptr) << name;
-      Saids said;
-      collect<Form::Log, Struct>(said, of_patient);
-      expect_alike(said, *schema);
-    }
+    const std::string_view name = kNames.*name_of;
+    if (name.empty()) return;
+    const Descriptor* schema = find(package, name);
+    ASSERT_NE(schema, nullptr) << name;
+    Saids said;
+    collect<kForm, Struct>(said, of_patient);
+    expect_alike(said, *schema);
+    compared.emplace(name);
   });
-  const auto& file = *session::SurgeonTick::descriptor()->file();
-  EXPECT_EQ(compared.size(), static_cast<std::size_t>(file.message_type_count()));
+  return compared;
+}
+
+std::size_t message_count(const Descriptor& any_of_the_file) {
+  return static_cast<std::size_t>(any_of_the_file.file()->message_type_count());
+}
+
+TEST_F(SchemaTest, ListsOfTheWireAreThoseOfLinkProto) {
+  const auto compared = compare_with<Form::Wire>("palp.link.wire", &Names::wire);
+  const std::size_t by_protobuf = 2;  // Hello, Bye
+  EXPECT_EQ(compared.size() + by_protobuf, message_count(*link::wire::Telegram::descriptor()));
+}
+
+TEST_F(SchemaTest, ListsOfTheLogAreThoseOfSessionLogProto) {
+  auto compared = compare_with<Form::Log>("palp.session", &Names::log);
+  compared.merge(compare_with<Form::Log>("palp.session", &Names::log_patient, true));
+  EXPECT_EQ(compared.size(), message_count(*session::SurgeonTick::descriptor()));
+}
+
+TEST_F(SchemaTest, ListsOfBothAreThoseOfSharedProtoInBothForms) {
+  const auto on_wire = compare_with<Form::Wire>("palp.shared", &Names::shared);
+  const auto in_log = compare_with<Form::Log>("palp.shared", &Names::shared);
+  EXPECT_EQ(on_wire, in_log);
+  EXPECT_EQ(on_wire.size(), message_count(*shared::Devices::descriptor()));
 }
 
 template <class Enum>
@@ -190,30 +203,42 @@ void expect_values(const EnumDescriptor& schema) {
   }
 }
 
-TEST_F(SchemaTest, EnumsAreThoseOfBothFiles) {
-  expect_values<SiteState>(*link::wire::SiteState_descriptor());
-  expect_values<SiteState>(*session::SiteState_descriptor());
-  expect_values<LinkState>(*session::LinkState_descriptor());
-  expect_values<DepthVerdict>(*link::wire::DepthVerdict_descriptor());
-  expect_values<DepthVerdict>(*session::DepthVerdict_descriptor());
-  expect_values<DepthReason>(*link::wire::DepthReason_descriptor());
-  expect_values<DepthReason>(*session::DepthReason_descriptor());
+TEST_F(SchemaTest, EnumsAreThoseOfTheFiles) {
+  expect_values<SiteState>(*shared::SiteState_descriptor());
+  expect_values<LinkState>(*shared::LinkState_descriptor());
+  expect_values<DepthVerdict>(*shared::DepthVerdict_descriptor());
+  expect_values<DepthReason>(*shared::DepthReason_descriptor());
   expect_values<EventKind>(*session::Event::Kind_descriptor());
 }
 
-/// Copies `type` and what its fields need into `file`, each once.
-void add_type(const Descriptor& type,
-              std::set<std::string>& added,
-              google::protobuf::FileDescriptorProto& file) {
+using google::protobuf::FileDescriptorProto;
+using google::protobuf::FileDescriptorSet;
+
+/// The file of `type`, made where there is none.
+FileDescriptorProto& file_of(const google::protobuf::FileDescriptor& of, FileDescriptorSet& set) {
+  for (auto& file : *set.mutable_file()) {
+    if (file.name() == of.name()) return file;
+  }
+  auto& file = *set.add_file();
+  file.set_name(of.name());
+  file.set_package(of.package());
+  file.set_syntax("proto3");
+  return file;
+}
+
+/// Copies `type` and what its fields need, each once.
+void add_type(const Descriptor& type, std::set<std::string>& added, FileDescriptorSet& set) {
   if (!added.insert(type.full_name()).second) return;
-  type.CopyTo(file.add_message_type());
+  auto& copy = *file_of(*type.file(), set).add_message_type();
+  type.CopyTo(&copy);
+  copy.clear_reserved_range();  // says nothing of bytes
   for (int k = 0; k < type.field_count(); ++k) {
     const auto& field = *type.field(k);
-    if (field.message_type() != nullptr) add_type(*field.message_type(), added, file);
+    if (field.message_type() != nullptr) add_type(*field.message_type(), added, set);
     const auto* enumeration = field.enum_type();
     if (enumeration != nullptr && enumeration->containing_type() == nullptr &&
         added.insert(enumeration->full_name()).second) {
-      enumeration->CopyTo(file.add_enum_type());
+      enumeration->CopyTo(file_of(*enumeration->file(), set).add_enum_type());
     }
   }
 }
@@ -223,18 +248,18 @@ TEST_F(SchemaTest, FilesCarryWhatTheCompilerSaysOfTheirMessages) {
   each_log_message([]<class Message>() {
     for (const bool of_patient : {false, true}) {
       const LogSchema schema = log_schema<Message>(of_patient);
-      google::protobuf::FileDescriptorSet ours;
+      FileDescriptorSet ours;
       ASSERT_TRUE(ours.ParseFromArray(schema.descriptors.data(),
                                       static_cast<int>(schema.descriptors.size())));
       const Descriptor* type = DescriptorPool::generated_pool()->FindMessageTypeByName(schema.name);
       ASSERT_NE(type, nullptr) << schema.name;
-      google::protobuf::FileDescriptorSet expected;
-      auto& file = *expected.add_file();
-      file.set_name(type->file()->name());
-      file.set_package(type->file()->package());
-      file.set_syntax("proto3");
+      FileDescriptorSet expected;
       std::set<std::string> added;
-      add_type(*type, added, file);
+      add_type(*type, added, expected);
+      if (expected.file_size() == 2) {
+        file_of(*type->file(), expected)
+            .add_dependency(shared::Devices::descriptor()->file()->name());
+      }
       MessageDifferencer differ;
       differ.set_repeated_field_comparison(MessageDifferencer::AS_SET);
       std::string difference;
@@ -242,7 +267,9 @@ TEST_F(SchemaTest, FilesCarryWhatTheCompilerSaysOfTheirMessages) {
       EXPECT_TRUE(differ.Compare(expected, ours)) << schema.name << "\n" << difference;
       // A reader that builds the types can.
       DescriptorPool pool;
-      EXPECT_NE(pool.BuildFile(ours.file(0)), nullptr) << schema.name;
+      for (const auto& file : ours.file()) {
+        EXPECT_NE(pool.BuildFile(file), nullptr) << schema.name;
+      }
     }
   });
 }

@@ -17,9 +17,7 @@ TEST(SiteAccountTest, TimePassesInWholePeriodsAndMissedOnesAreCounted) {
   test::NullRecorder recorder;
   SiteAccount account{{}, recorder};
   EXPECT_EQ(account.begin_tick(at(5ms)), 1ms) << "the first";
-  EXPECT_TRUE(account.first_tick());
   EXPECT_EQ(account.begin_tick(at(6100us)), 1ms) << "a little late";
-  EXPECT_FALSE(account.first_tick());
   EXPECT_EQ(account.begin_tick(at(9000us)), 3ms) << "two were missed";
   EXPECT_EQ(account.begin_tick(at(1ms)), 1ms) << "a clock that jumps back";
   EXPECT_EQ(account.counts().ticks, 4U);
@@ -59,6 +57,25 @@ TEST(SiteAccountTest, TheUsersCommandsAreWrittenFirstAndWhereTheyChange) {
   std::vector<Duration> when;
   for (const UserAsked& one : recorder.all<UserAsked>()) when.push_back(one.at.time_since_epoch());
   EXPECT_EQ(when, (std::vector<Duration>{1ms, 4ms, 5ms, 8ms}));
+}
+
+TEST(SiteAccountTest, DevicesAreWrittenFirstAndThePeersWhereASessionChanges) {
+  test::KeepingRecorder recorder;
+  SiteAccount account{{}, recorder};
+  const DeviceFacts own{.hand = HandFacts{}, .stage = {}, .sensor = {}};
+  const DeviceFacts peer{.hand = {}, .stage = StageFacts{}, .sensor = ForceSensorFacts{}};
+  for (int i = 1; i <= 10; ++i) {
+    (void)account.begin_tick(at(i * 1ms));
+    account.devices(own, peer, i == 6);
+  }
+  const std::vector<DevicesTold> told = recorder.all<DevicesTold>();
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_EQ(told[0].at, at(1ms));
+  EXPECT_FALSE(told[0].of_peer);
+  EXPECT_TRUE(told[0].facts.hand);
+  EXPECT_EQ(told[1].at, at(6ms));
+  EXPECT_TRUE(told[1].of_peer);
+  EXPECT_TRUE(told[1].facts.stage);
 }
 
 TEST(SiteAccountTest, AReasonThatIsNoneIsNoTransition) {

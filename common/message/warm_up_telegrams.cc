@@ -1,4 +1,4 @@
-#include "common/message/rehearsed_telegram.h"
+#include "common/message/warm_up_telegrams.h"
 
 #include "common/message/kind.h"
 
@@ -47,6 +47,6 @@ const Telegrams kTelegrams = make();
 
 }  // namespace
 
-const Telegrams& rehearsed_telegrams() noexcept { return kTelegrams; }
+const Telegrams& warm_up_telegrams() noexcept { return kTelegrams; }
 
 }  // namespace palp::message
