@@ -180,9 +180,9 @@ TEST(WireCodecTest, ReadsAllThatTheSchemaHasInAnyOrderAsProtobufDoes) {
       ASSERT_NE(outcome, Outcome::TheyDiffer) << "seed " << seed;
       good += outcome == Outcome::BothRead ? 1 : 0;
     }
-    // Else the draw proves little.
-    EXPECT_GT(good, defect_every > 1000 ? 300 : 0);
-    EXPECT_LT(good, 2900);
+    // Else the draw proves little: whole messages without defects, broken ones with many.
+    EXPECT_GT(good, defect_every > 1000 ? 300 : -1);
+    EXPECT_LT(good, defect_every > 1000 ? 3000 : 1500);
   }
 }
 
