@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Dense>
+#include "fem/dense_solver.h"
 
 namespace palp::fem {
 namespace {
@@ -22,11 +22,11 @@ std::vector<std::pair<double, double>> gauss(int count, double length) {
   for (int i = 1; i < count; ++i) {
     jacobi(i, i - 1) = jacobi(i - 1, i) = i / std::sqrt(4.0 * i * i - 1);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver{jacobi};
+  const Spectrum spectrum = spectrum_of(jacobi);
   std::vector<std::pair<double, double>> out;
   for (int i = 0; i < count; ++i) {
-    const double first = solver.eigenvectors()(0, i);
-    out.emplace_back(0.5 * length * (1 + solver.eigenvalues()[i]), length * first * first);
+    const double first = spectrum.vectors(0, i);
+    out.emplace_back(0.5 * length * (1 + spectrum.values[i]), length * first * first);
   }
   return out;
 }
@@ -71,7 +71,7 @@ BondedLayer::Answer BondedLayer::pressed_to(double contact) const {
     right(i, 0) = modulus;
     right(i, 1) = modulus * 0.5 * t * std::log((radius + t) / (radius - t));
   }
-  const Eigen::MatrixXd density = matrix.partialPivLu().solve(right);
+  const Eigen::MatrixXd density = solve(matrix, right);
   Answer answer;
   answer.indentation = density(kPoints, 1) / density(kPoints, 0);
   for (int i = 0; i < kPoints; ++i) {

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
-
+#include "fem/dense_solver.h"
 #include "fem/finite_contact.h"
 
 namespace palp::fem {
@@ -43,7 +42,7 @@ void smooth(const std::vector<double>& indentations, std::vector<float>& excess)
     for (int p = 0; p < kSmoothTerms; ++p) powers(i, p) = weight * std::pow(t, p);
     values[i] = weight * std::log(static_cast<double>(excess[k]));
   }
-  const Eigen::VectorXd c = powers.householderQr().solve(values);
+  const Eigen::VectorXd c = least_squares(powers, values);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double t = std::log(indentations[k] / indentations[0]);

@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <memory>
 
-#include <Eigen/Dense>
 #include <ceres/ceres.h>
 
 #include "common/core/check.h"
+#include "fem/dense_solver.h"
 
 namespace palp::fem {
 namespace {
@@ -62,7 +62,7 @@ ForceCubic fit_cubic(const std::vector<double>& indentations_mm,
     powers.row(i) << d * d * d, d * d, d, 1;
     values[i] = forces_n[static_cast<std::size_t>(i)];
   }
-  const Eigen::Vector4d c = powers.householderQr().solve(values);
+  const Eigen::VectorXd c = least_squares(powers, values);
   return {{c[0], c[1], c[2], c[3]}};
 }
 

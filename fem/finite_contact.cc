@@ -5,10 +5,9 @@
 #include <cstdio>
 #include <limits>
 
-#include <Eigen/Cholesky>
-
 #include "common/core/check.h"
 #include "common/core/conventions.h"
+#include "fem/dense_solver.h"
 #include "fem/linear_contact.h"
 
 namespace palp::fem {
@@ -233,13 +232,12 @@ bool FiniteContact::settle_contact(const State& state,
     const Eigen::VectorXd balance =
         stiffness * increment(surface_place_) - push + force(surface_place_);
     Eigen::MatrixXd matrix = stiffness + tangent(surface_place_, surface_place_);
-    Eigen::LLT<Eigen::MatrixXd> factor{matrix};
-    for (double shift = kShift * matrix.diagonal().maxCoeff(); factor.info() != Eigen::Success;
-         shift *= 10) {
+    auto solution = solve_positive(matrix, balance);
+    for (double shift = kShift * matrix.diagonal().maxCoeff(); !solution; shift *= 10) {
       if (!std::isfinite(shift)) return false;
-      factor.compute(matrix + shift * Eigen::MatrixXd::Identity(size, size));
+      solution = solve_positive(matrix + shift * Eigen::MatrixXd::Identity(size, size), balance);
     }
-    const Eigen::VectorXd step = -factor.solve(balance);
+    const Eigen::VectorXd step = -*solution;
     const double decrement = -step.dot(balance);
     double share = 1;
     Eigen::VectorXd next = increment;

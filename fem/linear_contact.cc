@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 
 #include "common/core/check.h"
 #include "common/core/conventions.h"
+#include "fem/dense_solver.h"
 
 namespace palp::fem {
 namespace {
@@ -83,10 +83,9 @@ bool LinearContact::solve_active(double indentation) {
       matrix(i, j) = compliance_(node, on[static_cast<std::size_t>(j)]);
     }
   }
-  const Eigen::LDLT<Eigen::MatrixXd> factor{matrix};
-  if (factor.info() != Eigen::Success) return false;
-  const Eigen::VectorXd solution = factor.solve(push);
-  for (Eigen::Index i = 0; i < count; ++i) force_[on[static_cast<std::size_t>(i)]] = solution[i];
+  const auto solution = solve_symmetric(matrix, push);
+  if (!solution) return false;
+  for (Eigen::Index i = 0; i < count; ++i) force_[on[static_cast<std::size_t>(i)]] = (*solution)[i];
   return true;
 }
 
