@@ -12,7 +12,7 @@ CertificatesCommand::CertificatesCommand(config::CommandLine& line) {
   verb.text("--folder", folder_, "FOLDER", "where they go; an authority there is used again");
   verb.required();
   verb.whole("--days", days_, {1, 3650}, "validity of the sites' certificates");
-  verb.text("--name", name_, "NAME", "of the installation, in the certificates");
+  verb.text("--name", name_, "NAME", "of the installation: its sites know each other by it");
   verb.text("--revoke", revoked_, "FILE", "revokes this certificate instead of making any");
   verb.toggle("--bench", bench_, "a key that both sites share instead of certificates");
 }

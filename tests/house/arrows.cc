@@ -209,7 +209,8 @@ const std::vector<Fence>& fences() {
         "common/io/secure/credentials.cc",
         "common/io/secure/dtls_*.cc",
         "common/io/secure/certificates.cc",
-        "common/io/secure/openssl_*.h"}},
+        "common/io/secure/openssl_*.h",
+        "common/io/secure/site_certificate.*"}},
       {"readerwriterqueue/", {"common/core/spsc_queue.h"}},
       // link answers with reasons of its own, not with sentences.
       {"tl/expected.hpp", {"common/core/result.h"}},

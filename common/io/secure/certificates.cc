@@ -3,6 +3,8 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include <fcntl.h>
@@ -14,6 +16,7 @@
 #include "common/io/process/system_text.h"
 #include "common/io/secure/credentials.h"
 #include "common/io/secure/openssl_handles.h"
+#include "common/io/secure/site_certificate.h"
 
 namespace palp::io {
 namespace {
@@ -146,10 +149,29 @@ void copy_revocations(const path& authority, const path& site) {
                              std::filesystem::copy_options::overwrite_existing);
 }
 
+std::string name_of(const CertificatesConfig& config, link::Role role) {
+  return config.name + " " + role_name(role) + " site";
+}
+
+/// What is on the list stays: a site may talk to others as well.
+void add_peer(const path& file, const std::string& name) {
+  std::string text = "# The sites that this one talks to: names as in their certificates.\n";
+  if (std::filesystem::exists(file)) {
+    const auto names = read_peer_names(file);
+    if (!names) throw std::runtime_error{names.error().text};
+    if (names->contains(name)) return;
+    std::ifstream in{file};
+    text.assign(std::istreambuf_iterator<char>{in}, {});
+    if (!text.empty() && text.back() != '\n') text += '\n';
+  }
+  constexpr mode_t kForAll = 0644;
+  write_file(file, text + name + "\n", kForAll);
+}
+
 void make_site(const CertificatesConfig& config, const Holder& authority, link::Role role) {
   const bool surgeon = role == link::Role::Surgeon;
-  const std::string site = surgeon ? "surgeon" : "patient";
-  const Holder made = holder_named(config.name + " " + site + " site", config.days);
+  const link::Role peer = surgeon ? link::Role::Patient : link::Role::Surgeon;
+  const Holder made = holder_named(name_of(config, role), config.days);
   X509* certificate = made.certificate.get();
   X509* issuer = authority.certificate.get();
   extend(certificate, issuer, NID_basic_constraints, "critical,CA:FALSE");
@@ -158,11 +180,12 @@ void make_site(const CertificatesConfig& config, const Holder& authority, link::
   extend(certificate, issuer, NID_subject_alt_name, "URI:" + role_uri(role));
   extend(certificate, issuer, NID_authority_key_identifier, "keyid:always");
   sign(certificate, authority);
-  const path folder = path{config.folder} / site;
+  const path folder = path{config.folder} / role_name(role);
   std::filesystem::create_directories(folder);
   write_key(folder / "key.pem", made.key.get());
   write_certificate(folder / "certificate.pem", certificate);
   write_certificate(folder / "authority.pem", authority.certificate.get());
+  add_peer(folder / "peers.txt", name_of(config, peer));
   copy_revocations(path{config.folder} / "authority", folder);
 }
 

@@ -13,8 +13,9 @@ struct CertificatesConfig {
 };
 
 /// A small certificate authority and a certificate for each site, in three folders; `surgeon` and
-/// `patient` are what Credentials::read() takes. An authority that is there already is used again,
-/// and the sites then get new keys. Private keys are readable by their owner only.
+/// `patient` are what Credentials::read() takes, each with the other's name in peers.txt. An
+/// authority that is there already is used again, and the sites then get new keys. Private keys are
+/// readable by their owner only.
 /// @returns what was made, in a sentence. Reads the wall clock.
 [[nodiscard]] Result<std::string> make_certificates(const CertificatesConfig& config);
 

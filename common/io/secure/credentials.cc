@@ -1,7 +1,6 @@
 #include "common/io/secure/credentials.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include "common/io/process/system_text.h"
 #include "common/io/secure/openssl_context.h"
 #include "common/io/secure/openssl_handles.h"
+#include "common/io/secure/site_certificate.h"
 
 namespace palp::io {
 namespace {
@@ -27,38 +27,31 @@ constexpr std::size_t kPreSharedKeySize = 32;  // [bytes]
 constexpr int kDaysToRenew = 14;
 constexpr char kCertificateFile[] = "certificate.pem";
 constexpr char kKeyFile[] = "key.pem";
+constexpr char kPeersFile[] = "peers.txt";
 constexpr char kSharedKeyFile[] = "pre_shared_key.txt";
 /// Forward secret, authenticated encryption, 256 bits: nothing else is offered or accepted.
 constexpr char kCertificateSuites[] = "ECDHE-ECDSA-AES256-GCM-SHA384:ECDHE-RSA-AES256-GCM-SHA384";
 /// The only forward secret suite of OpenSSL 3.0 with a pre-shared key and authenticated encryption.
 constexpr char kPreSharedSuites[] = "ECDHE-PSK-CHACHA20-POLY1305";
 
-std::string role_name(Role role) { return role == Role::Surgeon ? "surgeon" : "patient"; }
-
-bool names_role(X509* certificate, Role role) {
-  const Openssl<GENERAL_NAMES> names{static_cast<GENERAL_NAMES*>(
-      X509_get_ext_d2i(certificate, NID_subject_alt_name, nullptr, nullptr))};
-  const std::string wanted = role_uri(role);
-  for (int i = 0; names != nullptr && i < sk_GENERAL_NAME_num(names.get()); ++i) {
-    const GENERAL_NAME* name = sk_GENERAL_NAME_value(names.get(), i);
-    if (name->type != GEN_URI) continue;
-    const ASN1_IA5STRING* uri = name->d.uniformResourceIdentifier;
-    const std::string text{reinterpret_cast<const char*>(ASN1_STRING_get0_data(uri)),
-                           static_cast<std::size_t>(ASN1_STRING_length(uri))};
-    if (text == wanted) return true;
-  }
-  return false;
-}
-
-/// After OpenSSL's own checks (signature, authority, time, purpose, revocation): the role.
-int check_role(int passed, X509_STORE_CTX* store) {
+/// After OpenSSL's own checks: what only a site's certificate says, and whose it is. The errors are
+/// told apart in dtls_handshake.cc.
+int check_peer(int passed, X509_STORE_CTX* store) {
   if (passed != 1 || X509_STORE_CTX_get_error_depth(store) != 0) return passed;
   const auto* ssl = static_cast<const SSL*>(
       X509_STORE_CTX_get_ex_data(store, SSL_get_ex_data_X509_STORE_CTX_idx()));
   const auto* context =
       static_cast<const Credentials::Context*>(SSL_CTX_get_app_data(SSL_get_SSL_CTX(ssl)));
-  if (names_role(X509_STORE_CTX_get_current_cert(store), context->peer)) return 1;
-  X509_STORE_CTX_set_error(store, X509_V_ERR_APPLICATION_VERIFICATION);
+  X509* certificate = X509_STORE_CTX_get_current_cert(store);
+  const CertificateFlaw flaw = flaw_of(certificate, context->peer);
+  if (flaw == CertificateFlaw::None &&
+      (!context->peer_names || context->peer_names->contains(site_name(certificate)))) {
+    return 1;
+  }
+  X509_STORE_CTX_set_error(store,
+                           flaw == CertificateFlaw::None   ? X509_V_ERR_HOSTNAME_MISMATCH
+                           : flaw == CertificateFlaw::Role ? X509_V_ERR_APPLICATION_VERIFICATION
+                                                           : X509_V_ERR_INVALID_PURPOSE);
   return 0;
 }
 
@@ -159,23 +152,32 @@ Result<bool> trust(SSL_CTX* ssl, const std::filesystem::path& folder) {
   const std::filesystem::path revoked = folder / "revoked.pem";
   if (!std::filesystem::exists(revoked)) return false;
   const Openssl<BIO> file{BIO_new_file(revoked.c_str(), "r")};
-  const Openssl<X509_CRL> list{
-      file == nullptr ? nullptr : PEM_read_bio_X509_CRL(file.get(), nullptr, nullptr, nullptr)};
   X509_STORE* store = SSL_CTX_get_cert_store(ssl);
-  if (list == nullptr || X509_STORE_add_crl(store, list.get()) != 1) {
-    return tl::unexpected{not_taken(revoked, "revocation list in PEM form")};
+  int lists = 0;
+  for (bool more = file != nullptr; more;) {
+    const Openssl<X509_CRL> list{PEM_read_bio_X509_CRL(file.get(), nullptr, nullptr, nullptr)};
+    more = list != nullptr && X509_STORE_add_crl(store, list.get()) == 1;
+    lists += more ? 1 : 0;
   }
-  X509_STORE_set_flags(store, X509_V_FLAG_CRL_CHECK);
+  if (lists == 0) return tl::unexpected{not_taken(revoked, "revocation list in PEM form")};
+  ERR_clear_error();  // the end of the file
+  // Of the whole chain: an authority between may be revoked as well.
+  X509_STORE_set_flags(store, X509_V_FLAG_CRL_CHECK | X509_V_FLAG_CRL_CHECK_ALL);
   return true;
 }
 
-std::string common_name(const X509* certificate) {
-  std::array<char, 100> name{};
-  X509_NAME_get_text_by_NID(X509_get_subject_name(certificate),
-                            NID_commonName,
-                            name.data(),
-                            static_cast<int>(name.size()));
-  return name.data();
+/// Why a certificate cannot be this site's own; empty: it can.
+std::string misfit(X509* own, Role role) {
+  switch (flaw_of(own, role)) {
+    case CertificateFlaw::None:
+      return {};
+    case CertificateFlaw::Authority:
+      return "is that of an authority, not of a site";
+    case CertificateFlaw::Purpose:
+    case CertificateFlaw::Role:
+      break;
+  }
+  return "is not made out to a " + role_name(role) + " site";
 }
 
 Result<std::string> use_certificates(Credentials::Context& context,
@@ -187,20 +189,24 @@ Result<std::string> use_certificates(Credentials::Context& context,
     return tl::unexpected{not_taken(certificate, "certificate in PEM form")};
   }
   X509* own = SSL_CTX_get0_certificate(ssl);
-  if (!names_role(own, role)) {
-    return tl::unexpected{
-        unusable(certificate, "is not made out to a " + role_name(role) + " site")};
+  if (const std::string why = misfit(own, role); !why.empty()) {
+    return tl::unexpected{unusable(certificate, why)};
   }
   const std::filesystem::path key = folder / kKeyFile;
   if (SSL_CTX_use_PrivateKey_file(ssl, key.c_str(), SSL_FILETYPE_PEM) != 1) {
-    const bool misfit = ERR_GET_REASON(ERR_peek_last_error()) == X509_R_KEY_VALUES_MISMATCH;
-    return tl::unexpected{misfit ? unusable(key, "does not fit the certificate beside it")
-                                 : not_taken(key, "private key in PEM form without passphrase")};
+    const bool other_key = ERR_GET_REASON(ERR_peek_last_error()) == X509_R_KEY_VALUES_MISMATCH;
+    return tl::unexpected{other_key ? unusable(key, "does not fit the certificate beside it")
+                                    : not_taken(key, "private key in PEM form without passphrase")};
   }
   if (const auto trusted = trust(ssl, folder); !trusted) return tl::unexpected{trusted.error()};
+  if (const std::filesystem::path peers = folder / kPeersFile; std::filesystem::exists(peers)) {
+    auto names = read_peer_names(peers);
+    if (!names) return tl::unexpected{names.error()};
+    context.peer_names = std::move(*names);
+  }
   SSL_CTX_set_cipher_list(ssl, kCertificateSuites);
-  SSL_CTX_set_verify(ssl, SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, check_role);
-  return common_name(own);
+  SSL_CTX_set_verify(ssl, SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, check_peer);
+  return site_name(own);
 }
 
 /// Rights of others on a file that only its owner should read.
@@ -238,12 +244,14 @@ std::vector<std::string> cautions_of(const Credentials::Context& context,
   if (shared) return cautions;
   const X509* own = SSL_CTX_get0_certificate(context.ssl.get());
   if (auto one = time_trouble(folder / kCertificateFile, own)) cautions.push_back(*one);
+  if (!context.peer_names) {
+    cautions.push_back("identity " + folder.string() + " has no " + kPeersFile + ": any " +
+                       role_name(context.peer) + " site of the authority may answer");
+  }
   return cautions;
 }
 
 }  // namespace
-
-std::string role_uri(Role role) { return "palp:" + role_name(role); }
 
 Credentials::Credentials(std::unique_ptr<Context> context, Role role, std::string name)
     : context_{std::move(context)}, role_{role}, name_{std::move(name)} {}

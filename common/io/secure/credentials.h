@@ -14,7 +14,8 @@ namespace palp::io {
 ///     certificate.pem    its own certificate, which names its role
 ///     key.pem            the private key of it
 ///     authority.pem      whoever signs the certificates of both sites
-///     revoked.pem        optional: a revocation list of that authority
+///     peers.txt          optional: the names of the sites that it talks to, a line each
+///     revoked.pem        optional: revocation lists of that authority and of those between
 ///
 /// or, for a bench, `pre_shared_key.txt` alone: 64 hexadecimal digits, the same at both sites.
 /// Immutable after construction. Thread: made by any, then io's.
@@ -47,8 +48,5 @@ class Credentials {
   std::string name_;
   std::vector<std::string> cautions_;
 };
-
-/// The URI in a certificate's subject alternative names that says which site it is for.
-[[nodiscard]] std::string role_uri(link::Role role);
 
 }  // namespace palp::io

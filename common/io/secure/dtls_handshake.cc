@@ -11,6 +11,7 @@
 #include "common/io/secure/dtls_bio.h"
 #include "common/io/secure/openssl_context.h"
 #include "common/io/secure/openssl_handles.h"
+#include "common/io/secure/site_certificate.h"
 #include "common/link/codec_control.h"
 #include "common/link/transport.h"
 
@@ -91,16 +92,19 @@ std::string hexadecimal(std::span<const unsigned char> bytes) {
   return text;
 }
 
-std::string name_of(const X509* certificate) {
-  std::array<char, 100> name{};
-  X509_NAME_get_text_by_NID(X509_get_subject_name(certificate),
-                            NID_commonName,
-                            name.data(),
-                            static_cast<int>(name.size()));
-  std::string text = name.data();
-  std::ranges::replace_if(
-      text, [](char one) { return one < ' ' || one > '~'; }, '?');
-  return text;
+/// Why a certificate did not pass (credentials.cc).
+std::string refusal_of(long verdict) {
+  switch (verdict) {
+    case X509_V_ERR_APPLICATION_VERIFICATION:
+      return "the peer's certificate is made out to another role";
+    case X509_V_ERR_INVALID_PURPOSE:
+      return "the peer's certificate is not one of a site";
+    case X509_V_ERR_HOSTNAME_MISMATCH:
+      return "the peer's certificate bears a name that peers.txt does not list";
+    default:
+      return std::string{"the peer's certificate is refused: "} +
+             X509_verify_cert_error_string(verdict);
+  }
 }
 
 }  // namespace
@@ -258,11 +262,7 @@ void DtlsHandshake::go_on() {
   state_ = State::Failed;
   const long verdict = SSL_get_verify_result(ssl);
   const std::string complaint = openssl_complaint();
-  failure_ = verdict == X509_V_ERR_APPLICATION_VERIFICATION
-                 ? "the peer's certificate is made out to another role"
-             : verdict != X509_V_OK ? "the peer's certificate is refused: " +
-                                          std::string{X509_verify_cert_error_string(verdict)}
-                                    : complaint;
+  failure_ = verdict == X509_V_OK ? complaint : refusal_of(verdict);
 }
 
 /// What OpenSSL does not insist on, and the keys.
@@ -284,7 +284,7 @@ void DtlsHandshake::finish() {
       failure_ = "the peer has shown no certificate";
       return;
     }
-    result.peer_name = name_of(peer.get());
+    result.peer_name = site_name(peer.get());
     result.peer_fingerprint = hexadecimal(std::span{digest}.first(size));
   }
   constexpr char kLabel[] = "EXPORTER-palp-session";

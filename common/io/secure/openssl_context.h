@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "common/io/secure/credentials.h"
@@ -11,7 +14,8 @@ namespace palp::io {
 struct Credentials::Context {
   Openssl<SSL_CTX> ssl;
   link::Role peer{};
-  std::vector<unsigned char> pre_shared_key;  ///< empty: certificates
+  std::optional<std::set<std::string>> peer_names;  ///< absent: any name
+  std::vector<unsigned char> pre_shared_key;        ///< empty: certificates
 
   ~Context() { OPENSSL_cleanse(pre_shared_key.data(), pre_shared_key.size()); }
 };

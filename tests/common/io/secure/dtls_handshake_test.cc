@@ -7,10 +7,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <openssl/pem.h>
 #include <openssl/ssl.h>
+#include <openssl/x509v3.h>
 
 #include "common/core/random.h"
 #include "common/io/secure/openssl_context.h"
+#include "common/io/secure/openssl_handles.h"
 #include "tests/common/io/net/loopback.h"
 #include "tests/common/io/secure/keys_folder.h"
 
@@ -162,15 +165,82 @@ TEST(DtlsHandshakeTest, RightAuthorityButWrongRoleIsRefused) {
   ASSERT_EQ(SSL_CTX_use_certificate_chain_file(context, (folder / "certificate.pem").c_str()), 1);
   ASSERT_EQ(SSL_CTX_use_PrivateKey_file(context, (folder / "key.pem").c_str(), SSL_FILETYPE_PEM),
             1);
-  EXPECT_THAT(refusal(*surgeon, *patient), HasSubstr("the peer's certificate is refused"));
+  EXPECT_THAT(refusal(*surgeon, *patient), HasSubstr("not one of a site"));
 }
 
-TEST(DtlsHandshakeTest, TheRoleInTheNameCountsToo) {
-  const KeysFolder keys{"role"};
+TEST(DtlsHandshakeTest, ASiteThatIsNotOnTheListIsRefusedAndWithoutAListAnyIsTaken) {
+  const KeysFolder keys{"names"};
+  CertificatesConfig other = keys.config();
+  other.name = "elsewhere";
+  const auto here = keys.credentials(Role::Surgeon);
+  ASSERT_TRUE(make_certificates(other));  // of the same authority
   const auto patient = keys.credentials(Role::Patient);
-  // As if the certificate's purpose fitted and only the role did not.
-  patient->context().peer = Role::Patient;
-  EXPECT_THAT(refusal(*keys.credentials(Role::Surgeon), *patient), HasSubstr("another role"));
+  EXPECT_THAT(refusal(*here, *patient), HasSubstr("a name that peers.txt does not list"));
+  here->context().peer_names.reset();
+  Pair pair{*here, *patient};
+  pair.pass();
+  EXPECT_EQ(pair.surgeon_.state(), State::Done) << pair.surgeon_.failure();
+}
+
+using Extensions = std::vector<std::pair<int, std::string>>;
+
+/// Gives a site another key, and a certificate of the authority in `folder` with these extensions.
+void swap_certificate(const Credentials& site,
+                      const std::filesystem::path& folder,
+                      const std::string& name,
+                      const Extensions& extensions) {
+  const Openssl<BIO> file{BIO_new_file((folder / "key.pem").c_str(), "r")};
+  const Openssl<EVP_PKEY> authority{PEM_read_bio_PrivateKey(file.get(), nullptr, nullptr, nullptr)};
+  const Openssl<BIO> signer{BIO_new_file((folder / "certificate.pem").c_str(), "r")};
+  const Openssl<X509> issuer{PEM_read_bio_X509(signer.get(), nullptr, nullptr, nullptr)};
+  const Openssl<EVP_PKEY> key{EVP_EC_gen("P-256")};
+  const Openssl<X509> made{X509_new()};
+  X509_set_version(made.get(), X509_VERSION_3);
+  X509_set_pubkey(made.get(), key.get());
+  X509_gmtime_adj(X509_getm_notBefore(made.get()), -60);
+  X509_gmtime_adj(X509_getm_notAfter(made.get()), 3600);
+  X509_NAME_add_entry_by_txt(X509_get_subject_name(made.get()),
+                             "CN",
+                             MBSTRING_ASC,
+                             reinterpret_cast<const unsigned char*>(name.c_str()),
+                             -1,
+                             -1,
+                             0);
+  X509_set_issuer_name(made.get(), X509_get_subject_name(issuer.get()));
+  for (const auto& [what, value] : extensions) {
+    const Openssl<X509_EXTENSION> extension{
+        X509V3_EXT_conf_nid(nullptr, nullptr, what, value.c_str())};
+    ASSERT_NE(extension, nullptr) << value;
+    X509_add_ext(made.get(), extension.get(), -1);
+  }
+  ASSERT_NE(X509_sign(made.get(), authority.get(), EVP_sha256()), 0);
+  SSL_CTX* context = site.context().ssl.get();
+  ASSERT_EQ(SSL_CTX_use_certificate(context, made.get()), 1);
+  ASSERT_EQ(SSL_CTX_use_PrivateKey(context, key.get()), 1);
+}
+
+/// The surgeon's refusal of a patient whose certificate was made with other extensions.
+std::string refusal_of_patient_with(const Extensions& extensions) {
+  const KeysFolder keys{"extensions"};
+  const auto surgeon = keys.credentials(Role::Surgeon);
+  const auto patient = keys.credentials(Role::Patient);
+  swap_certificate(*patient, keys.path() / "authority", "test patient site", extensions);
+  Pair pair{*surgeon, *patient};
+  pair.pass();
+  EXPECT_EQ(pair.surgeon_.state() == State::Done, pair.surgeon_.failure().empty());
+  return pair.surgeon_.failure();
+}
+
+TEST(DtlsHandshakeTest, WhatAnAuthorityMadeForSomethingElseIsRefused) {
+  const std::pair<int, std::string> site{NID_subject_alt_name, "URI:palp:patient"};
+  const std::pair<int, std::string> server{NID_ext_key_usage, "serverAuth"};
+  EXPECT_THAT(refusal_of_patient_with({site}), HasSubstr("not one of a site"));
+  EXPECT_THAT(refusal_of_patient_with({site, server, {NID_basic_constraints, "CA:TRUE"}}),
+              HasSubstr("not one of a site"));
+  const std::pair<int, std::string> signs{NID_key_usage, "digitalSignature,keyCertSign"};
+  EXPECT_THAT(refusal_of_patient_with({site, server, signs}), HasSubstr("not one of a site"));
+  EXPECT_THAT(refusal_of_patient_with({server}), HasSubstr("another role"));
+  EXPECT_EQ(refusal_of_patient_with({site, server}), "");
 }
 
 TEST(DtlsHandshakeTest, AnExpiredCertificateIsRefused) {

@@ -1,0 +1,85 @@
+#include "common/io/secure/site_certificate.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <fstream>
+
+#include <openssl/x509v3.h>
+
+#include "common/io/process/system_text.h"
+#include "common/io/secure/openssl_handles.h"
+
+namespace palp::io {
+namespace {
+
+using link::Role;
+
+bool names_role(X509* certificate, Role role) {
+  const Openssl<GENERAL_NAMES> names{static_cast<GENERAL_NAMES*>(
+      X509_get_ext_d2i(certificate, NID_subject_alt_name, nullptr, nullptr))};
+  const std::string wanted = role_uri(role);
+  for (int i = 0; names != nullptr && i < sk_GENERAL_NAME_num(names.get()); ++i) {
+    const GENERAL_NAME* name = sk_GENERAL_NAME_value(names.get(), i);
+    if (name->type != GEN_URI) continue;
+    const ASN1_IA5STRING* uri = name->d.uniformResourceIdentifier;
+    const std::string text{reinterpret_cast<const char*>(ASN1_STRING_get0_data(uri)),
+                           static_cast<std::size_t>(ASN1_STRING_length(uri))};
+    if (text == wanted) return true;
+  }
+  return false;
+}
+
+std::string trimmed(const std::string& line) {
+  constexpr char kBlank[] = " \t\r";
+  const std::size_t begin = line.find_first_not_of(kBlank);
+  if (begin == std::string::npos) return {};
+  return line.substr(begin, line.find_last_not_of(kBlank) + 1 - begin);
+}
+
+}  // namespace
+
+std::string role_name(Role role) { return role == Role::Surgeon ? "surgeon" : "patient"; }
+
+std::string role_uri(Role role) { return "palp:" + role_name(role); }
+
+std::string site_name(const X509* certificate) {
+  std::array<char, 100> room{};
+  X509_NAME_get_text_by_NID(X509_get_subject_name(certificate),
+                            NID_commonName,
+                            room.data(),
+                            static_cast<int>(room.size()));
+  std::string name = room.data();
+  std::ranges::replace_if(
+      name, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return name;
+}
+
+CertificateFlaw flaw_of(X509* certificate, Role role) {
+  const std::uint32_t flags = X509_get_extension_flags(certificate);
+  const bool signs_others =
+      (flags & EXFLAG_KUSAGE) != 0 && (X509_get_key_usage(certificate) & KU_KEY_CERT_SIGN) != 0;
+  if ((flags & EXFLAG_CA) != 0 || signs_others) return CertificateFlaw::Authority;
+  const std::uint32_t wanted = role == Role::Surgeon ? XKU_SSL_CLIENT : XKU_SSL_SERVER;
+  if ((flags & EXFLAG_XKUSAGE) == 0 || (X509_get_extended_key_usage(certificate) & wanted) == 0) {
+    return CertificateFlaw::Purpose;
+  }
+  return names_role(certificate, role) ? CertificateFlaw::None : CertificateFlaw::Role;
+}
+
+Result<std::set<std::string>> read_peer_names(const std::filesystem::path& file) {
+  std::ifstream in{file};
+  if (!in) {
+    Error error{"identity " + file.string() + ": cannot be read: " + system_text(errno)};
+    error.unreachable = true;
+    return tl::unexpected{error};
+  }
+  std::set<std::string> names;
+  for (std::string line; std::getline(in, line);) {
+    const std::string name = trimmed(line.substr(0, line.find('#')));
+    if (!name.empty()) names.insert(name);
+  }
+  return names;
+}
+
+}  // namespace palp::io
