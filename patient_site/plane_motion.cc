@@ -45,12 +45,18 @@ NoteCode PlaneMotion::follow(const Place& asked, bool in_contact, double span) n
     // A hand is never quite still: only what it means to be another place is refused.
     return distance(asked, command()) > kSamePlace ? NoteCode::DragRefused : NoteCode::None;
   }
-  const AxisLimits limits{
-      .speed = in_contact ? std::min(config_.drag_speed, config_.speed_max) : config_.speed_max,
-      .acceleration = config_.acceleration_max,
-      .step_free = 0};
-  x_ = step_axis(x_, place.x, limits, span);
-  y_ = step_axis(y_, place.y, limits, span);
+  const Place ahead{place.x - x_.command, place.y - y_.command};
+  const double far = std::hypot(ahead.x, ahead.y);
+  const auto limits = [&](double ahead_on_axis) {
+    // A drag keeps to the straight line: the tissue feels the speed along it, not that of an axis.
+    const double share = far > 0 ? std::abs(ahead_on_axis) / far : 1;
+    const double drag = std::min(config_.drag_speed * share, config_.speed_max);
+    return AxisLimits{.speed = in_contact ? drag : config_.speed_max,
+                      .acceleration = config_.acceleration_max,
+                      .step_free = 0};
+  };
+  x_ = step_axis(x_, place.x, limits(ahead.x), span);
+  y_ = step_axis(y_, place.y, limits(ahead.y), span);
   return place == asked ? NoteCode::None : NoteCode::PlaceBeyondTravel;
 }
 

@@ -10,7 +10,7 @@ struct PlaneMotionConfig {
   double travel_x{0.5};    ///< [m], half of it to either side
   double travel_y{0.5};    ///< [m]
   double speed_max{0.15};  ///< [m/s], of each axis, in the air
-  /// [m/s], of each axis, pressed into the tissue; 0: never, as of a stage that cannot drag
+  /// [m/s], along the surface, pressed into the tissue; 0: never, as of a stage that cannot drag
   double drag_speed{0.02};
   double acceleration_max{8};  ///< [m/s^2], of each axis
 };

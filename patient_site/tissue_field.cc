@@ -124,29 +124,44 @@ std::size_t SurveyField::weigh(const Place& place, std::span<double> weights) co
   return curves_.size();
 }
 
+SurveyField::Blend SurveyField::blend(const Place& place,
+                                      double indentation,
+                                      std::span<double> weights) const noexcept {
+  const std::size_t alone = weigh(place, weights);
+  if (alone < curves_.size()) return {.held = &curves_[alone].table};
+  const auto known = [&](std::size_t i) { return log_force(curves_[i].table.force(indentation)); };
+  std::size_t least = 0;
+  std::size_t most = 0;
+  Blend blend;
+  for (std::size_t i = 0; i < curves_.size(); ++i) {
+    blend.log += weights[i] * known(i);
+    if (known(i) < known(least)) least = i;
+    if (known(i) > known(most)) most = i;
+  }
+  if (blend.log <= known(least)) blend.held = &curves_[least].table;
+  if (blend.log >= known(most)) blend.held = &curves_[most].table;
+  return blend;
+}
+
 double SurveyField::elastic_force(const Place& place, double indentation) const noexcept {
   if (!(indentation > 0)) return 0;
-  std::array<double, kPlacesMax> weights{};
-  const std::size_t alone = weigh(place, std::span{weights}.first(curves_.size()));
-  if (alone < curves_.size()) return curves_[alone].table.force(indentation);
-  double sum = 0;
-  for (std::size_t i = 0; i < curves_.size(); ++i) {
-    sum += weights[i] * log_force(curves_[i].table.force(indentation));
-  }
-  return from_log(sum);
+  std::array<double, kPlacesMax> room{};
+  const Blend found = blend(place, indentation, std::span{room}.first(curves_.size()));
+  return found.held != nullptr ? found.held->force(indentation) : from_log(found.log);
 }
 
 double SurveyField::stiffness(const Place& place, double indentation) const noexcept {
   if (!(indentation > 0)) return 0;
-  std::array<double, kPlacesMax> weights{};
-  const std::size_t alone = weigh(place, std::span{weights}.first(curves_.size()));
-  if (alone < curves_.size()) return curves_[alone].table.derivative(indentation);
+  std::array<double, kPlacesMax> room{};
+  const std::span<double> weights = std::span{room}.first(curves_.size());
+  const Blend found = blend(place, indentation, weights);
+  if (found.held != nullptr) return found.held->derivative(indentation);
   double rate = 0;
   for (std::size_t i = 0; i < curves_.size(); ++i) {
     const ForceTable& table = curves_[i].table;
     rate += weights[i] * table.derivative(indentation) / (table.force(indentation) + kFloor);
   }
-  return (elastic_force(place, indentation) + kFloor) * rate;
+  return (from_log(found.log) + kFloor) * rate;
 }
 
 }  // namespace palp::patient

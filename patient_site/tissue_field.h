@@ -77,7 +77,8 @@ class InclusionField final : public TissueField {
 /// its nearest neighbours say and that levels off from the distance to the nearest on, and planes
 /// count by the inverse fourth power of the distance (Shepard 1968, with the planes of Franke and
 /// Nielson 1980; by the second power all far places together outweigh the near ones). Exactly the
-/// curves at their places, with a continuous slope everywhere; far away, a mean of all.
+/// curves at their places, and nowhere more or less than all of them; its slope is continuous where
+/// it is not held at the least or the most. Far away, a mean of all.
 class SurveyField final : public TissueField {
  public:
   /// `curves`: 2 to kPlacesMax, kPlacesApart or more from each other; outlive the field.
@@ -105,6 +106,14 @@ class SurveyField final : public TissueField {
   /// curve that is alone there, or the number of curves.
   std::size_t weigh(const Place& place, std::span<double> weights) const noexcept;
   [[nodiscard]] Node node_of(std::size_t index) const;
+  struct Blend {
+    double log{};              ///< of the force
+    const ForceTable* held{};  ///< the curve that counts alone: there, or the least or the most
+  };
+  /// `weights`: room for as many as there are curves.
+  [[nodiscard]] Blend blend(const Place& place,
+                            double indentation,
+                            std::span<double> weights) const noexcept;
 
   std::span<const PlacedCurve> curves_;
   std::vector<Node> nodes_;

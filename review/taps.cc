@@ -130,9 +130,9 @@ std::optional<judge::DepthStatement> overall_depth(const std::vector<Tap>& taps)
 std::string tap_table(const std::vector<Tap>& taps,
                       const std::optional<judge::DepthStatement>& depth) {
   std::string text{
-      "site  stroke    indentation  force max  stiffness felt    true   error      h  "
+      "place      stroke    indentation  force max  stiffness felt    true   error      h  "
       "verdict  depth  95 % interval\n"
-      "                         mm          N             N/m     N/m       %      N"
+      "                              mm          N             N/m     N/m       %      N"
       "              mm\n"};
   for (const Tap& tap : taps) {
     const std::optional<double> error = tap.stiffness.error();
@@ -141,7 +141,7 @@ std::string tap_table(const std::vector<Tap>& taps,
     const auto scaled = [](const std::optional<double>& value, double factor) {
       return value ? std::optional{*value * factor} : std::nullopt;
     };
-    text += left(place_text(tap.place), 6) +
+    text += left(place_text(tap.place), 10) + ' ' +
             left(std::string{to_string(tap.kind)} + ' ' + std::to_string(tap.index), 10) +
             cell(estimate.indentation_max * 1e3, 2, 11) + cell(estimate.force_max, 3, 11) +
             cell(tap.stiffness.felt(), 1, 16) + cell(tap.stiffness.truth(), 1, 8) +

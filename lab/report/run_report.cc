@@ -105,7 +105,7 @@ std::string measured(double value, int decimals, const char* unit) {
 
 std::string tap_text(const judge::TapMetrics& tap) {
   std::string text;
-  append(text, "tap %s%-2d    ", place_text(tap.place).c_str(), tap.index);
+  append(text, "tap %-9s %-2d ", place_text(tap.place).c_str(), tap.index);
   if (!std::isfinite(tap.stiffness_felt)) return text + "no contact\n";
   append(text,
          "felt %6.1f N/m, true %6.1f N/m (%s), hand to %.2f mm\n",
@@ -158,7 +158,7 @@ std::string run_summary(const Scenario& scenario,
   for (const judge::TapMetrics& tap : m.taps) text += tap_text(tap);
   for (const DepthEstimate& estimate : result.depths) {
     append(text,
-           "stroke %s    h %.4f N, %s",
+           "stroke %-9s h %.4f N, %s",
            place_text(estimate.place).c_str(),
            estimate.hash,
            std::string{to_string(estimate.verdict)}.c_str());

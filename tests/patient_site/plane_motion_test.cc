@@ -43,6 +43,21 @@ TEST(PlaneMotionTest, NeverExceedsTravelSpeedAndAccelerationOfAnyAxisWhateverIsA
   });
 }
 
+TEST(PlaneMotionTest, ADragKeepsToItsLineAndToItsSpeedInAnyDirection) {
+  rc::check([] {
+    PlaneMotion motion = at(kSiteA);
+    const Place aim{*rc::gen::inRange(-60, 60) * 1e-3, *rc::gen::inRange(1, 60) * 1e-3};
+    Place before = kSiteA;
+    for (int i = 0; i < 300; ++i) {
+      (void)motion.follow(aim, true, kTick);
+      const Place now = motion.command();
+      RC_ASSERT(distance(now, before) <= 0.02 * kTick + 1e-12);
+      RC_ASSERT(std::abs(now.x * aim.y - now.y * aim.x) / std::hypot(aim.x, aim.y) < 0.3e-3);
+      before = now;
+    }
+  });
+}
+
 TEST(PlaneMotionTest, ArrivesExactlyAndDoesNotRunPast) {
   PlaneMotion motion = at({-7e-3, 2e-3});
   const Place aim{20e-3, -1.3e-3};
