@@ -255,7 +255,8 @@ DepthReport PatientControl::depth_report() const noexcept {
           .depth_stddev = now_.depth.depth_stddev,
           .depth_low = now_.depth.depth_low,
           .depth_high = now_.depth.depth_high,
-          .hash = now_.depth.hash};
+          .hash = now_.depth.hash,
+          .place = now_.depth.place};
 }
 
 }  // namespace palp::patient

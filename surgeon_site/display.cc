@@ -4,6 +4,7 @@
 
 #include "common/core/depth_text.h"
 #include "common/core/number_text.h"
+#include "common/core/place_text.h"
 #include "common/link/health_text.h"
 #include "common/record/notes.h"
 
@@ -23,12 +24,20 @@ std::string progress_text(const ScriptProgress& script) {
   return text + script.phase_name.data();
 }
 
+/// A stage that goes along with the hand is no news.
+std::string stage_text(const SurgeonStatus& status) {
+  const bool apart = distance(status.place, status.peer_place) > kSamePlace;
+  if (status.state != SiteState::Engaged || !status.peer_heard || !apart) return {};
+  return "stage not at " + place_text(status.place) + " but at " + place_text(status.peer_place) +
+         "  ";
+}
+
 }  // namespace
 
 std::string status_line(const SurgeonStatus& status) {
   return record::state_text(status.state, status.reason, status.refused) + "  " +
          link::health_text(status.link) + number_text("  force ", status.force, 2, " N  ") +
-         depth_line_of(status.depth) + progress_text(status.script);
+         stage_text(status) + depth_line_of(status.depth) + progress_text(status.script);
 }
 
 std::optional<std::string> delay_advice(const SurgeonStatus& status,

@@ -59,6 +59,7 @@ void SurgeonControl::begin_session(const DeviceFacts& peer) noexcept {
 void SurgeonControl::hear(const link::Arrivals& arrived) noexcept {
   now_.peer_heard = arrived.peer_heard;
   now_.peer_state = arrived.peer.state;
+  if (arrived.peer_heard) now_.peer_place = arrived.peer.place;
   account_.arrived(arrived);
   if (const Incoming* last = coupling::newest(arrived.samples)) {
     now_.tip = last->sample.position;

@@ -4,6 +4,7 @@
 
 #include "common/core/depth_verdict.h"
 #include "common/core/number_text.h"
+#include "common/core/place_text.h"
 
 namespace palp {
 
@@ -30,12 +31,13 @@ template <typename Estimate>
                      .high = estimate.depth_high});
 }
 
-/// On a status line: "depth -" before the first estimate, and the hash behind what was found or
-/// not.
+/// On a status line: "depth -" before the first estimate, and behind what was found or not the
+/// hash and the place.
 template <typename Estimate>
 [[nodiscard]] std::string depth_line_of(const Estimate& estimate) {
   if (estimate.number == 0) return "depth -";
-  const std::string hash = number_text(" (h ", estimate.hash, 4, " N)");
+  const std::string hash =
+      number_text(" (h ", estimate.hash, 4, " N) at ") + place_text(estimate.place);
   const std::string text = depth_text_of(estimate);
   if (estimate.verdict == DepthVerdict::None) return text + hash;
   return "depth " + text + (estimate.verdict == DepthVerdict::Found ? hash : "");

@@ -54,6 +54,7 @@ struct DepthReport {
   double depth_low{};     ///< [m]
   double depth_high{};    ///< [m]
   double hash{};          ///< [N]
+  Place place;            ///< where the stroke was
 };
 
 namespace message {
@@ -98,7 +99,9 @@ inline constexpr auto fields<S> = list(
     field<5, &S::depth_stddev>("depth_stddev_m", wire<float>, limit(kLengthMax), log_number<6>),
     field<6, &S::depth_low>("depth_low_m", wire<float>, limit(kLengthMax), log_number<7>),
     field<7, &S::depth_high>("depth_high_m", wire<float>, limit(kLengthMax), log_number<8>),
-    field<8, &S::hash>("hash_n", wire<float>, limit(kForceMax), log_number<4>));
+    field<8, &S::hash>("hash_n", wire<float>, limit(kForceMax), log_number<4>),
+    field<9, &S::place, &Place::x>("x_m", wire<float>, limit(kLengthMax)),
+    field<10, &S::place, &Place::y>("y_m", wire<float>, limit(kLengthMax)));
 
 }  // namespace message
 }  // namespace palp

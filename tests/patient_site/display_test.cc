@@ -28,9 +28,10 @@ TEST(PatientDisplayTest, ShowsTheSiteInItsUnits) {
   status.depth.verdict = DepthVerdict::Found;
   status.depth.depth = 10.2e-3;
   status.depth.hash = 0.07312;
+  status.depth.place = kSiteB;
   EXPECT_EQ(status_line(status),
             "ENGAGED  rtt 5.2 ms  loss 10.0 %  tip 3.46 mm  contact 0.73 N  "
-            "depth 10.2 mm (h 0.0731 N)");
+            "depth 10.2 mm (h 0.0731 N) at B");
 }
 
 TEST(PatientDisplayTest, SaysWhyItIsNotAsUsual) {
@@ -50,7 +51,7 @@ TEST(PatientDisplayTest, AnEstimateWithoutADepthSaysWhatItSays) {
   status.depth.number = 1;
   status.depth.verdict = DepthVerdict::None;
   status.depth.hash = 0.06;
-  EXPECT_THAT(status_line(status), HasSubstr("no inclusion (h 0.0600 N)"));
+  EXPECT_THAT(status_line(status), HasSubstr("no inclusion (h 0.0600 N) at A"));
   status.depth.verdict = DepthVerdict::Invalid;
   status.depth.reason = DepthReason::StrokeTooShort;
   EXPECT_THAT(status_line(status), HasSubstr("depth ? (stroke too short)"));

@@ -28,6 +28,7 @@ SurgeonStatus engaged() {
   status.depth.verdict = DepthVerdict::Found;
   status.depth.depth = 9.7e-3;
   status.depth.hash = 0.0712;
+  status.depth.place = kSiteB;
   status.script.scripted = true;
   status.script.begun = true;
   status.script.done = 0.62;
@@ -39,8 +40,20 @@ SurgeonStatus engaged() {
 TEST(DisplayTest, SaysStateLinkForceDepthAndProgressInOneLine) {
   const std::string line = status_line(engaged());
   EXPECT_EQ(line,
-            "ENGAGED  rtt 12.3 ms  loss 2.0 %  force 0.48 N  depth 9.7 mm (h 0.0712 N)"
+            "ENGAGED  rtt 12.3 ms  loss 2.0 %  force 0.48 N  depth 9.7 mm (h 0.0712 N) at B"
             "  [######----] 62 %  taps B");
+}
+
+TEST(DisplayTest, SaysWhereTheStageIsWhereItDoesNotGoAlong) {
+  SurgeonStatus status = engaged();
+  status.peer_heard = true;
+  status.place = {-100e-3, -30e-3};
+  status.peer_place = {-99.5e-3, -30e-3};
+  EXPECT_THAT(status_line(status), Not(HasSubstr("stage")));
+  status.peer_place = {-50e-3, -30e-3};
+  EXPECT_THAT(status_line(status), HasSubstr("stage not at -100,-30 but at -50,-30"));
+  status.state = SiteState::Clutched;
+  EXPECT_THAT(status_line(status), Not(HasSubstr("stage")));
 }
 
 TEST(DisplayTest, SaysWhatIsNotKnown) {
@@ -59,7 +72,7 @@ TEST(DisplayTest, SaysWhyTheForceIsGone) {
 TEST(DisplayTest, SaysTheVerdictOfADepth) {
   SurgeonStatus status = engaged();
   status.depth.verdict = DepthVerdict::None;
-  EXPECT_THAT(status_line(status), HasSubstr("no inclusion (h 0.0712 N)"));
+  EXPECT_THAT(status_line(status), HasSubstr("no inclusion (h 0.0712 N) at B"));
   status.depth.verdict = DepthVerdict::Invalid;
   status.depth.reason = DepthReason::StrokeTooShort;
   EXPECT_THAT(status_line(status), HasSubstr("depth ? (stroke too short)"));

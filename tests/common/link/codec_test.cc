@@ -307,15 +307,15 @@ TEST(WireCodecTest, TelegramsHaveTheSizesOfTheWirePage) {
   wire.telegram.site.place.y = 1;
   EXPECT_EQ(encoded(codec, wire).size(), 37U + 20U + 3 * 17U);  // direct, surgeon to patient
   wire.telegram.site.depth = {
-      kMost, DepthVerdict::Found, DepthReason::HashOutOfRange, 1, 1, 1, 1, 1};
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 57U + 3 * 17U);  // direct, patient to surgeon
+      kMost, DepthVerdict::Found, DepthReason::HashOutOfRange, 1, 1, 1, 1, 1, {1, 1}};
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 67U + 3 * 17U);  // direct, patient to surgeon
   wire.telegram.port.payload = ModelPayload{kMost, {1, 1, 1, 1, 1}, 1, 1, 1, 1, 1, 1, {1, 1}};
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 57U + 90U + 2 * 17U);  // mmt, the largest
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 67U + 90U + 2 * 17U);  // mmt, the largest
   wire.telegram.port.payload = TdpaPayload{1};
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 57U + 28U + 2 * 17U);
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 67U + 28U + 2 * 17U);
   wire.telegram.port.payload = WavePayload{1, 1};
   wire.older.fill(wire.telegram.port);
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 57U + 3 * 37U);
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 67U + 3 * 37U);
 }
 
 TEST(WireCodecTest, WorksInAnotherThreadThanItsMaker) {
