@@ -101,7 +101,6 @@ def bad_ones(bench: Bench, role: str) -> Iterator[tuple[str, Identity | None]]:
     yield "the other role", issue(other)
     yield "the usage of the other role", issue(role, usages=[USAGE[other]])
     yield "the name of the other role", issue(role, uris=[f"palp:{other}"])
-    yield "both roles", issue(role, list(USAGE.values()), ["palp:surgeon", "palp:patient"])
     yield "no name of a role", issue(role, uris=[])
     yield "a name that begins like it", issue(role, uris=[f"palp:{role}x"])
     yield "expired", issue(role, begins=-3 * DAY, ends=-2 * DAY)
@@ -156,7 +155,7 @@ def _patients(bench: Bench) -> list[str]:
 def certificates(bench: Bench) -> Verdict:
     settings = learn_settings(bench)
     passed = _surgeons(bench, settings) + _patients(bench)
-    return Verdict(f"31 bad certificates, passed: {', '.join(passed) or 'none'}", not passed)
+    return Verdict(f"29 bad certificates, passed: {', '.join(passed) or 'none'}", not passed)
 
 
 def other_site(bench: Bench) -> Verdict:
@@ -179,6 +178,6 @@ def other_site(bench: Bench) -> Verdict:
 
 
 ATTACKS = [
-    Attack("certificates", "16 kinds of certificates that name no site", certificates),
+    Attack("certificates", "15 kinds of certificates that name no site", certificates),
     Attack("other-site", "another site's certificate at the patient's address", other_site),
 ]
