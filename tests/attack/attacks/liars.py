@@ -207,7 +207,7 @@ def wrong_devices(bench: Bench) -> Verdict:
                 surgeon.devices = HAND | {name: value}
                 surgeon.run(3, lambda: surgeon.established or bool(surgeon.byes))
                 said = surgeon.byes[0]["text"].decode() if surgeon.byes else "nothing"
-                if surgeon.established or "the hand" not in said:
+                if surgeon.established or "hand" not in said:
                     wrong.append(f"{name} = {value}: said '{said}'")
     with Surgeon(bench.identity("surgeon"), address, settings) as surgeon:
         honest = surgeon.run(3, lambda: surgeon.established)

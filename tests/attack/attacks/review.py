@@ -104,7 +104,7 @@ def _read(bench: Bench, path: Path, verb: str) -> tuple[int | None, str, float, 
         "recover": [str(path), str(bench.work / "recovered.mcap")],
         "metrics": ["--surgeon", str(path), "--patient", str(path)],
     }.get(verb, [str(path)])
-    sanitized = "asan" in str(bench.bin)
+    sanitized = bench.sanitized
     began = time.monotonic()
     with (bench.work / "said").open("w+b") as said:
         process = subprocess.Popen(

@@ -101,8 +101,12 @@ class Program:
 class Bench:
     """A folder of an attack's own, keys for both sites, and all programs started; gone at its end."""
 
-    def __init__(self, binaries: Path, seconds: float, seed: int) -> None:
-        self.bin, self.seconds, self.seed = binaries, seconds, seed
+    def __init__(
+        self, binaries: Path, seconds: float, seed: int, count: int | None = None
+    ) -> None:
+        """`count`: so many lies, however long they take, instead of `seconds`."""
+        self.bin, self.seed, self.count = binaries, seed, count
+        self.seconds = seconds if count is None else 3600.0
         self.work = Path(tempfile.mkdtemp(prefix="palp-attack-"))
         self.programs: list[Program] = []
 
@@ -116,6 +120,14 @@ class Bench:
                 program.process.wait()
         if not os.environ.get("PALP_KEEP"):
             shutil.rmtree(self.work, ignore_errors=True)
+
+    @property
+    def sanitized(self) -> bool:
+        """Then memory and time say nothing."""
+        return b"AddressSanitizer" in (self.bin / "palp-patient").read_bytes()
+
+    def memory_is_kept(self, grown_kb: int, limit_kb: int = 4096) -> bool:
+        return self.sanitized or grown_kb < limit_kb
 
     @property
     def keys(self) -> Path:

@@ -127,6 +127,8 @@ class Site:
         self.on_tick: Callable[[float], None] = lambda now: None
         self.on_datagram: Callable[[bytes, Address], bool] = lambda datagram, source: True
         self._last_hello = 0.0
+        self._last_telegram = 0.0
+        self.longest_pause = 0.0  # between own telegrams [s]: what the peer may hold for
 
     def new_ids(self) -> None:
         """A session id is good for one session only."""
@@ -170,6 +172,9 @@ class Site:
         keys = self.session.keys if self.session else self.keys
         return keys.control_out.seal(kind, keys.control_id_out, message)
 
+    def seal_control(self, keys: wire.Keys, message: bytes) -> bytes:
+        return keys.control_out.seal(wire.CONTROL, keys.control_id_out, message)
+
     def hello(self) -> dict:
         return {
             "protocol_version": wire.PROTOCOL_VERSION,
@@ -185,7 +190,7 @@ class Site:
 
     def send_hello(self, keys: wire.Keys, to: Address) -> None:
         message = encode("Hello", self.hello())
-        self.send(keys.control_out.seal(wire.CONTROL, keys.control_id_out, message), to)
+        self.send(self.seal_control(keys, message), to)
         self._last_hello = time.monotonic()
 
     def leave(self) -> None:
@@ -217,6 +222,9 @@ class Site:
         message = told if isinstance(told, bytes) else encode("Telegram", told)
         self.send(self.seal(wire.DATA, message))
         self.counts["telegrams sent"] += 1
+        now = time.monotonic()
+        self.longest_pause = max(self.longest_pause, now - (self._last_telegram or now))
+        self._last_telegram = now
 
     # ---- Receiving
 
@@ -296,6 +304,7 @@ class Site:
 
     def end_session(self) -> None:
         self.session = None
+        self._last_telegram = 0.0
         self.counts["ended"] += 1
         self.new_ids()
         self.state, self.epoch = PARKED, 0
