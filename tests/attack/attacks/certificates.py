@@ -19,7 +19,8 @@ from cryptography.x509.oid import NameOID
 from client.attack import Attack, Verdict, learn_settings
 from client.dtls import Identity
 from client.programs import Bench
-from client.site import Patient, Settings, Surgeon
+from client.session import Settings
+from client.site import Patient, Surgeon
 
 USAGE = {"surgeon": Usage.CLIENT_AUTH, "patient": Usage.SERVER_AUTH}
 OTHER = {"surgeon": "patient", "patient": "surgeon"}

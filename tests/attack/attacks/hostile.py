@@ -101,15 +101,19 @@ KINDS: dict[str, Maker] = {
     "ClientHello": lambda r, ear: ear.hello[:27] + r.randbytes(32) + ear.hello[59:],
     "ClientHello edited": lambda r, ear: _bit_flipped(r, ear.hello),
     "ClientHello cut": lambda r, ear: ear.hello[: r.randrange(13, len(ear.hello))],
-    "ClientHello in pieces": lambda r, ear: _fragment(1, r.randbytes(20), 200, r.randrange(200), 20),
+    "ClientHello in pieces": lambda r, ear: _fragment(
+        1, r.randbytes(20), 200, r.randrange(200), 20
+    ),
     "a fragment without end": lambda r, ear: _fragment(
-        r.choice([1, 2, 11, 16]), r.randbytes(30), 0xFFFFFF, r.randrange(1 << 24), 30, r.randrange(9)
+        r.choice([1, 2, 11, 16]), r.randbytes(30), -1, r.randrange(1 << 24), 30, r.randrange(9)
     ),
     "a fragment longer than it is": lambda r, ear: _fragment(1, b"x", 100, 90, 0xFFFF),
     "a fatal alert": lambda r, ear: _record(21, bytes([2, r.randrange(256)])),
     "close notify": lambda r, ear: _record(21, b"\1\0", epoch=r.randrange(2)),
     "ChangeCipherSpec": lambda r, ear: _record(20, b"\1"),
-    "application data": lambda r, ear: _record(23, r.randbytes(50), epoch=1, number=r.getrandbits(32)),
+    "application data": lambda r, ear: _record(
+        23, r.randbytes(50), epoch=1, number=r.getrandbits(32)
+    ),
     "a heartbeat": lambda r, ear: _record(24, b"\1\xff\xff" + r.randbytes(16)),
     "records without content": lambda r, ear: _record(22, b"") * 80,
     "a record longer than it is": lambda r, ear: _record(22, r.randbytes(20), size=0xFFFF),
@@ -165,7 +169,8 @@ def _attack(bench: Bench, site: Site, program: Program, strangers: list[socket.s
     code = program.finish()
     return Verdict(
         f"{sent} datagrams of {len(KINDS)} kinds, {spoke} telegrams in the last 0.5 s, "
-        f"{sessions} session, {holds} holds (own longest pause {own:.0f} ms), memory {grown:+d} kB, exit code {code}",
+        f"{sessions} session, {holds} holds (own longest pause {own:.0f} ms), "
+        f"memory {grown:+d} kB, exit code {code}",
         spoke > 250 and sessions == 1 and (holds == 0 or own > 80) and bench.memory_is_kept(grown)
         and code in (0, 4),
     )  # fmt: skip
@@ -197,6 +202,6 @@ def of_surgeon(bench: Bench) -> Verdict:
 
 
 ATTACKS = [
-    Attack("hostile-patient", "junk of 40 kinds without keys, at palp-patient", of_patient),
-    Attack("hostile-surgeon", "junk of 40 kinds without keys, at palp-surgeon", of_surgeon),
+    Attack("hostile-patient", "junk of 40 kinds without keys, at palp-patient", of_patient, 8, 60),
+    Attack("hostile-surgeon", "junk of 40 kinds without keys, at palp-surgeon", of_surgeon, 8, 60),
 ]

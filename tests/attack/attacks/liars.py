@@ -11,12 +11,16 @@ from __future__ import annotations
 import math
 import random
 import time
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 
 from client.attack import Attack, Verdict, learn_settings
 from client.programs import Bench
 from client.schema import ENUMS
+from client.session import ENGAGED, HAND, Settings
 from client.session_file import hand_of, messages
-from client.site import ENGAGED, HAND, Patient, Settings, Surgeon
+from client.site import Patient, Surgeon
 
 # What the hand may gain from any peer, in mJ: docs/safety.md, and a margin of a tick.
 ENERGY_MAX_MJ = {"mmt": 1.05, "wave": 1.05, "tdpa": 1.05, "direct": 1.05}
@@ -102,7 +106,7 @@ def lying_patient(bench: Bench) -> Verdict:
     return Verdict("; ".join(wrong) or "each surgeon goes on speaking", not wrong)
 
 
-def _pump(patient: Patient, law: str):
+def _pump(patient: Patient, law: str) -> Callable[[float], dict]:
     """Pulls with the hand's own motion: a force whenever it moves out, none when it moves in."""
     charge = 0.0
     version = 1
@@ -129,7 +133,7 @@ def _pump(patient: Patient, law: str):
     return sample
 
 
-def overstated(law: str):
+def overstated(law: str) -> Callable[[Bench], Verdict]:
     def run(bench: Bench) -> Verdict:
         file = bench.work / "surgeon.mcap"
         with Patient(bench.identity("patient")) as patient:
@@ -156,34 +160,61 @@ def lying_surgeon(bench: Bench) -> Verdict:
     file = bench.work / "patient.mcap"
     patient = bench.patient("--session-file", file)
     with Surgeon(bench.identity("surgeon"), patient.address(), settings) as surgeon:
-        liar = Liar(bench.seed, "mmt", beyond=0.05)
+        liar = Liar(bench.seed, "mmt", beyond=0.01)
         surgeon.run(10, lambda: surgeon.established)
         surgeon.pedal = True
         surgeon.run(1)
         end = time.monotonic() + bench.seconds
-        while time.monotonic() < end:  # Wild, then so that it can engage again.
-            surgeon.sample, surgeon.edit = liar.sample, liar.edit
-            surgeon.run(1)
-            surgeon.sample = lambda t: {"position_m": 0.02 * math.sin(30 * t)}
-            surgeon.edit = lambda telegram: telegram
-            surgeon.run(1)
+        while time.monotonic() < end:
+            surgeon.sample = liar.sample
+            surgeon.run(0.3)
+            surgeon.sample = lambda t: {"position_m": 0.02 * math.sin(2.5 * t)}
+            surgeon.run(1.7)
+        # Last: an epoch or a stop that was told once holds for the session.
+        surgeon.sample, surgeon.edit = liar.sample, liar.edit
+        surgeon.run(1)
         lives = surgeon.run(2, lambda: surgeon.established)
         sent = surgeon.counts["telegrams sent"]
     code = patient.finish()
-    deepest = force = speed = 0.0
-    engaged = 0
-    last = None
-    for at, tick in messages(file, "patient/tick"):
-        engaged += tick["state"] == ENGAGED
-        deepest, force = max(deepest, tick["position_m"]), max(force, tick["force_n"])
-        if last and at > last[0]:
-            speed = max(speed, abs(tick["command_m"] - last[1]) / ((at - last[0]) * 1e-9))
-        last = at, tick["command_m"]
-    return Verdict(
-        f"{sent} telegrams, {engaged} ticks engaged, tip {deepest * 1e3:.1f} mm deep, "
-        f"{force:.2f} N at most, command at {speed:.2f} m/s at most, exit code {code}",
-        lives and code == 0 and engaged > 200 and deepest < 9e-3 and force < 5.5 and speed < 0.3,
-    )
+    stage = _stage_of(messages(file, "patient/tick"))
+    held = lives and code in (0, 4) and stage.engaged > 200
+    return Verdict(f"{sent} telegrams, {stage}, exit code {code}", held and stage.within_gates)
+
+
+@dataclass
+class Stage:
+    """What the patient's stage did, beside the default gates of palp-patient."""
+
+    engaged: int = 0
+    deepest: float = 0.0  # [m]
+    force: float = 0.0  # [N]
+    speed: float = 0.0  # [m/s], over 20 ms: ticks may be late
+
+    def __str__(self) -> str:
+        return (
+            f"{self.engaged} ticks engaged, tip {self.deepest * 1e3:.1f} mm deep, "
+            f"{self.force:.2f} N and {self.speed:.2f} m/s at most"
+        )
+
+    @property
+    def within_gates(self) -> bool:
+        return self.deepest < 9e-3 and self.force < 5.5 and self.speed < 0.2
+
+
+def _stage_of(ticks: Iterable[tuple[int, dict]]) -> Stage:
+    stage = Stage()
+    recent: deque[tuple[int, float]] = deque()
+    for at, tick in ticks:
+        stage.engaged += tick["state"] == ENGAGED
+        stage.deepest = max(stage.deepest, tick["position_m"])
+        stage.force = max(stage.force, tick["force_n"])
+        recent.append((at, tick["position_m"]))
+        while at - recent[0][0] > 20_000_000:
+            recent.popleft()
+        if (span := at - recent[0][0]) > 15_000_000:
+            speed = abs(tick["position_m"] - recent[0][1]) / (span * 1e-9)
+            stage.speed = max(stage.speed, speed)
+    return stage
 
 
 BAD_DEVICES = {

@@ -143,7 +143,7 @@ def _ask_again(site: Surgeon) -> None:
 
 
 ATTACKS = [
-    Attack("mutations-patient", "authenticated mutations, at palp-patient", of_patient),
-    Attack("mutations-surgeon", "authenticated mutations, at palp-surgeon", of_surgeon),
+    Attack("mutations-patient", "authenticated mutations, at palp-patient", of_patient, 8, 60),
+    Attack("mutations-surgeon", "authenticated mutations, at palp-surgeon", of_surgeon, 8, 60),
     Attack("mutations-hello", "authenticated mutations of Hellos, at both", hellos),
 ]

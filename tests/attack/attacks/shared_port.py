@@ -1,6 +1,6 @@
 """Another user of the machine opens a second socket on the patient's port.
 
-He can: ask for the port with SO_REUSEADDR and SO_REUSEPORT all the time, while surgeons come and go.
+He can: ask for the port with SO_REUSEADDR and SO_REUSEPORT all the time, while surgeons come.
 Must hold: he never gets it, and the next surgeon comes in.
 """
 
@@ -12,7 +12,8 @@ import sys
 
 from client.attack import Attack, Verdict, learn_settings
 from client.programs import Bench, wait_for
-from client.site import Settings, Surgeon
+from client.session import Settings
+from client.site import Surgeon
 
 THIEF = """
 import socket, sys, time

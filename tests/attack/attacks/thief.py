@@ -142,6 +142,6 @@ def flapping(bench: Bench) -> Verdict:
 
 
 ATTACKS = [
-    Attack("thief", "an observer's copies, 0 to 20 ms sooner, and the question handed over", thief),
-    Attack("thief-flapping", "the same, every other 3 ms", flapping),
+    Attack("thief", "copies 0 to 20 ms sooner, and the question handed over", thief, 12, 60),
+    Attack("thief-flapping", "the same, every other 3 ms", flapping, 12, 60),
 ]

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from client.programs import Bench
-from client.site import Patient, Settings
+from client.session import Settings
+from client.site import Patient
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Attack:
     means: str  # one line for --list
     run: Callable[[Bench], Verdict]
     seconds: float = 8  # how long it goes on unless told otherwise
-    seconds_long: float = 60  # the same in the long round
+    seconds_long: float = 30  # the same in the long round
 
 
 def learn_settings(bench: Bench, coupling: str = "mmt") -> Settings:

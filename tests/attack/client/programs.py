@@ -99,7 +99,7 @@ class Program:
 
 
 class Bench:
-    """A folder of an attack's own, keys for both sites, and all programs started; gone at its end."""
+    """A folder of an attack's own, keys for both sites, all programs started; gone at its end."""
 
     def __init__(
         self, binaries: Path, seconds: float, seed: int, count: int | None = None
@@ -124,7 +124,7 @@ class Bench:
     @property
     def sanitized(self) -> bool:
         """Then memory and time say nothing."""
-        return b"AddressSanitizer" in (self.bin / "palp-patient").read_bytes()
+        return b"__asan_init" in (self.bin / "palp-patient").read_bytes()
 
     def memory_is_kept(self, grown_kb: int, limit_kb: int = 4096) -> bool:
         return self.sanitized or grown_kb < limit_kb

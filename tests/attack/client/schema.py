@@ -1,7 +1,7 @@
 """Messages in protobuf's encoding, read and written from the .proto files of proto/ alone.
 
-A message is a dict of names; enumerators are numbers. Two layers: `pack` and `unpack` know only tags
-and wire types (a mutation edits there), `encode` and `decode` know the schema.
+A message is a dict of names; enumerators are numbers. Two layers: `pack` and `unpack` know only
+tags and wire types (a mutation edits there), `encode` and `decode` know the schema.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from pathlib import Path
 import zstandard
 
 from client.schema import LOG_MESSAGES, decode
-from client.site import ENGAGED, HOLD
+from client.session import ENGAGED, HOLD
 
 MAGIC = b"\x89MCAP0\r\n"
 SCHEMA, CHANNEL, MESSAGE, CHUNK = 3, 4, 5, 6
