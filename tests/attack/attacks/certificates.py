@@ -68,12 +68,12 @@ class Authority:
         authority: bool = False,
         begins: datetime.timedelta = -DAY,
         ends: datetime.timedelta = DAY,
-        key_usage: bool = True,
+        subject: str = "",
     ) -> Identity:
         key = ec.generate_private_key(ec.SECP256R1())
         now = datetime.datetime.utcnow()
         builder = x509.CertificateBuilder(
-            self.certificate.subject, _name(f"palp {role} site"), key.public_key(),
+            self.certificate.subject, _name(subject or f"palp {role} site"), key.public_key(),
             x509.random_serial_number(), now + begins, now + ends,
         ).add_extension(x509.BasicConstraints(authority, None), True)  # fmt: skip
         usages = [USAGE[role]] if usages is None else usages
@@ -83,9 +83,8 @@ class Authority:
         if uris:
             names = [x509.UniformResourceIdentifier(uri) for uri in uris]
             builder = builder.add_extension(x509.SubjectAlternativeName(names), False)
-        if key_usage:
-            sign = [True, *[False] * 4, authority, authority, False, False]
-            builder = builder.add_extension(x509.KeyUsage(*sign), True)
+        signs = [True, *[False] * 4, authority, authority, False, False]
+        builder = builder.add_extension(x509.KeyUsage(*signs), True)
         pem = builder.sign(self.key, hashes.SHA256()).public_bytes(serialization.Encoding.PEM)
         return Identity(pem, _pem(key))
 
@@ -178,7 +177,46 @@ def other_site(bench: Bench) -> Verdict:
     )
 
 
+def _revocations(by: Authority, serials: list[int]) -> bytes:
+    now = datetime.datetime.utcnow()
+    builder = x509.CertificateRevocationListBuilder(by.certificate.subject, now - DAY, now + DAY)
+    for serial in serials:
+        one = x509.RevokedCertificateBuilder(serial, now - DAY).build()
+        builder = builder.add_revoked_certificate(one)
+    return builder.sign(by.key, hashes.SHA256()).public_bytes(serialization.Encoding.PEM)
+
+
+def revoked_authority(bench: Bench) -> Verdict:
+    """A good certificate below an authority in between, which the first authority has revoked."""
+    settings = learn_settings(bench)
+    first = Authority.like(Authority.of(bench))  # The original signs sites only.
+    between = first.issue("surgeon", usages=[], uris=[], authority=True, subject="between")
+    certificate = x509.load_pem_x509_certificate(between.certificate)
+    second = Authority(serialization.load_pem_private_key(between.key, None), certificate)
+    made = second.issue("surgeon")
+    identity = Identity(made.certificate, made.key, (between.certificate,))
+    # Whoever reads only the first list of the file must refuse what he cannot look up.
+    lists = _revocations(second, []) + _revocations(first, [certificate.serial_number])
+    site = first.issue("patient")
+    for name, pem in {
+        "authority": first.certificate.public_bytes(serialization.Encoding.PEM),
+        "certificate": site.certificate,
+        "key": site.key,
+        "revoked": lists,
+    }.items():
+        (bench.keys / "patient" / f"{name}.pem").write_bytes(pem)
+    patient = bench.patient()
+    passed = _passes_as_surgeon(bench, patient.address(), identity, settings)
+    honest = _passes_as_surgeon(bench, patient.address(), first.issue("surgeon"), settings)
+    return Verdict(
+        f"a surgeon below a revoked authority {'passed' if passed else 'did not pass'}, an honest "
+        f"one {'passed' if honest else 'did not pass'}",
+        honest and not passed,
+    )
+
+
 ATTACKS = [
+    Attack("revoked-authority", "below an authority that was revoked itself", revoked_authority),
     Attack("certificates", "15 kinds of certificates that name no site", certificates),
     Attack("other-site", "another site's certificate at the patient's address", other_site),
 ]

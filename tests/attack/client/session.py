@@ -22,7 +22,8 @@ NO_DEVICES = {
     "sensor_lag_s": 0.0,
 }  # fmt: skip
 HAND = NO_DEVICES | {
-    "hand_axes": 3, "hand_force_peak_n": 8.5, "hand_force_continuous_n": 1.4, "hand_rate_hz": 1000.0,
+    "hand_axes": 3, "hand_force_peak_n": 8.5, "hand_force_continuous_n": 1.4,
+    "hand_rate_hz": 1000.0,
 }  # fmt: skip
 STAGE = NO_DEVICES | {
     "stage_axes": 3, "stage_travel_min_m": -0.05, "stage_travel_max_m": 0.05,
