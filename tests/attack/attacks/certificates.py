@@ -211,7 +211,7 @@ def revoked_authority(bench: Bench) -> Verdict:
     return Verdict(
         f"a surgeon below a revoked authority {'passed' if passed else 'did not pass'}, an honest "
         f"one {'passed' if honest else 'did not pass'}",
-        honest and not passed,
+        not passed,
     )
 
 
