@@ -24,6 +24,7 @@ from client.site import Patient, Surgeon
 
 # What the hand may gain from any peer, in mJ: docs/safety.md, and a margin of a tick.
 ENERGY_MAX_MJ = {"mmt": 1.05, "wave": 1.05, "tdpa": 1.05, "direct": 1.05}
+DEPTH_MAX_MM = 3  # Less than the simulated tissue is known for, where the stage stops anyway.
 FORCE_STEP_MAX_N = 0.5  # in 10 ms
 TAPS = ("move -3 0.5", "taps 60 5 0.8 0.1")
 
@@ -155,10 +156,11 @@ def overstated(law: str) -> Callable[[Bench], Verdict]:
 
 
 def lying_surgeon(bench: Bench) -> Verdict:
-    """Telegrams of every kind; the stage keeps to its gates (the defaults of palp-patient)."""
+    """Telegrams of every kind; the stage keeps to its gates."""
     settings = learn_settings(bench)
     file = bench.work / "patient.mcap"
-    patient = bench.patient("--session-file", file)
+    gate = f"motion_gate.depth_max_mm={DEPTH_MAX_MM}"
+    patient = bench.patient("--session-file", file, "--set", gate)
     with Surgeon(bench.identity("surgeon"), patient.address(), settings) as surgeon:
         liar = Liar(bench.seed, "mmt", beyond=0.01)
         surgeon.run(10, lambda: surgeon.established)
@@ -183,7 +185,7 @@ def lying_surgeon(bench: Bench) -> Verdict:
 
 @dataclass
 class Stage:
-    """What the patient's stage did, beside the default gates of palp-patient."""
+    """What the patient's stage did, beside its gates."""
 
     engaged: int = 0
     deepest: float = 0.0  # [m]
@@ -198,7 +200,7 @@ class Stage:
 
     @property
     def within_gates(self) -> bool:
-        return self.deepest < 9e-3 and self.force < 5.5 and self.speed < 0.2
+        return self.deepest < (DEPTH_MAX_MM + 1.3) * 1e-3 and self.force < 5.5 and self.speed < 0.2
 
 
 def _stage_of(ticks: Iterable[tuple[int, dict]]) -> Stage:
