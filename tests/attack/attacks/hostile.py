@@ -170,8 +170,8 @@ def _attack(bench: Bench, site: Site, program: Program, strangers: list[socket.s
     taken, honest = program.report.get("accepted", 0), site.counts["telegrams sent"]
     return Verdict(
         f"{sent} datagrams of {len(KINDS)} kinds, {spoke} telegrams in the last 0.5 s, "
-        f"{taken} of {honest} honest telegrams taken, {sessions} session, {holds} holds (own longest pause {own:.0f} ms), "
-        f"memory {grown:+d} kB, exit code {code}",
+        f"{taken} of {honest} honest telegrams taken, {sessions} session, {holds} holds "
+        f"(own longest pause {own:.0f} ms), memory {grown:+d} kB, exit code {code}",
         spoke > 250 and sessions == 1 and (holds == 0 or own > 80) and bench.memory_is_kept(grown)
         and code in (0, 4) and 0.9 * honest < taken <= honest,
     )  # fmt: skip

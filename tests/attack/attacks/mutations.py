@@ -41,7 +41,7 @@ def _mutant(site: Site, count: int, mutator: Mutator) -> tuple[int, bytes]:
         told = encode("Telegram", _everything(site, count))
         return wire.DATA, mutator.mutate("Telegram", told)
     if count % 10 == 8:
-        told = wire.path_message(count // 10 % 2, mutator.random.randbytes(8))
+        told = wire.path_message(count // 10 % 2, mutator.random.randbytes(wire.PATH_REST_BYTES))
         return wire.PATH, mutator.mutate("path", told)
     bye = {"session_id": 1, "peer_session_id": 2, "reason": 1, "text": b"a sentence"}
     return wire.CLOSE, mutator.mutate("Bye", encode("Bye", bye))

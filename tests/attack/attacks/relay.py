@@ -8,6 +8,7 @@ relay's folder; what comes back goes to who is served, not to who sent last.
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import socket
@@ -77,14 +78,17 @@ def relay_tcp(bench: Bench) -> Verdict:
     victim.write_text("precious\n")
     record = json.dumps({"record": str(victim).removesuffix("-up.csv")})
     obeyed: list[str] = []
-    for name, words in [
+    # Without a token, and as one who does not know it; a relay that refuses to start has held.
+    kinds = ([], ["--control-token", bench.work / "token"])
+    attempts = [
         ("record", record + "\n"),
         ("set", '{"set":"delay 500ms"}\n'),
         ("quit", '{"quit":true}\n'),
         ("post-set", _forged_post('{"set":"delay 500ms"}')),
         ("post-quit", _forged_post('{"quit":true}')),
-    ]:
-        relay = _relay(bench, "--control", "127.0.0.1:0")
+    ]
+    for (name, words), kind in itertools.product(attempts, kinds):
+        relay = _relay(bench, "--control", "127.0.0.1:0", *kind)
         port = _control_port(relay)
         if port is None:
             continue

@@ -17,6 +17,7 @@ DATAGRAM_BYTES_MAX = 1200
 NUMBER_MAX = 1 << 53
 
 QUESTION, ANSWER = 0, 1
+PATH_REST_BYTES = 8  # what the answer repeats
 
 
 def header(kind: int, key_id: int, length: int, connection: int, number: int) -> bytes:
@@ -41,14 +42,14 @@ def read_header(datagram: bytes) -> Header | None:
     return Header(first & 0xF, second >> 6, connection, number)
 
 
-def path_message(what: int, token: bytes) -> bytes:
+def path_message(what: int, rest: bytes) -> bytes:
     """A question about a path, or the answer to one."""
-    return bytes([what]) + token
+    return bytes([what]) + rest
 
 
 def path_answer(message: bytes) -> bytes | None:
     """The honest answer to a path message; None where none is due."""
-    if len(message) == 9 and message[0] == QUESTION:
+    if len(message) == 1 + PATH_REST_BYTES and message[0] == QUESTION:
         return path_message(ANSWER, message[1:])
     return None
 
