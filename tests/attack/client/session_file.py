@@ -69,7 +69,6 @@ class HandTold:
     force_max: float = 0.0  # [N]
     force_step: float = 0.0  # [N], the largest change in 10 ms
     energy_gained: float = 0.0  # [J], the most that the hand had gained since the start
-    records_dropped: int = 0
 
     def __str__(self) -> str:
         return (

@@ -3,7 +3,7 @@
     site = Surgeon(identity, peer=("127.0.0.1", 9000), settings=settings)
     site.run(3, until=lambda: site.established)
 
-An attack lies through the hooks: `sample`, `edit`, `on_tick`, `on_datagram`.
+An attack lies through the hooks: `sample`, `edit`, `on_tick`.
 """
 
 from __future__ import annotations
@@ -66,11 +66,9 @@ class Site:
         self.byes: list[dict] = []
         self.hello_heard: dict = {}
         self.period = 0.002
-        self.answers_paths = True
         self.sample: Callable[[float], dict] = lambda t: {"position_m": -0.01}
         self.edit: Callable[[dict], dict | bytes] = lambda telegram: telegram
         self.on_tick: Callable[[float], None] = lambda now: None
-        self.on_datagram: Callable[[bytes, Address], bool] = lambda datagram, source: True
         self._last_hello = 0.0
         self._last_telegram = 0.0
         self.longest_pause = 0.0  # between own telegrams [s]: what the peer may hold for
@@ -181,8 +179,6 @@ class Site:
                 return
             except OSError:
                 continue
-            if not self.on_datagram(datagram, source):
-                continue
             if is_record(datagram):
                 self.on_record(datagram, source)
             elif head := wire.read_header(datagram):
@@ -235,7 +231,7 @@ class Site:
         if kind == wire.PATH:
             self.counts["questions"] += 1
             answer = wire.path_answer(message)
-            if answer and self.answers_paths:
+            if answer:
                 self.send(keys.control_out.seal(wire.PATH, keys.control_id_out, answer), source)
         elif kind == wire.CONTROL:
             self.counts["hellos"] += 1
