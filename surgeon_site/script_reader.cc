@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/byte_order_mark.h"
 #include "common/core/conventions.h"
 
 namespace palp::surgeon {
@@ -329,6 +330,7 @@ Result<std::string> read_file(const std::string& path) {
 
 Result<GestureScript> parse_script(std::string_view text, double hand_stiffness) {
   ScriptBuilder script{hand_stiffness};
+  text = without_byte_order_mark(text);
   for (std::size_t line = 1; !text.empty(); ++line) {
     const std::vector<std::string_view> words = words_of(next_line(text));
     if (words.empty()) continue;
@@ -343,6 +345,7 @@ Result<GestureScript> parse_script(std::string_view text, double hand_stiffness)
 }
 
 Result<GestureScript> parse_replay(std::string_view text) {
+  text = without_byte_order_mark(text);
   const std::vector<std::string_view> header = cells_of(next_line(text));
   using Header = std::vector<std::string_view>;
   const bool known = header == Header{"t_s", "position_mm"} ||
