@@ -323,14 +323,13 @@ Result<std::string> read_file(const std::string& path) {
     if (text.size() > kSizeMax) return fail(quoted(path) + " is longer than 256 MiB");
   }
   if (file.bad() || !file.eof()) return fail_to_reach("cannot read " + quoted(path));
-  return text;
+  return std::string{without_byte_order_mark(text)};
 }
 
 }  // namespace
 
 Result<GestureScript> parse_script(std::string_view text, double hand_stiffness) {
   ScriptBuilder script{hand_stiffness};
-  text = without_byte_order_mark(text);
   for (std::size_t line = 1; !text.empty(); ++line) {
     const std::vector<std::string_view> words = words_of(next_line(text));
     if (words.empty()) continue;
@@ -345,7 +344,6 @@ Result<GestureScript> parse_script(std::string_view text, double hand_stiffness)
 }
 
 Result<GestureScript> parse_replay(std::string_view text) {
-  text = without_byte_order_mark(text);
   const std::vector<std::string_view> header = cells_of(next_line(text));
   using Header = std::vector<std::string_view>;
   const bool known = header == Header{"t_s", "position_mm"} ||

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdint>
+#include <cinttypes>
+#include <cstdio>
 
 #include <fcntl.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "common/core/printable.h"
 #include "common/io/process/descriptor.h"
+#include "common/io/process/entropy.h"
 #include "common/io/process/system_text.h"
 
 namespace palp::netem {
@@ -20,15 +21,13 @@ namespace {
 constexpr std::size_t kFileMax = 4096;  ///< [bytes]
 
 Result<std::string> make_token(const std::string& path) {
-  std::array<std::uint8_t, 16> random{};
-  if (::getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size())) {
-    return fail_to_reach("no random numbers: " + io::system_text(errno));
-  }
-  std::string token;
-  for (const std::uint8_t byte : random) {
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    token += {kDigits[byte >> 4U], kDigits[byte & 15U]};
-  }
+  std::array<char, 33> digits{};
+  std::snprintf(digits.data(),
+                digits.size(),
+                "%016" PRIx64 "%016" PRIx64,
+                io::draw_entropy(),
+                io::draw_entropy());
+  const std::string token{digits.data()};
   const io::Descriptor file{::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)};
   const std::string line = token + '\n';
   if (!file.valid() ||

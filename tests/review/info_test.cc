@@ -29,7 +29,8 @@ TEST(InfoTest, TellsHowFarACutOffFileGoes) {
 }
 
 TEST(InfoTest, EmptyFileIsNoTrouble) {
-  EXPECT_NE(describe(std::span<const std::byte>{}).find("the file was not closed"), std::string::npos);
+  const std::string text = describe(std::span<const std::byte>{});
+  EXPECT_NE(text.find("the file was not closed"), std::string::npos);
 }
 
 TEST(InfoTest, NothingInAFileActsOnTheTerminal) {

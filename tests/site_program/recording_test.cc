@@ -13,6 +13,7 @@
 #include <sys/resource.h>
 
 #include "common/io/process/diagnostics.h"
+#include "common/io/realtime/steady_clock.h"
 #include "common/record/notes.h"
 
 namespace palp::site_program {
@@ -121,9 +122,10 @@ TEST(RecordingTest, AFullDiskIsToldWhileTheSessionGoesOn) {
   ::getrlimit(RLIMIT_FSIZE, &before);
   const rlimit full{std::filesystem::file_size(path), before.rlim_max};
   ::setrlimit(RLIMIT_FSIZE, &full);
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{20};
+  const io::SteadyClock clock;
+  const TimePoint deadline = clock.now() + std::chrono::seconds{20};
   std::uint64_t recorded = 0;
-  while (recording.alarm().empty() && std::chrono::steady_clock::now() < deadline) {
+  while (recording.alarm().empty() && clock.now() < deadline) {
     if (recording.recorder(0).record(SiteTick{})) ++recorded;
     std::this_thread::yield();
   }
