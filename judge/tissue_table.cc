@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "common/core/byte_order_mark.h"
+
 namespace palp::judge {
 namespace {
 
@@ -52,13 +54,17 @@ Result<TissueTable> TissueTable::parse(std::string_view csv) {
   int line_number = 0;
   bool named = false;
   bool header_seen = false;
+  std::ptrdiff_t commas = 0;
+  csv = without_byte_order_mark(csv);
   while (!csv.empty()) {
     std::string_view line = cut(csv, '\n');
     ++line_number;
     if (line.empty() || line.front() == '#') {
       continue;
     }
+    const std::ptrdiff_t commas_here = std::ranges::count(line, ',');
     if (!header_seen) {
+      commas = commas_here;
       const auto first = cut(line, ',');
       named = first == "site";
       const bool placed = first == "x_mm" && cut(line, ',') == "y_mm";
@@ -71,7 +77,7 @@ Result<TissueTable> TissueTable::parse(std::string_view csv) {
     const auto place = take_place(line, named);
     const auto indentation = number(cut(line, ','));
     const auto force = number(cut(line, ','));
-    if (!place || !indentation || !force) {
+    if (!place || !indentation || !force || commas_here > commas) {
       return fail("line " + std::to_string(line_number) + " of the tissue table is not " +
                   (named ? "A or B and two numbers" : "four numbers"));
     }

@@ -16,6 +16,7 @@
 #include "common/core/random.h"
 #include "common/io/net/endpoint.h"
 #include "netem/model/simulation.h"
+#include "netem/relay/control_token.h"
 #include "netem/relay/datagram_socket.h"
 #include "netem/relay/relay_program.h"
 #include "netem/syntax/impairment_text.h"
@@ -46,6 +47,8 @@ struct Flags {
   std::optional<std::uint64_t> seed;
   std::string record;
   std::string control;
+  std::string control_token;
+  std::string control_folder;
   std::string report;
   std::optional<double> status_s;
   double duration_s{};  ///< 0: until told to stop
@@ -194,6 +197,14 @@ ExitStatus serve(const Flags& flags) {
   config.seed = flags.seed ? *flags.seed : asked->seed.value_or(1);
   config.record = flags.record;
   config.control = flags.control;
+  config.control_folder = flags.control_folder;
+  if (!flags.control_token.empty()) {
+    const auto token = read_or_make_token(flags.control_token);
+    if (!token)
+      return config::refusal("palp-netem",
+                             {"--control-token: " + token.error().text, token.error().unreachable});
+    config.control_token = *token;
+  }
   config.report = flags.report;
   config.duration = from_seconds(flags.duration_s > 0 ? flags.duration_s : kDurationMax);
   config.status_every =
@@ -259,8 +270,18 @@ void declare_relay(config::CommandLine& relay, Flags& flags) {
               "of everything random");
   relay.text(
       "--record", flags.record, "PREFIX", "to PREFIX-up.csv, PREFIX-down.csv, PREFIX.pcapng");
-  relay.text(
-      "--control", flags.control, "ADDRESS", "127.0.0.1:PORT or unix:PATH: events as JSON lines");
+  relay.text("--control",
+             flags.control,
+             "ADDRESS",
+             "events as JSON lines: unix:PATH, for this user only, or 127.0.0.1:PORT with a token");
+  relay.text("--control-token",
+             flags.control_token,
+             "FILE",
+             "what callers of a port show first; made where there is none");
+  relay.text("--control-folder",
+             flags.control_folder,
+             "FOLDER",
+             "whose files trace, replay and record of live control may name; otherwise none");
   relay.report(flags.report, "palp.relay/1");
   relay.number("--status-s",
                flags.status_s,

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/core/byte_order_mark.h"
 #include "common/core/check.h"
 #include "common/core/conventions.h"
 
@@ -54,6 +55,10 @@ std::string check_row(std::span<const ForceRow> rows, std::size_t index) {
   if (index > 0 && row.indentation < rows[index - 1].indentation + kIntervalMin) {
     return "d_mm = " + indentation_mm + " does not rise above the row before (" +
            number_text(rows[index - 1].indentation / kMillimetre) + "): d_mm must be monotone";
+  }
+  if (index > 0 && row.force < rows[index - 1].force) {
+    return "F_N = " + number_text(row.force) + " falls below the row before (" +
+           number_text(rows[index - 1].force) + "): tissue that is pressed deeper pushes no less";
   }
   return {};
 }
@@ -128,7 +133,15 @@ std::string quoted(std::string_view text) {
   return out + (text.size() > 40 ? "...'" : "'");
 }
 
+/// Cells of a line; empty ones at its end, as spreadsheets write them, are none.
+std::size_t cells_in(std::string_view line) noexcept {
+  const std::size_t last = line.find_last_not_of(", \t\r");
+  if (last == std::string_view::npos) return 0;
+  return 1 + static_cast<std::size_t>(std::ranges::count(line.substr(0, last), ','));
+}
+
 struct Columns {
+  std::size_t count{};
   std::size_t indentation{};
   std::size_t force{};
   std::optional<std::size_t> x;
@@ -140,6 +153,7 @@ Result<Columns> find_columns(std::string_view header) {
   std::optional<std::size_t> indentation;
   std::optional<std::size_t> force;
   Columns found;
+  found.count = cells_in(header);
   for (std::size_t column = 0; !header.empty(); ++column) {
     const std::string_view field = trimmed(take_until(header, ','));
     if (field == "d_mm" && !indentation) indentation = column;
@@ -174,6 +188,10 @@ Result<double> parse_number(std::string_view line, std::size_t column, std::stri
 }
 
 Result<ForceRow> parse_row(std::string_view line, const Columns& columns) {
+  if (const std::size_t cells = cells_in(line); cells > columns.count) {
+    return fail("there are " + std::to_string(cells) + " cells, the header has " +
+                std::to_string(columns.count) + "; numbers are written with a point: 0.5");
+  }
   const Result<double> indentation_mm = parse_number(line, columns.indentation, "d_mm");
   if (!indentation_mm) return tl::unexpected(indentation_mm.error());
   const Result<double> force = parse_number(line, columns.force, "F_N");
@@ -235,6 +253,7 @@ Result<std::vector<PlacedRows>> parse_rows(std::string_view text,
     return fail(prefix + "the table has " + std::to_string(text.size()) + " bytes, more than " +
                 std::to_string(kTextSizeMax));
   }
+  text = without_byte_order_mark(text);
   std::optional<Columns> columns;
   std::vector<PlacedRows> all;
   std::size_t count = 0;

@@ -176,7 +176,7 @@ void Program::look(TimePoint now) {
   round_trips_.add(status.link);
   runner_.tell_news(line_);
   recording_.tell_news(line_);
-  line_.show(status_line(status), now);
+  line_.show(recording_.alarm() + status_line(status), now);
 }
 
 void Program::listen() {
@@ -205,7 +205,7 @@ void Program::stop(site_program::SiteReport& report) {
   const PatientStatus& status = node_.status().get();
   report.records = recording_.stop();
   recording_.tell_news(line_);
-  line_.show(status_line(status), clock_.now());
+  line_.show(recording_.alarm() + status_line(status), clock_.now());
   line_.end();
   report.link = status.link;
   report.round_trips = round_trips_;

@@ -1,5 +1,6 @@
 #include "review/check.h"
 
+#include "common/core/printable.h"
 #include "common/record/session_reader.h"
 
 namespace palp::review {
@@ -18,7 +19,7 @@ std::optional<std::string> first_fault(std::span<const std::byte> file) {
            std::to_string(report.bytes_unread) + " bytes of no use at the end";
   }
   if (reader.malformed() > 0) {
-    return "message " + reader.first_malformed() + " cannot be decoded (" +
+    return "message " + printable(reader.first_malformed()) + " cannot be decoded (" +
            std::to_string(reader.malformed()) + " such messages)";
   }
   if (reader.unknown() > 0) {
@@ -26,12 +27,12 @@ std::optional<std::string> first_fault(std::span<const std::byte> file) {
   }
   for (const auto& [name, topic] : reader.topics()) {
     if (topic.skipped > 0) {
-      return std::to_string(topic.skipped) + " messages are missing on topic " + name;
+      return std::to_string(topic.skipped) + " messages are missing on topic " + printable(name);
     }
   }
   const auto messages = reader.metadata("palp.summary", "messages");
   if (messages && *messages != std::to_string(report.messages)) {
-    return "the writer counted " + *messages + " messages, the file has " +
+    return "the writer counted " + printable(*messages) + " messages, the file has " +
            std::to_string(report.messages);
   }
   return std::nullopt;

@@ -1,5 +1,6 @@
 #include "review/info.h"
 
+#include "common/core/printable.h"
 #include "common/record/session_reader.h"
 #include "review/text.h"
 
@@ -13,8 +14,9 @@ std::string describe_topics(const record::SessionReader& reader) {
     const double span = seconds(elapsed(topic.first, topic.last));
     const std::string rate =
         span > 0 ? fixed(static_cast<double>(topic.messages - 1) / span, 1) : "-";
-    text += left(name, 22) + right(std::to_string(topic.messages), 10) + right(rate, 10) +
-            right(std::to_string(topic.skipped), 9) + "  " + topic.schema + '\n';
+    text += left(printable(name), 22) + right(std::to_string(topic.messages), 10) +
+            right(rate, 10) + right(std::to_string(topic.skipped), 9) + "  " +
+            printable(topic.schema) + '\n';
   }
   return text;
 }
@@ -43,7 +45,7 @@ std::string describe(std::span<const std::byte> file) {
   }
   std::string text;
   for (const auto& [key, value] : reader.metadata("palp")) {
-    text += left(key, 22) + value + '\n';
+    text += left(printable(key), 22) + harmless_line(value) + '\n';
   }
   if (reader.began_at() && reader.ended_at()) {
     text += left("duration", 22) +
@@ -51,7 +53,7 @@ std::string describe(std::span<const std::byte> file) {
   }
   text += left("records", 22) + std::to_string(records);
   if (const auto dropped = reader.metadata("palp.summary", "records_dropped")) {
-    text += ", dropped " + *dropped;
+    text += ", dropped " + printable(*dropped);
   }
   text += '\n' + describe_topics(reader);
   const record::McapReadReport& report = reader.report();

@@ -8,6 +8,7 @@
 #include "common/config/exit_code.h"
 #include "common/config/program_run.h"
 #include "common/config/report.h"
+#include "common/core/printable.h"
 #include "common/record/mapped_file.h"
 #include "common/record/mcap_reader.h"
 #include "review/check.h"
@@ -59,10 +60,10 @@ ExitStatus run_check(const std::string& path) {
     return exit_status_of(file.error());
   }
   if (const auto fault = first_fault(file->bytes())) {
-    std::cout << path << ": " << *fault << '\n';
+    std::cout << harmless_line(path) << ": " << *fault << '\n';
     return {ExitCode::Missed, {}};
   }
-  std::cout << path << ": whole, closed, every message decodes\n";
+  std::cout << harmless_line(path) << ": whole, closed, every message decodes\n";
   return {};
 }
 
@@ -90,7 +91,8 @@ std::string optional_text(const std::string& path) {
   }
   std::ifstream file{path, std::ios::binary};
   if (!file) {
-    std::cerr << "palp-review: report " << path << " cannot be read; its values are null\n";
+    std::cerr << "palp-review: report " << harmless_line(path)
+              << " cannot be read; its values are null\n";
   }
   return {std::istreambuf_iterator<char>{file}, {}};
 }

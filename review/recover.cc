@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "common/core/printable.h"
 #include "common/record/mcap_writer.h"
 #include "review/text.h"
 
@@ -101,8 +102,9 @@ std::string describe(const Recovery& recovery) {
     text += "fault at byte " + std::to_string(fault.offset) + ": " + fault.text + '\n';
   }
   for (const auto& [topic, loss] : recovery.losses) {
-    text += topic + ": " + std::to_string(loss.messages) + " messages lost, first after " +
-            fixed(1e-9 * static_cast<double>(loss.after), 3) + " s\n";
+    text += printable(topic) + ": " + std::to_string(loss.messages) +
+            " messages lost, first after " + fixed(1e-9 * static_cast<double>(loss.after), 3) +
+            " s\n";
   }
   return text;
 }

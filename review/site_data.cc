@@ -46,10 +46,10 @@ std::optional<std::string> SiteData::entry(const std::string& key) const {
 std::optional<double> SiteData::number(const std::string& key) const {
   const auto text = entry(key);
   double value{};
-  if (!text ||
-      std::from_chars(text->data(), text->data() + text->size(), value).ec != std::errc{}) {
-    return std::nullopt;
-  }
+  if (!text) return std::nullopt;
+  const char* const end = text->data() + text->size();
+  const auto [stop, error] = std::from_chars(text->data(), end, value);
+  if (error != std::errc{} || stop != end) return std::nullopt;
   return std::isfinite(value) ? std::optional{value} : std::nullopt;
 }
 

@@ -1,5 +1,6 @@
 #include "site_program/recording.h"
 
+#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
@@ -38,6 +39,10 @@ Recording::Recording(const settings::RecordSettings& settings,
     sink_.emplace(std::move(*sink));
     info.opened_at = io::SteadyClock{}.now();
     writer_.emplace(*sink_, info);
+    if (writer_->failed()) {
+      (void)std::remove(settings.file.c_str());  // ours, and of no use
+      throw std::runtime_error{sink_->fault()};
+    }
   }
   for (std::size_t i = 0; i < writer_count; ++i) {
     queues_.push_back(std::make_unique<record::QueueRecorder>(settings.queue_records));
@@ -57,9 +62,46 @@ void Recording::drain(TimePoint now) {
   if (!writer_) return;
   writer_->set_dropped(dropped);
   writer_->flush_if_due(now);
-  if (writer_->failed() && !std::exchange(told_of_full_disk_, true)) {
-    (void)news_.try_enqueue("the session file ends here: it could not be written any further");
+  keep_watch(now);
+}
+
+void Recording::keep_watch(TimePoint now) {
+  if (now - looked_at_ >= DiskForecast::kLookEvery) {
+    looked_at_ = now;
+    sink_->look();
+    if (const auto room = sink_->room()) forecast_.look(now, writer_->size(), *room);
   }
+  const std::string wrong = fault();
+  if (!wrong.empty() && told_fault_.empty()) {
+    (void)news_.try_enqueue({"RECORDING FAILED, the session goes on: " + wrong, true});
+    told_fault_ = wrong;
+  }
+  const Duration left = forecast_.left().value_or(Duration::max());
+  const bool nearly_full = left < kNearlyFull;
+  if (nearly_full && wrong.empty() && !std::exchange(told_of_nearly_full_, true)) {
+    (void)news_.try_enqueue({"the disk of the session file is full in about " +
+                                 std::to_string(left / std::chrono::seconds{1}) + " s",
+                             true});
+    constexpr auto kCode = static_cast<std::uint16_t>(record::NoteCode::DiskNearlyFull);
+    (void)writer_->write(Note{.at = now, .code = kCode, .detail = seconds(left)}, now);
+  }
+  need_.put({.failed = !wrong.empty(), .nearly_full = nearly_full, .left = left});
+}
+
+/// Why the file lacks something by now.
+std::string Recording::fault() const {
+  if (!writer_) return {};
+  if (std::string sentence = sink_->fault(); !sentence.empty()) return sentence;
+  if (writer_->failed()) return "the session file could not be written any further";
+  if (account_.dropped > 0) return "records were lost: the session file was written too slowly";
+  return {};
+}
+
+std::string Recording::alarm() {
+  const Need& need = need_.get();
+  if (need.failed) return "RECORDING FAILED ";
+  if (!need.nearly_full) return {};
+  return "DISK FULL IN " + std::to_string(need.left / std::chrono::seconds{1}) + " S ";
 }
 
 void Recording::write(const Record& record, TimePoint now) {
@@ -70,18 +112,23 @@ void Recording::write(const Record& record, TimePoint now) {
 void Recording::tell_of(const Record& record) {
   if (const auto* change = std::get_if<Transition>(&record)) {
     const std::string_view reason = record::note_text(change->reason);
-    (void)news_.try_enqueue(std::string{to_string(change->from)} + " -> " +
-                            std::string{to_string(change->to)} + ": " + std::string{reason});
+    (void)news_.try_enqueue({std::string{to_string(change->from)} + " -> " +
+                                 std::string{to_string(change->to)} + ": " + std::string{reason},
+                             false});
   } else if (const auto* note = std::get_if<Note>(&record)) {
     const auto code = static_cast<record::NoteCode>(note->code);
-    if (!shown_elsewhere(code)) (void)news_.try_enqueue(std::string{record::to_string(code)});
+    if (!shown_elsewhere(code)) {
+      (void)news_.try_enqueue({std::string{record::to_string(code)}, false});
+    }
   }
 }
 
 void Recording::tell_news(StatusLine& line) {
-  for (std::string sentence; news_.try_dequeue(sentence);) {
-    if (sentence != told_last_) line.info(sentence);
-    told_last_ = sentence;
+  for (News news; news_.try_dequeue(news);) {
+    if (news.sentence != told_last_) {
+      news.alarming ? line.warn(news.sentence) : line.info(news.sentence);
+    }
+    told_last_ = news.sentence;
   }
 }
 
@@ -89,13 +136,22 @@ const RecordAccount& Recording::stop() {
   if (!loop_) return account_;
   loop_->stop();
   loop_.reset();
-  if (writer_) {
-    writer_->close();
-    account_.counts = writer_->counts();
-    account_.messages = writer_->messages();
-    account_.dropped += writer_->lost();
-  }
+  if (writer_) close();
   return account_;
+}
+
+void Recording::close() {
+  writer_->close();
+  sink_->finish();
+  account_.fault = fault();
+  account_.counts = writer_->counts();
+  account_.messages = writer_->messages();
+  account_.dropped += writer_->lost();
+  if (sink_->removed()) {
+    account_.dropped += account_.messages;
+    account_.counts = {};
+    account_.messages = 0;
+  }
 }
 
 }  // namespace palp::site_program

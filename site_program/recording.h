@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
 #include "common/io/realtime/background_loop.h"
 #include "common/record/queue_recorder.h"
 #include "common/record/session_writer.h"
 #include "common/settings/site_settings.h"
+#include "site_program/disk_forecast.h"
 #include "site_program/status_line.h"
 
 namespace palp::site_program {
@@ -19,16 +21,18 @@ namespace palp::site_program {
 struct RecordAccount {
   record::SessionCounts counts;  ///< in the file
   std::uint64_t messages{};      ///< in the file, views included
-  std::uint64_t dropped{};       ///< a queue was full, or the disk
+  std::uint64_t dropped{};       ///< a queue was full, or the disk, or the file was removed
+  std::string fault;             ///< why the file lacks something, one sentence; empty: it does not
 };
 
 /// Carries the records of a site's threads to its session file, on a thread of its own (record),
-/// and tells people of what happened. Without a file the records go nowhere.
+/// and tells people of what happened. Without a file the records go nowhere. Where the file cannot
+/// take them the session goes on without, and everybody is told.
 /// Thread: its maker's; each recorder() has one writer of its own.
 class Recording {
  public:
   /// `info.opened_at` is filled in here.
-  /// @throws std::runtime_error with one sentence where the file cannot be created.
+  /// @throws std::runtime_error with one sentence where the file cannot be created or begun.
   Recording(const settings::RecordSettings& settings,
             record::SessionInfo info,
             std::size_t writer_count);
@@ -40,6 +44,9 @@ class Recording {
   [[nodiscard]] record::Recorder& recorder(std::size_t writer) { return *queues_.at(writer); }
   /// Tells people of changes of state and of notes; what repeats itself once.
   void tell_news(StatusLine& line);
+  /// What stands at the head of the status line while the recording is in need, with a space behind
+  /// it; empty: it is well.
+  [[nodiscard]] std::string alarm();
   /// Once all writers have ended: writes what waits and closes the file. Idempotent.
   const RecordAccount& stop();
 
@@ -47,15 +54,33 @@ class Recording {
   void drain(TimePoint now);
   void write(const Record& record, TimePoint now);
   void tell_of(const Record& record);
+  void keep_watch(TimePoint now);
+  [[nodiscard]] std::string fault() const;
+  void close();
 
   static constexpr std::size_t kNewsMax = 256;
+  /// Less than so much recording left is told.
+  static constexpr Duration kNearlyFull = std::chrono::minutes{5};
+  struct News {
+    std::string sentence;
+    bool alarming{};
+  };
+  struct Need {
+    bool failed{};
+    bool nearly_full{};
+    Duration left{};
+  };
 
   std::optional<record::FileSink> sink_;
   std::optional<record::SessionWriter> writer_;
   std::vector<std::unique_ptr<record::QueueRecorder>> queues_;
-  SpscQueue<std::string> news_{kNewsMax};  ///< writer: record, reader: the maker
-  std::string told_last_;                  ///< the maker's
-  bool told_of_full_disk_{};
+  SpscQueue<News> news_{kNewsMax};  ///< writer: record, reader: the maker
+  std::string told_last_;           ///< the maker's
+  DiskForecast forecast_;           ///< record's, as are the next three
+  TimePoint looked_at_{};
+  bool told_of_nearly_full_{};
+  std::string told_fault_;
+  Mailbox<Need> need_;  ///< writer: record, reader: the maker
   RecordAccount account_;
   std::optional<io::BackgroundLoop> loop_;
 };

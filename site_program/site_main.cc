@@ -6,6 +6,7 @@
 #include <malloc.h>
 
 #include "common/config/program_run.h"
+#include "common/io/process/hardening.h"
 
 namespace palp::site_program {
 namespace {
@@ -27,6 +28,8 @@ void declare_session_flags(config::CommandLine& line) {
 }
 
 int run(const SiteMain& program, int argc, const char* const* argv) {
+  // First of all: keys are read later.
+  if (const auto refused = io::harden_process()) io::warn(*refused);
   // One heap for all threads, since the one in a hurry needs none: what one thread frees another
   // takes again, so a site of many hours grows no more, and 200 MB less are locked.
   (void)::mallopt(M_ARENA_MAX, 1);

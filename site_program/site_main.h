@@ -53,7 +53,7 @@ ExitStatus run_session(tl::expected<Plan, ExitStatus> plan, SiteReport& report) 
   Program program{std::move(*plan)};
   report.exit_status = program.run(terminal);
   program.stop(report);
-  return report.exit_status;
+  return with_recording(report.exit_status, report.records);
 }
 
 }  // namespace palp::site_program

@@ -85,6 +85,8 @@ std::string to_json(const SiteReport& report) {
   json["records"] = records_json(report.records);
   json["tick_views"] = report.records.counts.views;
   json["messages"] = report.records.messages;
+  json["recording_fault"] =
+      report.records.fault.empty() ? Json(nullptr) : Json(report.records.fault);
   for (const auto& [name, count] : message::counters_of(link)) json[std::string{name}] = count;
   json["rejected"] = rejected_json(link, report.noise);
   json["round_trip_p50_ms"] = milliseconds(report.round_trips.median());
@@ -97,6 +99,14 @@ std::string to_json(const SiteReport& report) {
     json["estimate_latency_max_ms"] = microseconds(report.estimate_max) / 1e3;
   }
   return json.dump(2) + "\n";
+}
+
+ExitStatus with_recording(ExitStatus exit_status, const RecordAccount& records) {
+  if (records.fault.empty()) return exit_status;
+  const std::string sentence = "recording failed: " + records.fault;
+  exit_status.reason = exit_status.reason.empty() ? sentence : exit_status.reason + "; " + sentence;
+  if (exit_status.code == config::ExitCode::Done) exit_status.code = config::ExitCode::Missed;
+  return exit_status;
 }
 
 int finish(const SiteReport& report, const std::string& path) {

@@ -48,6 +48,10 @@ struct SiteReport {
 
 [[nodiscard]] std::string to_json(const SiteReport& report);
 
+/// A run whose recording failed did not do all that it was asked for, however well it went: Done
+/// becomes Missed, and the reason says so. Other endings stay and say it too.
+[[nodiscard]] ExitStatus with_recording(ExitStatus exit_status, const RecordAccount& records);
+
 /// The last thing a program does: says why it ended, writes the report (`path` empty: none).
 /// @returns what main() returns.
 [[nodiscard]] int finish(const SiteReport& report, const std::string& path);

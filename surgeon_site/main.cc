@@ -192,7 +192,7 @@ std::optional<ExitStatus> Program::look(TimePoint now) {
     if (advice) line_.warn(*advice);
     advised_ = advice.has_value();
   }
-  line_.show(status_line(status), now);
+  line_.show(recording_.alarm() + status_line(status), now);
   if (hopeless) return ExitStatus{ExitCode::CannotOpen, "refused", *hopeless};
   if (auto exit_status = end_of_script(status)) return exit_status;
   if (auto exit_status = watch_.judge(status.link, now)) return exit_status;
@@ -208,7 +208,7 @@ void Program::stop(site_program::SiteReport& report) {
                    ? "the surgeon site has ended"
                    : "the surgeon site has ended: " + report.exit_status.reason);
   const SurgeonStatus& status = node_.status().get();
-  line_.show(status_line(status), clock_.now());
+  line_.show(recording_.alarm() + status_line(status), clock_.now());
   report.records = recording_.stop();
   recording_.tell_news(line_);
   line_.end();

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/byte_order_mark.h"
 #include "common/core/conventions.h"
 
 namespace palp::surgeon {
@@ -322,7 +323,7 @@ Result<std::string> read_file(const std::string& path) {
     if (text.size() > kSizeMax) return fail(quoted(path) + " is longer than 256 MiB");
   }
   if (file.bad() || !file.eof()) return fail_to_reach("cannot read " + quoted(path));
-  return text;
+  return std::string{without_byte_order_mark(text)};
 }
 
 }  // namespace

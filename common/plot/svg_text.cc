@@ -4,12 +4,14 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "common/core/printable.h"
+
 namespace palp::plot {
 namespace {
 
 std::string escaped(const std::string& words) {
   std::string out;
-  for (const char c : words) {
+  for (const char c : harmless_line(words)) {
     if (c == '&') {
       out += "&amp;";
     } else if (c == '<') {

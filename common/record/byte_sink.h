@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/result.h"
@@ -21,7 +23,8 @@ class ByteSink {
   [[nodiscard]] virtual bool on_disk() const noexcept { return false; }
 };
 
-/// A file of its own: creating it over an existing one is refused, a recording is never destroyed.
+/// A file of its own, which only its owner may read: creating it over an existing one is refused, a
+/// recording is never destroyed.
 class FileSink final : public ByteSink {
  public:
   [[nodiscard]] static Result<FileSink> create(const std::string& path);
@@ -30,12 +33,33 @@ class FileSink final : public ByteSink {
   FileSink(const FileSink&) = delete;
   FileSink& operator=(const FileSink&) = delete;
   ~FileSink() override;
+  /// A piece that did not go out whole is cut off again. After a fault nothing is taken, unless the
+  /// file was only moved.
   bool write(std::span<const std::byte> bytes) noexcept override;
   [[nodiscard]] bool on_disk() const noexcept override { return true; }
 
+  /// Looks whether the name still leads to this file: who removed or moved it made a fault.
+  void look() noexcept;
+  /// Waits until the disk has all of it. What the disk refuses then is a fault too.
+  void finish() noexcept;
+  /// What went wrong, one sentence; empty: nothing.
+  [[nodiscard]] std::string fault() const;
+  /// Nobody can open it any more: what was written is lost.
+  [[nodiscard]] bool removed() const noexcept { return fault_ == Fault::Removed; }
+  /// [bytes] that its disk still takes; nothing where the system does not say.
+  [[nodiscard]] std::optional<std::uint64_t> room() const noexcept;
+
  private:
-  explicit FileSink(int descriptor) noexcept : descriptor_{descriptor} {}
+  enum class Fault { None, Refused, Removed, Moved };
+  FileSink(int descriptor, std::string path) noexcept
+      : descriptor_{descriptor}, path_{std::move(path)} {}
+  void refuse(int error) noexcept;
+
   int descriptor_{-1};
+  std::string path_;
+  std::uint64_t size_{};  ///< [bytes], of whole pieces
+  Fault fault_{Fault::None};
+  int error_{};  ///< errno of a refusal
 };
 
 /// Keeps everything, for tests and small files.

@@ -161,6 +161,7 @@ void McapReader::open_chunk(const RawRecord& record) {
     fault(record.offset, "a field of this chunk reaches beyond its end");
     return;
   }
+  if (!admit_unpacked(record, size)) return;
   const auto answer = decompressor_.decompress(compression, bytes, size);
   const bool crc_wrong = answer.error.empty() && crc != 0 && crc32(answer.records) != crc;
   if (!answer.error.empty() || crc_wrong) {
@@ -169,6 +170,24 @@ void McapReader::open_chunk(const RawRecord& record) {
     return;
   }
   chunk_ = answer.records;
+}
+
+/// A file of a megabyte must not cost the work of one of thirty thousand.
+bool McapReader::admit_unpacked(const RawRecord& record, std::uint64_t size) {
+  if (size > limits_.chunk_size_max) return true;  // refused by itself
+  unpacked_ += size;
+  if (unpacked_ <= limits_.unpacked_size_free ||
+      (unpacked_ - limits_.unpacked_size_free) / limits_.unpacked_ratio_max <= offset_) {
+    return true;
+  }
+  ++report_.chunks_damaged;
+  fault(record.offset,
+        "here the file unpacks to more than " + std::to_string(limits_.unpacked_size_free >> 20U) +
+            " MiB and " + std::to_string(limits_.unpacked_ratio_max) +
+            " times its size; it is read no further");
+  report_.bytes_unread = file_.size() - record.offset;
+  ended_ = true;
+  return false;
 }
 
 bool McapReader::admit_definition(const RawRecord& record) {

@@ -76,7 +76,11 @@ struct McapFault {
 };
 
 struct McapLimits {
-  std::uint64_t chunk_size_max{64u << 20};        ///< [bytes], uncompressed
+  std::uint64_t chunk_size_max{64u << 20};  ///< [bytes], uncompressed
+  /// What a file may unpack to at any of its places: so many bytes, and so many times the bytes up
+  /// to there. Recordings of ours unpack to less than 30 times their size.
+  std::uint64_t unpacked_size_free{64u << 20};  ///< [bytes]
+  std::uint64_t unpacked_ratio_max{256};
   std::uint64_t definitions_size_max{64u << 20};  ///< [bytes], of all schemas and channels
   /// [bytes], of a schema or topic: names are compared with every message.
   std::size_t name_size_max{4096};
@@ -128,6 +132,7 @@ class McapReader {
   static std::optional<RawRecord> cut_record(std::span<const std::byte> bytes, std::size_t& offset);
   std::optional<McapItem> interpret(const RawRecord& record);
   void open_chunk(const RawRecord& record);
+  bool admit_unpacked(const RawRecord& record, std::uint64_t size);
   std::optional<McapItem> read_schema(const RawRecord& record);
   std::optional<McapItem> read_channel(const RawRecord& record);
   std::optional<McapItem> read_message(const RawRecord& record);
@@ -156,6 +161,7 @@ class McapReader {
   std::map<std::uint16_t, McapSchema> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;
   std::uint64_t definitions_size_{};  ///< [bytes]
+  std::uint64_t unpacked_{};          ///< [bytes] claimed by the chunks so far
   std::map<std::uint16_t, std::uint64_t> messages_by_channel_;
   McapReadReport report_;
 };

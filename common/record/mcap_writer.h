@@ -93,6 +93,8 @@ class McapWriter {
 
   [[nodiscard]] bool failed() const noexcept { return failed_; }
   [[nodiscard]] const McapWriterCounts& counts() const noexcept { return counts_; }
+  /// Messages of the chunk being filled: lost if it cannot be written.
+  [[nodiscard]] std::uint64_t waiting() const noexcept { return waiting_messages_; }
 
  private:
   struct IndexEntry {

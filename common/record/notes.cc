@@ -44,6 +44,7 @@ constexpr std::array kTexts{
     Text{NoteCode::KeysReplaced, "telegrams come under new keys"},
     Text{NoteCode::DragRefused, "the stage cannot drag: it keeps its place while pressed"},
     Text{NoteCode::PlaceBeyondTravel, "a place beyond the stage's travel"},
+    Text{NoteCode::DiskNearlyFull, "the disk of the session file is nearly full"},
 };
 
 }  // namespace

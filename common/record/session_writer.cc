@@ -63,6 +63,7 @@ bool SessionWriter::put(const Prepared& prepared, TimePoint now) {
   if (place == nullptr) {
     return false;
   }
+  if (mcap_.waiting() == 1) settled_ = counts_;  // all before are written
   ++channel.sequence;
   encoder_.store(place);
   return true;
@@ -82,7 +83,10 @@ void SessionWriter::write_view(TimePoint now) {
   view_ = {};
 }
 
-void SessionWriter::flush_if_due(TimePoint now) { mcap_.flush_if_due(stamp(now)); }
+void SessionWriter::flush_if_due(TimePoint now) {
+  mcap_.flush_if_due(stamp(now));
+  if (mcap_.waiting() == 0 && !failed()) settled_ = counts_;
+}
 
 void SessionWriter::close() {
   if (closed_) {

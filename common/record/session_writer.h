@@ -57,7 +57,10 @@ class SessionWriter {
   /// Writes summary and index; the destructor does it too. Later writes are refused.
   void close();
 
-  [[nodiscard]] const SessionCounts& counts() const noexcept { return counts_; }
+  /// What is in the file or its waiting chunk; once writing failed, what is in the file.
+  [[nodiscard]] const SessionCounts& counts() const noexcept {
+    return failed() ? settled_ : counts_;
+  }
   /// Messages in the file (or its waiting chunk), views included: what an independent reader
   /// counts.
   [[nodiscard]] std::uint64_t messages() const noexcept { return mcap_.counts().messages; }
@@ -81,6 +84,7 @@ class SessionWriter {
   TimePoint newest_now_{};
   std::uint64_t dropped_{};
   SessionCounts counts_;
+  SessionCounts settled_;  ///< as of the newest chunk that was written
   bool closed_{};
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "common/core/byte_order_mark.h"
 #include "common/core/random.h"
 #include "netem/model/verdict.h"
 
@@ -18,7 +19,8 @@ constexpr double kTableScale = 8192;
 /// Line by line, field by field, with the place for a refusal.
 class Lines {
  public:
-  Lines(std::string_view name, std::string_view text) : name_{name}, rest_{text} {}
+  Lines(std::string_view name, std::string_view text)
+      : name_{name}, rest_{without_byte_order_mark(text)} {}
 
   /// Goes to the next line that is neither empty nor a comment. @returns false: there is none.
   bool next() {
@@ -157,6 +159,10 @@ Result<DelayHistogram> parse_delay_histogram(std::string_view name, std::string_
     if (!rises || !(*lower <= 1e9)) return lines.wrong("rising lower edges of bins in ms, from 0");
     const auto count = lines.number<double>();
     if (!count || !(*count >= 0) || !(*count <= 1e15)) return lines.wrong("a count of 0 or above");
+    if (!lines.at_end()) {
+      (void)lines.field();
+      return lines.wrong("two columns");
+    }
     total += *count;
     histogram.bins.push_back({*lower, *count});
     if (histogram.bins.size() > kTracePointsMax) return lines.wrong("fewer lines");

@@ -200,8 +200,10 @@ std::span<const ReceivedDatagram> DatagramSocket::receive() noexcept {
   return std::span{batch.datagrams}.first(count);
 }
 
-io::Endpoint DatagramSocket::sender_of_last() const noexcept {
-  return {&batch_->senders[batch_->last], batch_->headers[batch_->last].msg_hdr.msg_namelen};
+io::Endpoint DatagramSocket::sender_of_last() const noexcept { return sender_of(batch_->last); }
+
+io::Endpoint DatagramSocket::sender_of(std::size_t index) const noexcept {
+  return {&batch_->senders[index], batch_->headers[index].msg_hdr.msg_namelen};
 }
 
 std::size_t DatagramSocket::send(std::span<const OutgoingDatagram> datagrams,

@@ -60,6 +60,8 @@ class DatagramSocket {
   [[nodiscard]] std::span<const ReceivedDatagram> receive() noexcept;
   /// Who sent the last one of the last receive() that was not empty.
   [[nodiscard]] io::Endpoint sender_of_last() const noexcept;
+  /// Who sent number `index` of it.
+  [[nodiscard]] io::Endpoint sender_of(std::size_t index) const noexcept;
   /// At most kDatagramBatch of them. `to`: for a socket that is bound only. What the kernel does
   /// not take is counted and left out. @returns how many went.
   std::size_t send(std::span<const OutgoingDatagram> datagrams, const io::Endpoint* to) noexcept;

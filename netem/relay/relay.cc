@@ -86,7 +86,9 @@ void Relay::drain(Readable readable) noexcept {
   for (int batch = 0; readable.client_side && batch < kBatchesPerDrain; ++batch) {
     const auto datagrams = client_side_.receive();
     if (datagrams.empty()) break;
-    client_ = client_side_.sender_of_last();
+    for (std::size_t i = 0; i < datagrams.size(); ++i) {
+      clients_.heard(client_side_.sender_of(i), datagrams[i].bytes, datagrams[i].arrived_at);
+    }
     push(Direction::Up, datagrams);
     if (datagrams.size() < kDatagramBatch) break;
   }
@@ -99,17 +101,20 @@ void Relay::drain(Readable readable) noexcept {
 
 void Relay::push(Direction direction, std::span<const ReceivedDatagram> datagrams) noexcept {
   Channel& channel = way(direction);
-  const Crossing from = recording_on_ ? crossing(direction == Direction::Up ? 0 : 1) : Crossing{};
-  for (const ReceivedDatagram& datagram : datagrams) {
+  for (std::size_t i = 0; i < datagrams.size(); ++i) {
+    const ReceivedDatagram& datagram = datagrams[i];
     const auto decisions = channel.push(datagram.bytes, datagram.arrived_at, datagram.tos);
     if (!recording_on_) continue;
     recording.decided(decisions, direction);
+    Crossing from = crossing(direction == Direction::Up ? 0 : 1);
+    // Not always the client: a capture tells who it was.
+    if (direction == Direction::Up) from.peer = CapturedEnd{client_side_.sender_of(i)};
     recording.crossed(from, datagram.bytes, datagram.arrived_at, false, datagram.tos);
   }
 }
 
 Crossing Relay::crossing(std::uint8_t side) const noexcept {
-  const CapturedEnd peer{side == 1 ? forward_ : client_.value_or(io::Endpoint{})};
+  const CapturedEnd peer{side == 1 ? forward_ : client().value_or(io::Endpoint{})};
   return {.own = own_ends_[side], .peer = peer, .side = side};
 }
 
@@ -147,8 +152,8 @@ Duration Relay::lead(Direction direction, TimePoint next) const noexcept {
 void Relay::release(Direction direction, TimePoint now) noexcept {
   Channel& channel = way(direction);
   DatagramSocket& socket = direction == Direction::Up ? server_side_ : client_side_;
-  const bool known = direction == Direction::Up || client_.has_value();
-  const io::Endpoint* to = direction == Direction::Down && client_ ? &*client_ : nullptr;
+  const bool known = direction == Direction::Up || client().has_value();
+  const io::Endpoint* to = direction == Direction::Down && client() ? &*client() : nullptr;
   const Crossing onto = recording_on_ ? crossing(direction == Direction::Up ? 1 : 0) : Crossing{};
   TimePoint before = now;
   for (auto next = channel.next_release(); next; next = channel.next_release()) {
@@ -240,14 +245,14 @@ Relay::Readable Relay::rest(TimePoint now, TimePoint until) noexcept {
 /// Both ways: which of them is next may change till then.
 void Relay::warm() noexcept {
   if (up_.next_release()) server_side_.warm(nullptr);
-  if (down_.next_release() && client_) client_side_.warm(&*client_);
+  if (down_.next_release() && client()) client_side_.warm(&*client());
 }
 
 void Relay::show(TimePoint now) noexcept {
   show_at_ = now + kShowEvery;
   RelayStatus shown;
   shown.at = now;
-  if (client_) shown.client = *client_;
+  if (client()) shown.client = *client();
   for (const Direction direction : {Direction::Up, Direction::Down}) {
     const auto i = static_cast<std::size_t>(direction);
     const Channel& channel = this->channel(direction);

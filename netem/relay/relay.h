@@ -15,6 +15,7 @@
 #include "common/io/net/endpoint.h"
 #include "netem/model/channel.h"
 #include "netem/model/path_plan.h"
+#include "netem/relay/client_choice.h"
 #include "netem/relay/datagram_socket.h"
 #include "netem/relay/relay_recording.h"
 #include "netem/relay/release_timing.h"
@@ -71,8 +72,8 @@ struct RelayStatus {
 };
 
 /// The impaired path as a process: two UDP ports with a Channel for each direction between them.
-/// Whoever sent last to the listening port is the client that replies go to, so a restarted
-/// surgeon with a new port simply becomes it. A peer that vanishes is counted, nothing more.
+/// Replies go to the client, which ClientChoice names, so a restarted surgeon with a new port
+/// becomes it and a stranger does not. A peer that vanishes is counted, nothing more.
 /// Thread: the one that serves it; it asks the clock and waits in the kernel, but spins the last
 /// 60 us before a release. commands, status and recording are the other thread's ends.
 class Relay {
@@ -86,7 +87,9 @@ class Relay {
   [[nodiscard]] io::Endpoint listening_on() const { return client_side_.local(); }
   /// Where the patient sees us.
   [[nodiscard]] io::Endpoint forwarding_from() const { return server_side_.local(); }
-  [[nodiscard]] const std::optional<io::Endpoint>& client() const noexcept { return client_; }
+  [[nodiscard]] const std::optional<io::Endpoint>& client() const noexcept {
+    return clients_.client();
+  }
   /// Once it has been served.
   [[nodiscard]] bool real_time() const noexcept { return real_time_; }
   [[nodiscard]] TimePoint start() const noexcept { return start_; }
@@ -146,7 +149,7 @@ class Relay {
   bool stopped_{};
   bool recording_on_{};
   std::uint64_t rebinds_{};
-  std::optional<io::Endpoint> client_;
+  ClientChoice clients_;
   std::vector<RelayCommand> waiting_;    ///< commands whose time has not come
   std::array<RelayTraffic, 2> traffic_;  ///< by Direction
   ReleaseTiming timing_;

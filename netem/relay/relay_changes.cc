@@ -62,7 +62,7 @@ void RelayChanges::work(TimePoint now, const Reply& reply) {
 
 /// Read again: a law takes memory while it waits, and a trace stands on the law that holds now.
 Result<void> RelayChanges::hand_over(const Waiting& change) {
-  const auto request = parse_control_line(change.line, laws());
+  const auto request = read(change.line);
   if (!request) return tl::unexpected<Error>(request.error());
   const Change& asked = request->up ? request->change_up : request->change_down;
   const bool down = request->down && !(request->up && asked.kind == Change::Kind::Rebind);

@@ -23,12 +23,16 @@ class RelayChanges {
  public:
   using Reply = std::function<void(std::uint64_t number, const std::string& text)>;
 
-  /// All outlive this object; the plans are the relay's.
-  RelayChanges(Relay& relay, const PathPlan& up, const PathPlan& down)
-      : relay_{relay}, plans_{&up, &down} {}
+  /// All outlive this object; the plans are the relay's. `read`: the files that words may name.
+  RelayChanges(Relay& relay, const PathPlan& up, const PathPlan& down, FileReader read)
+      : relay_{relay}, plans_{&up, &down}, read_{std::move(read)} {}
 
   /// The laws that hold now; on a ramp the one where it leads.
   [[nodiscard]] ControlContext laws() const;
+  /// What `line` asks for.
+  [[nodiscard]] Result<ControlRequest> read(std::string_view line) const {
+    return parse_control_line(line, laws(), read_);
+  }
   /// `request` is what `line` says. @returns false: too many wait.
   [[nodiscard]] bool hold(const ControlRequest& request,
                           std::string_view line,
@@ -57,6 +61,7 @@ class RelayChanges {
 
   Relay& relay_;
   std::array<const PathPlan*, 2> plans_;
+  FileReader read_;
   std::vector<Waiting> waiting_;  ///< by time, then as they came
   std::map<std::uint64_t, Underway> underway_;
   std::size_t commands_underway_{};

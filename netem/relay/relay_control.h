@@ -13,8 +13,10 @@
 
 namespace palp::netem {
 
-/// Lines of text from whoever connects, and one line back for each: a stream socket on loopback
-/// (`127.0.0.1:PORT`) or in the file system (`unix:PATH`). Never blocks. Thread: its owner's.
+/// Lines of text from whoever connects, and one line back for each: a stream socket in the file
+/// system (`unix:PATH`), for its owner and root only, or on loopback (`127.0.0.1:PORT`), for who
+/// shows a token in the first line. A line that is no JSON object ends the connection: a browser's
+/// request begins with one. Never blocks. Thread: its owner's.
 class RelayControl {
  public:
   /// @returns the answer, or nullopt: reply() will give it, under this number of the line.
@@ -22,9 +24,11 @@ class RelayControl {
       std::function<std::optional<std::string>(std::string_view line, std::uint64_t number)>;
 
   /// Takes the place of a socket in the file system that nobody answers on.
+  /// `token`: what callers of a port show; for a port there must be one.
   /// @returns or the sentence that says why not: another address than loopback (bad input), or
   /// taken (unreachable).
-  [[nodiscard]] static Result<RelayControl> listen(const std::string& address);
+  [[nodiscard]] static Result<RelayControl> listen(const std::string& address,
+                                                   std::string token = {});
   RelayControl(RelayControl&&) noexcept = default;
   RelayControl& operator=(RelayControl&&) = delete;
   ~RelayControl();
@@ -43,14 +47,17 @@ class RelayControl {
     std::string text;                   ///< of a line that is not whole yet
     std::vector<std::uint64_t> owed{};  ///< lines without an answer yet
     bool silent{};                      ///< says no more, but may listen
+    bool known{};                       ///< may say something
   };
-  RelayControl(io::Descriptor descriptor, std::string address, std::string path);
+  RelayControl(io::Descriptor descriptor, std::string address, std::string path, std::string token);
   [[nodiscard]] bool serve(Caller& caller, const Answer& answer);
-  void take_lines(Caller& caller, const Answer& answer);
+  [[nodiscard]] bool take_lines(Caller& caller, const Answer& answer);
+  void let_in();
 
   io::Descriptor descriptor_;
   std::string address_;
-  std::string path_;  ///< of the socket in the file system
+  std::string path_;   ///< of the socket in the file system
+  std::string token_;  ///< of a port
   std::vector<Caller> callers_;
   std::uint64_t lines_{};
 };

@@ -9,6 +9,7 @@
 
 #include "common/config/report.h"
 #include "common/io/realtime/background_loop.h"
+#include "netem/relay/control_folder.h"
 #include "netem/relay/relay.h"
 #include "netem/relay/relay_changes.h"
 #include "netem/relay/relay_report.h"
@@ -36,13 +37,18 @@ class Attendant {
   Attendant(Relay& relay, const RelayProgramConfig& config)
       : relay_{relay},
         config_{config},
-        changes_{relay, config.up, config.down},
+        changes_{relay, config.up, config.down, folder_.reader()},
         writer_{relay.recording, relay.start(), wall_now() - (monotonic_now() - relay.start())},
         status_at_{relay.start() + config.status_every} {}
 
   Result<void> open() {
     if (!config_.control.empty()) {
-      auto control = RelayControl::listen(config_.control);
+      if (!config_.control_folder.empty()) {
+        auto folder = ControlFolder::open(config_.control_folder);
+        if (!folder) return fail("--control-folder", folder.error());
+        folder_ = *std::move(folder);
+      }
+      auto control = RelayControl::listen(config_.control, config_.control_token);
       if (!control) return fail("--control", control.error());
       control_.emplace(*std::move(control));
       say(STDOUT_FILENO, "control on " + control_->address() + '\n');
@@ -73,7 +79,7 @@ class Attendant {
 
  private:
   std::optional<std::string> answer(std::string_view line, std::uint64_t number) {
-    const auto request = parse_control_line(line, changes_.laws());
+    const auto request = changes_.read(line);
     if (!request) return error_line(request.error().text);
     switch (request->kind) {
       case ControlRequest::Kind::Stats: {
@@ -98,12 +104,14 @@ class Attendant {
       const auto closed = writer_.close();
       return closed ? recording_end_line(*closed) : error_line(closed.error().text);
     }
-    const auto opened = writer_.open(prefix);
+    const auto opened =
+        writer_.open(prefix, [this](const std::string& path) { return folder_.create(path); });
     return opened ? "{\"recording\":true}" : error_line(opened.error().text);
   }
 
   Relay& relay_;
   const RelayProgramConfig& config_;
+  ControlFolder folder_;
   RelayChanges changes_;
   RecordingWriter writer_;
   std::optional<RelayControl> control_;

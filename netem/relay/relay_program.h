@@ -21,9 +21,11 @@ struct RelayProgramConfig {
   PathPlan up{};
   PathPlan down{};
   std::uint64_t seed{1};
-  std::string record;   ///< prefix; empty: none
-  std::string control;  ///< address; empty: none
-  std::string report;   ///< empty: none
+  std::string record;          ///< prefix; empty: none
+  std::string control;         ///< address; empty: none
+  std::string control_token;   ///< what a caller by TCP says first
+  std::string control_folder;  ///< whose files the control may name; empty: none
+  std::string report;          ///< empty: none
   Duration duration{};
   Duration status_every{};  ///< 0: no line
   int stop_descriptor{-1};

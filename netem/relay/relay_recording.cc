@@ -1,10 +1,13 @@
 #include "netem/relay/relay_recording.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <optional>
 #include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "common/link/transport.h"
 #include "netem/relay/pcapng.h"
@@ -67,6 +70,20 @@ void RecordingQueue::crossed(const Crossing& crossing,
 }
 
 struct RecordingWriter::Files {
+  /// A file, and whether it took everything.
+  struct Out {
+    void write(std::string& text) {
+      for (std::string_view left = text; whole && !left.empty();) {
+        const ssize_t taken = ::write(descriptor.number(), left.data(), left.size());
+        if (taken < 0 && errno == EINTR) continue;
+        whole = taken > 0;
+        if (whole) left.remove_prefix(static_cast<std::size_t>(taken));
+      }
+      text.clear();
+    }
+    io::Descriptor descriptor;
+    bool whole{true};
+  };
   /// The CSV of one direction.
   struct Way {
     explicit Way(TimePoint start)
@@ -80,7 +97,7 @@ struct RecordingWriter::Files {
       one.index -= *first;
       append_recording_line(text, one, start);
       text += ',' + std::to_string(one.length + kFrameHeaders) + '\n';
-      if (text.size() > kFlushAt) flush(text, file);
+      if (text.size() > kFlushAt) file.write(text);
     }
     /// All that is known of a datagram as decided.
     void tell_gathered() {
@@ -90,7 +107,7 @@ struct RecordingWriter::Files {
       if (order.waiting() > kWaitingMax) given_up += order.give_up(1);
     }
 
-    std::ofstream file;
+    Out file;
     std::string text;
     std::optional<std::uint64_t> first;  ///< which datagram is number 0 of the file
     std::vector<Decision> gathered;      ///< copies of the datagram that is being told
@@ -99,30 +116,33 @@ struct RecordingWriter::Files {
   };
 
   explicit Files(TimePoint start) : up{start}, down{start} {}
-  static void flush(std::string& text, std::ofstream& file) {
-    file.write(text.data(), static_cast<std::streamsize>(text.size()));
-    text.clear();
-  }
 
   Way up;
   Way down;
-  std::ofstream capture_file;
+  Out capture_file;
   std::string capture;
   std::uint64_t missed_before{};
 };
+
+Result<io::Descriptor> open_over(const std::string& path) {
+  io::Descriptor file{::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)};
+  if (!file.valid()) return fail("cannot write '" + path + "'");
+  return file;
+}
 
 RecordingWriter::RecordingWriter(RecordingQueue& queue, TimePoint start, Duration wall_start)
     : queue_{queue}, start_{start}, wall_start_{wall_start} {}
 
 RecordingWriter::~RecordingWriter() { (void)close(); }
 
-Result<void> RecordingWriter::open(const std::string& prefix) {
+Result<void> RecordingWriter::open(const std::string& prefix, const OpenFile& open_file) {
   if (files_) return fail("a recording is on already");
   drain();  // what was told after the last one's end
   auto files = std::make_unique<Files>(start_);
-  const auto open_one = [](std::ofstream& file, const std::string& path) -> Result<void> {
-    file.open(path, std::ios::binary | std::ios::trunc);
-    if (!file) return fail("cannot write '" + path + "'");
+  const auto open_one = [&](Files::Out& file, const std::string& path) -> Result<void> {
+    auto opened = open_file(path);
+    if (!opened) return tl::unexpected<Error>(opened.error());
+    file.descriptor = *std::move(opened);
     return {};
   };
   if (auto opened = open_one(files->up.file, prefix + "-up.csv"); !opened) return opened;
@@ -175,7 +195,7 @@ void RecordingWriter::write(const CapturedDatagram& captured) {
                    to.port},
                   captured.tos,
                   std::span{captured.bytes}.first(kept));
-  if (files_->capture.size() > kFlushAt) Files::flush(files_->capture, files_->capture_file);
+  if (files_->capture.size() > kFlushAt) files_->capture_file.write(files_->capture);
 }
 
 Result<RecordingGaps> RecordingWriter::close() {
@@ -188,13 +208,11 @@ Result<RecordingGaps> RecordingWriter::close() {
   for (Files::Way* way : {&files_->up, &files_->down}) {
     way->tell_gathered();
     gaps.open += way->given_up + way->order.give_up();
-    Files::flush(way->text, way->file);
-    way->file.close();
-    whole = whole && !way->file.fail();
+    way->file.write(way->text);
+    whole = whole && way->file.whole;
   }
-  Files::flush(files_->capture, files_->capture_file);
-  files_->capture_file.close();
-  whole = whole && !files_->capture_file.fail();
+  files_->capture_file.write(files_->capture);
+  whole = whole && files_->capture_file.whole;
   files_.reset();
   if (!whole) return fail("the recording could not be written whole");
   return gaps;

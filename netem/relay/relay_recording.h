@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -9,6 +10,7 @@
 #include "common/core/spsc_queue.h"
 #include "common/core/time.h"
 #include "common/io/net/endpoint.h"
+#include "common/io/process/descriptor.h"
 #include "netem/model/impaired_path.h"
 #include "netem/model/simulation.h"
 
@@ -77,6 +79,11 @@ class RecordingQueue {
   std::atomic<std::uint64_t> missed{0};
 };
 
+/// Makes a file to write to, or says why not.
+using OpenFile = std::function<Result<io::Descriptor>(const std::string& path)>;
+/// What stands there already is gone.
+[[nodiscard]] Result<io::Descriptor> open_over(const std::string& path);
+
 /// The files PREFIX-up.csv, PREFIX-down.csv (columns of `palp-netem simulate`, and the length) and
 /// PREFIX.pcapng (both sides as two interfaces). The CSV is complete and can be replayed: it counts
 /// from its first datagram, and tells the decisions, not the machine's lateness.
@@ -89,7 +96,8 @@ class RecordingWriter {
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
-  [[nodiscard]] Result<void> open(const std::string& prefix);
+  /// Where one of the three cannot be had, those before it stay behind empty.
+  [[nodiscard]] Result<void> open(const std::string& prefix, const OpenFile& open_file = open_over);
   [[nodiscard]] bool is_open() const noexcept { return files_ != nullptr; }
   /// Writes what waits.
   void drain();

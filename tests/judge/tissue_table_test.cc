@@ -34,6 +34,8 @@ TEST(TissueTableTest, KnowsItsCurvesByTheirPlaces) {
 }
 
 TEST(TissueTableTest, RefusesOtherColumnsPlacesAndNumbers) {
+  EXPECT_FALSE(TissueTable::parse("site,d_mm,F_N\nA,0,0\nA,1,0,5\n")) << "a decimal comma";
+  EXPECT_TRUE(TissueTable::parse("\xef\xbb\xbfsite,d_mm,F_N\nA,0,0\nA,1,0.5\n"));
   EXPECT_FALSE(TissueTable::parse("d_mm,F_N\n0,0\n"));
   EXPECT_FALSE(TissueTable::parse("site,d_mm,F_N\nC,0,0\n"));
   EXPECT_FALSE(TissueTable::parse("site,d_mm,F_N\nA,0,nan\n"));

@@ -122,6 +122,28 @@ TEST(ForceTableTest, SaysWhereAFileIsWrong) {
   EXPECT_EQ(sentence(head + "2,0.2\n3,0.3\n"), "");
 }
 
+TEST(ForceTableTest, ADecimalCommaIsRefusedNotReadAsZero) {
+  EXPECT_THAT(sentence("d_mm,F_N\n0,0,0,0\n1,0,0,1\n2,0,0,2\n3,0,0,3\n"),
+              HasSubstr("t.csv: line 2: there are 4 cells"
+                        ", the header has 2; numbers are written with a point"));
+  EXPECT_THAT(sentence("d_mm,F_N\n0,0\n1,0.1\n2,0.2\n3,0,3\n"), HasSubstr("line 5: there are 3"));
+  EXPECT_THAT(sentence("d_mm;F_N\n0;0\n1,0;0,1\n"), HasSubstr("no column d_mm"));
+  EXPECT_EQ(sentence("d_mm,F_N\n0,0,\n1,0.1,\n2,0.2,,\n3,0.3\n"), "") << "empty cells at the end";
+}
+
+TEST(ForceTableTest, AForceThatFallsIsRefused) {
+  EXPECT_THAT(sentence("d_mm,F_N\n0,0\n1,0.1\n2,0.3\n3,0.2\n"),
+              HasSubstr("t.csv: line 5: F_N = 0.2 falls below the row before (0.3)"));
+  EXPECT_EQ(sentence("d_mm,F_N\n0,0\n1,0.1\n2,0.1\n3,0.2\n"), "") << "a plateau";
+  EXPECT_FALSE(ForceTable::make({{0, 1}, {1e-3, 0.5}, {2e-3, 0.2}, {3e-3, 0}}));
+}
+
+TEST(ForceTableTest, AByteOrderMarkIsNoPartOfTheFirstName) {
+  EXPECT_EQ(sentence("\xef\xbb\xbf"
+                     "d_mm,F_N\n0,0\n1,0.1\n2,0.2\n3,0.3\n"),
+            "");
+}
+
 std::string placed_sentence(const std::string& text) {
   const auto curves = parse_tissue_curves(text, "t.csv", kSiteB);
   return curves ? std::string{} : curves.error().text;

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "common/core/printable.h"
+#include "common/record/mcap_writer.h"
+#include "review/check.h"
+#include "review/recover.h"
 #include "tests/review/session_samples.h"
 
 namespace palp::review {
@@ -25,7 +29,34 @@ TEST(InfoTest, TellsHowFarACutOffFileGoes) {
 }
 
 TEST(InfoTest, EmptyFileIsNoTrouble) {
-  EXPECT_NE(describe({}).find("the file was not closed"), std::string::npos);
+  const std::string text = describe(std::span<const std::byte>{});
+  EXPECT_NE(text.find("the file was not closed"), std::string::npos);
+}
+
+TEST(InfoTest, NothingInAFileActsOnTheTerminal) {
+  const std::string evil =
+      "\x1b]0;owned\x07\n\xc2\x9b"
+      "31mfault at byte 0";
+  record::MemorySink sink;
+  {
+    record::McapWriter writer{sink, {}};
+    writer.add_metadata("palp", {{evil, evil}});
+    writer.add_metadata("palp.summary", {{"records_dropped", evil}, {"messages", evil}});
+    const auto schema = writer.add_schema(evil, "protobuf", {});
+    const auto channel = writer.add_channel(schema, "surgeon/" + evil, "protobuf");
+    for (const std::uint32_t sequence : {0U, 7U}) {
+      (void)writer.add_message({.channel = channel, .sequence = sequence}, 0);
+    }
+  }
+  record::MemorySink copy;
+  const auto recovery = recover(sink.bytes(), copy);
+  ASSERT_TRUE(recovery);
+  for (const std::string& text :
+       {describe(sink.bytes()), first_fault(sink.bytes()).value_or(""), describe(*recovery)}) {
+    EXPECT_FALSE(text.empty());
+    EXPECT_EQ(text, harmless(text));
+    EXPECT_EQ(text.find("\nfault at"), std::string::npos) << "no line of its own: " << text;
+  }
 }
 
 }  // namespace

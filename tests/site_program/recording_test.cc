@@ -1,14 +1,19 @@
 #include "site_program/recording.h"
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "common/io/process/diagnostics.h"
+#include "common/io/realtime/steady_clock.h"
 #include "common/record/notes.h"
 
 namespace palp::site_program {
@@ -95,6 +100,51 @@ TEST(RecordingTest, WhatRepeatsItselfIsToldOnce) {
   }
   const std::string text = told(recording);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+}
+
+TEST(RecordingTest, AFileRemovedMeanwhileIsALostRecording) {
+  const std::string path = fresh_file();
+  Recording recording{{.file = path}, patient_info(), 1};
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(recording.recorder(0).record(SiteTick{}));
+  std::filesystem::remove(path);
+  const RecordAccount& account = recording.stop();
+  EXPECT_THAT(account.fault, testing::HasSubstr("removed"));
+  EXPECT_EQ(account.counts.records(), 0U) << "nobody can read them";
+  EXPECT_GE(account.dropped, 100U);
+}
+
+TEST(RecordingTest, AFullDiskIsToldWhileTheSessionGoesOn) {
+  const std::string path = fresh_file();
+  Recording recording{{.file = path}, patient_info(), 1};
+  EXPECT_EQ(recording.alarm(), "");
+  (void)std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit full{std::filesystem::file_size(path), before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &full);
+  const io::SteadyClock clock;
+  const TimePoint deadline = clock.now() + std::chrono::seconds{20};
+  std::uint64_t recorded = 0;
+  while (recording.alarm().empty() && clock.now() < deadline) {
+    if (recording.recorder(0).record(SiteTick{})) ++recorded;
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(recording.alarm(), "RECORDING FAILED ");
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  const RecordAccount& account = recording.stop();
+  EXPECT_THAT(account.fault, testing::HasSubstr(path));
+  EXPECT_EQ(account.counts.records(), 0U);
+  EXPECT_GE(account.dropped, recorded);
+  EXPECT_THAT(told(recording), testing::HasSubstr("RECORDING FAILED, the session goes on"));
+}
+
+TEST(RecordingTest, RecordsLostToAFullQueueAreALostRecording) {
+  Recording recording{{.file = fresh_file(), .queue_records = 256}, patient_info(), 1};
+  std::uint64_t refused = 0;
+  while (refused == 0) {
+    if (!recording.recorder(0).record(SiteTick{})) ++refused;
+  }
+  EXPECT_THAT(recording.stop().fault, testing::HasSubstr("lost"));
 }
 
 }  // namespace

@@ -115,6 +115,24 @@ TEST(SiteReportTest, TextsThatAreNoUtf8DoNotBreakIt) {
   EXPECT_FALSE(json::parse(to_json(made)).empty());
 }
 
+TEST(FinishTest, ARecordingThatFailedIsNoSuccess) {
+  using config::ExitCode;
+  RecordAccount lost;
+  lost.fault = "the disk is full";
+  const ExitStatus done{ExitCode::Done, "completed", ""};
+  EXPECT_EQ(with_recording(done, {}).code, ExitCode::Done);
+  EXPECT_EQ(with_recording(done, lost).code, ExitCode::Missed);
+  EXPECT_EQ(with_recording(done, lost).outcome, "completed");
+  EXPECT_THAT(with_recording(done, lost).reason, testing::HasSubstr("the disk is full"));
+  const ExitStatus cut{ExitCode::CutShort, "peer lost", "the peer is gone"};
+  EXPECT_EQ(with_recording(cut, lost).code, ExitCode::CutShort);
+  EXPECT_THAT(with_recording(cut, lost).reason, testing::StartsWith("the peer is gone"));
+  SiteReport report;
+  EXPECT_TRUE(json::parse(to_json(report))["recording_fault"].is_null());
+  report.records = lost;
+  EXPECT_EQ(json::parse(to_json(report))["recording_fault"], "the disk is full");
+}
+
 TEST(FinishTest, WritesTheReportAlsoOfAFailure) {
   const std::string path = testing::TempDir() + "palp_finish.json";
   SiteReport report;

@@ -58,6 +58,10 @@ void mark_datagrams(int socket, int family, int traffic_class) noexcept {
   set_option(socket, IPPROTO_IP, IP_TOS, traffic_class);
 }
 
+void share_port(int socket, bool on) noexcept {
+  set_option(socket, SOL_SOCKET, SO_REUSEPORT, on ? 1 : 0);
+}
+
 /// Room for one recvmmsg. What was taken but not handed over waits here, also over ticks.
 struct UdpSocket::Batch {
   struct alignas(cmsghdr) Control {
@@ -120,7 +124,7 @@ Result<std::unique_ptr<UdpSocket>> UdpSocket::connect(const Endpoint& local,
     return fail("cannot open a UDP socket: " + system_text(errno));
   }
   set_options(socket.number(), peer.family(), config);
-  set_option(socket.number(), SOL_SOCKET, SO_REUSEADDR, 1);
+  share_port(socket.number(), true);
   if (::bind(socket.number(), local.address(), local.size()) != 0) {
     return fail("cannot use " + local.to_string() + ": " + system_text(errno));
   }

@@ -28,6 +28,11 @@ void ask_receive_buffer(int socket, int bytes) noexcept;
 /// peers of IPv4 too, so both kinds of its datagrams are marked.
 void mark_datagrams(int socket, int family, int traffic_class) noexcept;
 
+/// While it is `on`, further sockets of the same user that permit it too may have the port of this
+/// one: SO_REUSEPORT asks whose they are. SO_REUSEADDR would let in any user of the machine, and
+/// with it who swallows all that comes for the port.
+void share_port(int socket, bool on) noexcept;
+
 /// A connected, non-blocking UDP socket: the kernel lets through what the peer's address sent.
 /// Datagrams of type data go to the caller, all others into the inbox; both count against the
 /// budget of a tick. Telegrams that io took from an address that is being proven come after them,
@@ -36,7 +41,8 @@ void mark_datagrams(int socket, int family, int traffic_class) noexcept;
 class UdpSocket final : public link::Transport {
  public:
   /// Bound to `local` (port 0: any), connected to `peer`. `inbox` outlives receive(), not the
-  /// socket's destruction. The local port may be shared with a socket that permits it.
+  /// socket's destruction. The local port may be shared with a socket of this user that
+  /// permits it.
   [[nodiscard]] static Result<std::unique_ptr<UdpSocket>> connect(const Endpoint& local,
                                                                   const Endpoint& peer,
                                                                   SideInbox& inbox,

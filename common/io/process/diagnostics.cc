@@ -5,10 +5,17 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "common/core/printable.h"
+
 namespace palp::io {
 namespace {
 
-spdlog::string_view_t text(std::string_view sentence) { return {sentence.data(), sentence.size()}; }
+/// Parts of a sentence come from the peer, its certificate or a file: none may act on the terminal
+/// or look like a sentence of its own.
+void say(spdlog::level::level_enum level, std::string_view sentence) {
+  const std::string line = harmless_line(sentence);
+  spdlog::default_logger_raw()->log(level, spdlog::string_view_t{line.data(), line.size()});
+}
 
 }  // namespace
 
@@ -21,8 +28,8 @@ void start_diagnostics(std::string_view program) {
   spdlog::set_default_logger(logger);
 }
 
-void info(std::string_view sentence) { spdlog::default_logger_raw()->info(text(sentence)); }
-void warn(std::string_view sentence) { spdlog::default_logger_raw()->warn(text(sentence)); }
-void error(std::string_view sentence) { spdlog::default_logger_raw()->error(text(sentence)); }
+void info(std::string_view sentence) { say(spdlog::level::info, sentence); }
+void warn(std::string_view sentence) { say(spdlog::level::warn, sentence); }
+void error(std::string_view sentence) { say(spdlog::level::err, sentence); }
 
 }  // namespace palp::io

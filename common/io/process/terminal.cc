@@ -41,6 +41,8 @@ Terminal::Terminal() {
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   // Who reads what we print may leave; the session goes on.
   std::signal(SIGPIPE, SIG_IGN);
+  // A file that may not grow any further is an error of the write, not an end of the session.
+  std::signal(SIGXFSZ, SIG_IGN);
   signals_ = Descriptor{signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC)};
   if (!signals_.valid()) {
     throw std::runtime_error{"cannot watch for signals: " + system_text(errno)};

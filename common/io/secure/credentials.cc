@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include <openssl/crypto.h>
 #include <openssl/pem.h>
 #include <openssl/x509err.h>
 
@@ -33,6 +34,14 @@ constexpr char kSharedKeyFile[] = "pre_shared_key.txt";
 constexpr char kCertificateSuites[] = "ECDHE-ECDSA-AES256-GCM-SHA384:ECDHE-RSA-AES256-GCM-SHA384";
 /// The only forward secret suite of OpenSSL 3.0 with a pre-shared key and authenticated encryption.
 constexpr char kPreSharedSuites[] = "ECDHE-PSK-CHACHA20-POLY1305";
+
+/// OpenSSL keeps private keys in memory of its own, which is neither swapped nor dumped. Where the
+/// system has no locked memory to give, they lie among the rest as without it.
+void keep_private_keys_apart() {
+  constexpr std::size_t kHeap = 64 * 1024;  // [bytes], many times a site's key
+  constexpr std::size_t kSmallest = 32;     // [bytes]
+  if (CRYPTO_secure_malloc_initialized() == 0) (void)CRYPTO_secure_malloc_init(kHeap, kSmallest);
+}
 
 /// After OpenSSL's own checks: what only a site's certificate says, and whose it is. The errors are
 /// told apart in dtls_handshake.cc.
@@ -260,6 +269,7 @@ Credentials::~Credentials() = default;
 
 Result<std::unique_ptr<Credentials>> Credentials::read(const std::string& folder, Role role) {
   ERR_clear_error();
+  keep_private_keys_apart();
   const std::filesystem::path place{folder};
   if (!std::filesystem::is_directory(place)) {
     return tl::unexpected{unusable(place, "is no folder; 'palp-surgeon certificates' makes one")};

@@ -45,10 +45,6 @@ udp::endpoint as_asio(const Endpoint& endpoint) {
 
 Endpoint from_asio(const udp::endpoint& endpoint) { return {endpoint.data(), endpoint.size()}; }
 
-void set_option(udp::socket& socket, int level, int name, int value) noexcept {
-  (void)setsockopt(socket.native_handle(), level, name, &value, sizeof value);
-}
-
 Endpoint found(const HostAndPort& place) {
   const Result<Endpoint> endpoint = resolve(place);
   if (!endpoint) throw std::runtime_error{endpoint.error().text};
@@ -331,11 +327,11 @@ void SessionServer::Io::move(const Endpoint& peer) {
 }
 
 Result<std::unique_ptr<link::Transport>> SessionServer::Io::way_to(const Endpoint& peer) {
-  // Only as long as it takes: with this option any process could share the port and its datagrams.
-  set_option(listening_, SOL_SOCKET, SO_REUSEADDR, 1);
+  // Only as long as it takes: meanwhile any process of this user could share the port.
+  share_port(listening_.native_handle(), true);
   Result<std::unique_ptr<UdpSocket>> socket =
       UdpSocket::connect(local_, peer, desk_.inbox(), config_.socket);
-  set_option(listening_, SOL_SOCKET, SO_REUSEADDR, 0);
+  share_port(listening_.native_handle(), false);
   if (!socket) {
     return fail(socket.error().text);
   }

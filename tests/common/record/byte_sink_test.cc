@@ -1,8 +1,11 @@
 #include "common/record/byte_sink.h"
 
+#include <csignal>
 #include <filesystem>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "common/record/mapped_file.h"
@@ -44,6 +47,80 @@ TEST_F(FileTest, EmptyFileAndDirectoryAndNothingAreToldApart) {
   ASSERT_TRUE(empty);
   EXPECT_TRUE(empty->bytes().empty());
   EXPECT_FALSE(MappedFile::open(testing::TempDir()));
+}
+
+TEST_F(FileTest, OnlyTheOwnerMayRead) {
+  const ::mode_t before = ::umask(0);
+  const auto sink = FileSink::create(path_);
+  ::umask(before);
+  ASSERT_TRUE(sink);
+  EXPECT_EQ(std::filesystem::status(path_).permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+/// No file of this process grows beyond `size` [bytes] while it lives: a disk that is full.
+class FullDisk {
+ public:
+  explicit FullDisk(::rlim_t size) {
+    (void)std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{size, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(FileTest, AFullDiskIsAFaultAndLeavesWholePieces) {
+  auto sink = FileSink::create(path_);
+  ASSERT_TRUE(sink);
+  const auto piece = std::as_bytes(std::span{kText});
+  {
+    const FullDisk full{25};
+    EXPECT_TRUE(sink->write(piece));
+    EXPECT_TRUE(sink->fault().empty());
+    EXPECT_TRUE(sink->write(piece));
+    EXPECT_FALSE(sink->write(piece));
+  }
+  EXPECT_NE(sink->fault().find(path_), std::string::npos);
+  EXPECT_FALSE(sink->write(piece)) << "a file with a hole is worse than a short one";
+  EXPECT_EQ(std::filesystem::file_size(path_), 2 * piece.size());
+}
+
+TEST_F(FileTest, ARemovedFileIsNoticedAndTakesNothingMore) {
+  auto sink = FileSink::create(path_);
+  ASSERT_TRUE(sink);
+  sink->look();
+  EXPECT_TRUE(sink->fault().empty());
+  std::filesystem::remove(path_);
+  sink->look();
+  EXPECT_TRUE(sink->removed());
+  EXPECT_FALSE(sink->write(std::as_bytes(std::span{kText})));
+}
+
+TEST_F(FileTest, AReplacedFileIsNoticedAlsoAtTheLastMoment) {
+  auto sink = FileSink::create(path_);
+  ASSERT_TRUE(sink);
+  const std::string elsewhere = path_ + "_moved";
+  std::filesystem::rename(path_, elsewhere);
+  ASSERT_TRUE(FileSink::create(path_));
+  sink->finish();
+  EXPECT_NE(sink->fault().find("moved or replaced"), std::string::npos);
+  EXPECT_FALSE(sink->removed());
+  EXPECT_TRUE(sink->write(std::as_bytes(std::span{kText}))) << "the moved one is still whole";
+  std::filesystem::remove(elsewhere);
+}
+
+TEST_F(FileTest, TheRoomIsThatOfItsDisk) {
+  const auto sink = FileSink::create(path_);
+  ASSERT_TRUE(sink);
+  const auto room = sink->room();
+  ASSERT_TRUE(room);
+  EXPECT_LE(*room, std::filesystem::space(path_).capacity);
 }
 
 }  // namespace

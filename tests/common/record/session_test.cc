@@ -134,6 +134,35 @@ TEST(SessionTest, StatisticsEqualTheWritersCounters) {
   EXPECT_EQ(statistics->chunks, 10u) << "one each half second";
 }
 
+/// Takes `room` [bytes], then no more.
+class FullDisk final : public ByteSink {
+ public:
+  explicit FullDisk(std::size_t room) : room_{room} {}
+  bool write(std::span<const std::byte> bytes) noexcept override {
+    if (bytes.size() > room_) return false;
+    room_ -= bytes.size();
+    return true;
+  }
+
+ private:
+  std::size_t room_;
+};
+
+TEST(SessionTest, AfterAFullDiskTheCountsAreThoseOfTheFile) {
+  for (const std::size_t room : {30'000U, 60'000U, 90'000U}) {
+    FullDisk disk{room};
+    SessionWriter writer{disk, {.site = Role::Surgeon}};
+    std::uint64_t handed = 0;
+    for (int k = 0; k < 100'000 && !writer.failed(); ++k, ++handed) {
+      (void)writer.write(test::tick(k), at_ms(k));
+    }
+    writer.close();
+    ASSERT_TRUE(writer.failed());
+    EXPECT_EQ(writer.counts().records() + writer.counts().views, writer.messages());
+    EXPECT_GE(writer.messages() + writer.lost(), handed);
+  }
+}
+
 TEST(SessionTest, ViewShowsFiftyPerSecondAndKeepsASpikeOfOneTick) {
   TickView view;
   for (int k = 0; k < 20; ++k) {

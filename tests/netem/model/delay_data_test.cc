@@ -74,6 +74,16 @@ INSTANTIATE_TEST_SUITE_P(Shipped,
                            return name;
                          });
 
+TEST(DelayDataTest, ADecimalCommaIsAThirdColumnAndAMarkIsNone) {
+  const auto comma = parse_delay_histogram("h", "0,5,3\n1,5,4\n");
+  ASSERT_FALSE(comma);
+  EXPECT_NE(comma.error().text.find("two columns"), std::string::npos);
+  EXPECT_TRUE(parse_delay_histogram("h",
+                                    "\xef\xbb\xbf"
+                                    "0.5,3\n1.5,4\n"));
+  EXPECT_TRUE(parse_delay_trace("t", "\xef\xbb\xbft_ms,delay_ms\n0,5\n100,7\n"));
+}
+
 class DelayHistogramTest : public ::testing::TestWithParam<std::string> {};
 
 /// Goal: each bin gets its share. Method: 200,000 independent draws, within four standard errors.

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cerrno>
 #include <string>
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "common/io/net/endpoint.h"
@@ -12,17 +14,28 @@
 
 namespace palp::netem {
 
-/// A caller of a control socket at a loopback address.
+/// A caller of a control socket, by its `unix:PATH` or loopback address.
 class Call {
  public:
   explicit Call(const std::string& address) {
+    if (address.starts_with("unix:")) {
+      sockaddr_un local{};
+      local.sun_family = AF_UNIX;
+      address.copy(local.sun_path, sizeof local.sun_path - 1, 5);
+      caller_ = io::Descriptor{::socket(AF_UNIX, SOCK_STREAM, 0)};
+      // The sockets API takes every family through this one type.
+      const auto* to = reinterpret_cast<const sockaddr*>(&local);
+      EXPECT_EQ(::connect(caller_.number(), to, sizeof local), 0) << address;
+      return;
+    }
     const auto to = io::resolve_endpoint(address);
     caller_ = io::Descriptor{::socket(to->family(), SOCK_STREAM, 0)};
     EXPECT_EQ(::connect(caller_.number(), to->address(), to->size()), 0) << address;
   }
+  [[nodiscard]] int number() const noexcept { return caller_.number(); }
   /// `last`: nothing more will be said.
   void say(const std::string& text, bool last = false) const {
-    EXPECT_EQ(::send(caller_.number(), text.data(), text.size(), 0),
+    EXPECT_EQ(::send(caller_.number(), text.data(), text.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(text.size()));
     if (last) ::shutdown(caller_.number(), SHUT_WR);
   }
@@ -34,7 +47,9 @@ class Call {
     while (!reply.ends_with('\n') && monotonic_now() < until) {
       turn();
       char byte = 0;
-      if (::recv(caller_.number(), &byte, 1, MSG_DONTWAIT) == 1) reply += byte;
+      const ssize_t got = ::recv(caller_.number(), &byte, 1, MSG_DONTWAIT);
+      if (got == 1) reply += byte;
+      if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) break;  // it has hung up
     }
     return reply;
   }

@@ -49,6 +49,7 @@ class RelayProgramTest : public ::testing::Test {
   }
   [[nodiscard]] std::string report_path() const { return folder_ + "/report.json"; }
   const std::string folder_ = system_test::make_folder("palp-netem");
+  const std::string control_ = "unix:" + folder_ + "/control";
   int started_{};
 };
 
@@ -167,7 +168,7 @@ TEST_F(RelayProgramTest, FollowsATimelineAndItsControl) {
   const std::string timeline = folder_ + "/day.textproto";
   std::ofstream{timeline} << "event { set: \"delay 1ms\" }\n";
   Process program =
-      start_relay({"--timeline", timeline, "--control", "127.0.0.1:0", "--report", report_path()});
+      start_relay({"--timeline", timeline, "--control", control_, "--report", report_path()});
   const std::string address = control_of(program);
   EXPECT_THAT(ask(address, "{\"set\":\"delay 5ms\"}"), HasSubstr("applied_at_s"));
   EXPECT_THAT(ask(address, "{\"set\":\"delay 5minutes\"}"), HasSubstr("column 7"));
@@ -178,7 +179,7 @@ TEST_F(RelayProgramTest, FollowsATimelineAndItsControl) {
 }
 
 TEST_F(RelayProgramTest, AChangeForNowIsAppliedHoweverManyWait) {
-  Process program = start_relay({"--control", "127.0.0.1:0"});
+  Process program = start_relay({"--control", control_});
   const Call call{control_of(program)};
   for (int i = 0; i < 200; ++i) call.say("{\"at_s\":900,\"set\":\"delay 9ms\"}\n");
   call.say("{\"dir\":\"UP\",\"set\":\"delay 7ms\"}\n");
@@ -199,7 +200,8 @@ TEST_F(RelayProgramTest, ATraceKeepsTheRestOfTheLawThatHolds) {
   const std::string timeline = folder_ + "/day.textproto";
   std::ofstream{timeline} << "event { set: \"delay 1ms\" }\n"
                              "event { at_s: 0.0001 dir: UP set: \"loss 100%\" }\n";
-  Process program = start_relay({"--timeline", timeline, "--control", "127.0.0.1:0"});
+  Process program =
+      start_relay({"--timeline", timeline, "--control", control_, "--control-folder", folder_});
   const Call call{control_of(program)};
   // Nobody has come yet, so nothing made the relay look at its timeline.
   call.say("{\"dir\":\"DOWN\",\"set\":\"loss 50%\"}\n{\"trace\":{\"file\":\"" + trace + "\"}}\n");
@@ -210,6 +212,63 @@ TEST_F(RelayProgramTest, ATraceKeepsTheRestOfTheLawThatHolds) {
   EXPECT_THAT(stats["up"]["law"], HasSubstr("loss 100%"));
   EXPECT_THAT(stats["up"]["law"], HasSubstr("trace"));
   EXPECT_THAT(stats["down"]["law"], HasSubstr("loss 50%"));
+}
+
+TEST_F(RelayProgramTest, APortAsksForTheTokenOfItsFile) {
+  const std::string token_file = folder_ + "/token";
+  Process program = start_relay({"--control", "127.0.0.1:0", "--control-token", token_file});
+  const std::string address = control_of(program);
+  std::string token;
+  std::ifstream{token_file} >> token;
+  EXPECT_EQ(std::filesystem::status(token_file).permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  EXPECT_EQ(ask(address, "{\"quit\":true}"), "");
+  const Call post{address};
+  post.say("POST / HTTP/1.1\r\nOrigin: http://evil.example\r\n\r\n{\"quit\":true}\n");
+  EXPECT_THAT(post.hear(), HasSubstr("error"));
+  const Call owner{address};
+  owner.say("{\"token\": \"" + token + "\"}\n{\"stats\":true}\n");
+  EXPECT_EQ(owner.hear(), "{\"token\":true}\n");
+  EXPECT_THAT(owner.hear(), HasSubstr("\"up\"")) << "it still runs";
+}
+
+TEST_F(RelayProgramTest, LiveControlNamesFilesOfItsFolderOnly) {
+  const std::string inside = folder_ + "/inside";
+  std::filesystem::create_directory(inside);
+  std::ofstream{folder_ + "/mine.csv"} << "t_ms,delay_ms\n0,5\n100,7\n";
+  std::ofstream{inside + "/there-up.csv"} << "precious";
+  std::filesystem::create_symlink(folder_ + "/mine.csv", inside + "/link.csv");
+  Process program = start_relay({"--control", control_, "--control-folder", inside});
+  const std::string address = control_of(program);
+  for (const std::string& name : {folder_ + "/mine.csv",
+                                  std::string{"../mine.csv"},
+                                  std::string{"link.csv"},
+                                  std::string{"/proc/kmsg"},
+                                  std::string{"/dev/zero"}}) {
+    EXPECT_THAT(ask(address, "{\"trace\":{\"file\":\"" + name + "\"}}"), HasSubstr("outside"))
+        << name;
+    EXPECT_THAT(ask(address, "{\"set\":\"replay " + name + "\"}"), HasSubstr("outside")) << name;
+  }
+  EXPECT_THAT(ask(address, "{\"record\":\"../new\"}"), HasSubstr("outside"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ + "/new-up.csv"));
+  EXPECT_THAT(ask(address, "{\"record\":\"there\"}"), HasSubstr("error"));
+  EXPECT_EQ(std::filesystem::file_size(inside + "/there-up.csv"), 8U) << "nothing is truncated";
+  EXPECT_THAT(ask(address, "{\"record\":\"run\"}"), HasSubstr("{\"recording\":true}"));
+  EXPECT_THAT(ask(address, "{\"record\":\"\"}"), HasSubstr("{\"recording\":false"));
+  EXPECT_GT(std::filesystem::file_size(inside + "/run-up.csv"), 8U);
+}
+
+TEST_F(RelayProgramTest, WithoutAFolderLiveControlNamesNoFile) {
+  Process program = start_relay({"--control", control_});
+  const std::string address = control_of(program);
+  std::ofstream{folder_ + "/mine.csv"} << "t_ms,delay_ms\n0,5\n100,7\n";
+  EXPECT_THAT(ask(address, "{\"trace\":{\"file\":\"" + folder_ + "/mine.csv\"}}"),
+              HasSubstr("--control-folder"));
+  EXPECT_THAT(ask(address, "{\"record\":\"" + folder_ + "/run\"}"), HasSubstr("--control-folder"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ + "/run-up.csv"));
+  EXPECT_THAT(ask(address, "{\"trace\":{\"file\":\"5g_n78_arterial_v80_handover.csv\"}}"),
+              HasSubstr("applied_at_s"))
+      << "what comes with the programs";
 }
 
 TEST_F(RelayProgramTest, EndsThoughNobodyReadsWhatItSays) {
@@ -271,6 +330,7 @@ TEST_F(RelayProgramTest, BadInputIsExitCode2AndASentence) {
                                              {"--control", "foo"},
                                              {"--control", "192.0.2.1:5"},
                                              {"--control", "unix:"},
+                                             {"--control", "127.0.0.1:0"},
                                              {"--mode", "netem-6.1", "--preset", "leo"},
                                              {"--mode", "netem-6.1", "--rtt-ms", "50"},
                                              {"--mode", "netem-6.1", "--timeline", "day"},

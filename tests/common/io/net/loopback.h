@@ -110,6 +110,7 @@ class PlainSocket {
     bytes.resize(static_cast<std::size_t>(got));
     return Taken{.from = {&from, length}, .bytes = std::move(bytes)};
   }
+  [[nodiscard]] int descriptor() const noexcept { return socket_.number(); }
   void close() { socket_.close(); }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "tests/common/io/net/loopback.h"
 
@@ -271,6 +272,64 @@ TEST(UdpSocketConnectTest, TelegramsAreExpeditedToPeersOfIpv4AlsoFromASocketOfIp
     ASSERT_TRUE(socket);
     ASSERT_TRUE((*socket)->send(bytes_of(0x80, 50), SteadyClock{}.now()));
     EXPECT_EQ(class_of_next(receiver.number()), 46 << 2);
+  }
+}
+
+/// A UDP socket with `option` at the place of another. @returns whether it got there.
+bool gets_in(const Endpoint& place, int option) {
+  const Descriptor socket{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+  const int on = 1;
+  EXPECT_EQ(::setsockopt(socket.number(), SOL_SOCKET, option, &on, sizeof on), 0);
+  return ::bind(socket.number(), place.address(), place.size()) == 0;
+}
+
+/// The same as user nobody; false as well where this program may not become another user.
+bool gets_in_as_another(const Endpoint& place) {
+  if (::geteuid() != 0 || ::seteuid(65534) != 0) return false;
+  const bool in = gets_in(place, SO_REUSEPORT) || gets_in(place, SO_REUSEADDR);
+  EXPECT_EQ(::seteuid(0), 0);
+  return in;
+}
+
+TEST(SharePortTest, OnlySocketsOfTheSameUserGetIn) {
+  const PlainSocket listening;
+  const PlainSocket peer;
+  const Endpoint place = listening.local();
+  EXPECT_FALSE(gets_in(place, SO_REUSEPORT));
+  share_port(listening.descriptor(), true);
+  EXPECT_FALSE(gets_in(place, SO_REUSEADDR)) << "what any user of the machine can set";
+  EXPECT_TRUE(gets_in(place, SO_REUSEPORT));
+  EXPECT_FALSE(gets_in_as_another(place));
+  share_port(listening.descriptor(), false);
+  EXPECT_FALSE(gets_in(place, SO_REUSEPORT));
+  SideInbox inbox;
+  share_port(listening.descriptor(), true);
+  const auto connected = UdpSocket::connect(place, peer.local(), inbox, {});
+  share_port(listening.descriptor(), false);
+  ASSERT_TRUE(connected);
+  EXPECT_FALSE(gets_in(place, SO_REUSEADDR)) << "in a session";
+  EXPECT_FALSE(gets_in_as_another(place)) << "in a session";
+}
+
+TEST(SharePortTest, StrangersReachTheListeningSocketAndThePeerItsOwn) {
+  const PlainSocket listening;
+  PlainSocket peer;
+  SideInbox inbox;
+  for (int session = 0; session < 3; ++session) {
+    share_port(listening.descriptor(), true);
+    const auto connected = UdpSocket::connect(listening.local(), peer.local(), inbox, {});
+    share_port(listening.descriptor(), false);
+    ASSERT_TRUE(connected) << connected.error().text;
+    for (int i = 0; i < 20; ++i) {
+      PlainSocket stranger;
+      ASSERT_TRUE(stranger.send_to(listening.local(), Bytes(3, std::byte{1})));
+      std::array<std::byte, 8> heard{};
+      EXPECT_EQ(::recv(listening.descriptor(), heard.data(), heard.size(), 0), 3);
+    }
+    ASSERT_TRUE(peer.send_to(listening.local(), Bytes(5, kDataFirstByte)));
+    std::array<std::byte, link::kDatagramSizeMax> buffer{};
+    const SteadyClock clock;
+    EXPECT_TRUE(wait_until([&] { return (*connected)->receive(buffer, clock.now()).has_value(); }));
   }
 }
 

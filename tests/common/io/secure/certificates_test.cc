@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <openssl/crypto.h>
 #include <openssl/pem.h>
 
 #include "common/io/secure/openssl_handles.h"
@@ -67,6 +68,14 @@ TEST(CertificatesTest, CertificatesAndASharedKeyDoNotGoIntoOneFolder) {
   const auto read = Credentials::read(certificates.site(Role::Patient), Role::Patient);
   ASSERT_FALSE(read) << "it would speak under the key and nobody would know";
   EXPECT_THAT(read.error().text, HasSubstr("a certificate and a pre-shared key"));
+}
+
+TEST(CredentialsTest, ThePrivateKeyLiesInMemoryThatIsNeitherSwappedNorDumped) {
+  const KeysFolder keys{"apart"};
+  const auto read = Credentials::read(keys.site(Role::Surgeon), Role::Surgeon);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(CRYPTO_secure_malloc_initialized(), 1);
+  EXPECT_GT(CRYPTO_secure_used(), 0U);
 }
 
 TEST(CredentialsTest, AFreshIdentityNeedsNoCaution) {
