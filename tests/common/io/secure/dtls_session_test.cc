@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "common/core/random.h"
+#include "common/io/net/side_inbox.h"
 #include "common/link/codec_wire.h"
 #include "common/link/link.h"
 #include "tests/common/io/net/loopback.h"
@@ -192,6 +193,55 @@ TEST(DtlsSessionTest, ASecondSurgeonWithAGoodCertificateIsToldThatThePatientIsBu
   EXPECT_TRUE(second.established.empty());
   ASSERT_FALSE(second.refused.empty());
   EXPECT_THAT(second.refused[0], HasSubstr("busy"));
+}
+
+/// Seals so many zeros in place of a telegram, properly and of any length, and keeps them.
+class LongWords final : public link::PacketProtection {
+ public:
+  LongWords(std::unique_ptr<link::PacketProtection> inner,
+            const std::size_t& wanted,
+            std::vector<std::byte>& kept)
+      : inner_{std::move(inner)}, wanted_{wanted}, kept_{kept} {}
+  [[nodiscard]] std::size_t overhead() const noexcept override { return inner_->overhead(); }
+  std::size_t seal(const link::Header& header,
+                   std::span<const std::byte> plain,
+                   std::span<std::byte> out) noexcept override {
+    if (wanted_ == 0) return inner_->seal(header, plain, out);
+    kept_.resize(wanted_);
+    const std::vector<std::byte> zeros(wanted_ - link::kHeaderSize - overhead());
+    EXPECT_EQ(inner_->seal(header, zeros, kept_), wanted_);
+    return 0;  // the link sends nothing
+  }
+  tl::expected<std::size_t, link::Rejection> open(std::span<const std::byte> datagram,
+                                                  std::span<std::byte> plain) noexcept override {
+    return inner_->open(datagram, plain);
+  }
+
+ private:
+  std::unique_ptr<link::PacketProtection> inner_;
+  const std::size_t& wanted_;
+  std::vector<std::byte>& kept_;
+};
+
+TEST(RoamingTest, WhatIsLongerThanADatagramOfOursIsRefusedHoweverWellSealed) {
+  for (const std::size_t size : {1199U, 1200U, 1201U, 1202U, 1500U, 9000U}) {
+    World world{"long"};
+    std::size_t wanted = 0;
+    std::vector<std::byte> sealed;
+    world.surgeon->wrap_protection = [&](auto inner) {
+      return std::make_unique<LongWords>(std::move(inner), wanted, sealed);
+    };
+    world.run(seconds{1});
+    ASSERT_TRUE(world.live());
+    wanted = size;
+    world.surgeon->tick(world.now);
+    const auto out = world.patient->session_endpoint.hear(sealed, kElsewhere, world.now);
+    EXPECT_EQ(out.detours, size <= link::kDatagramSizeMax) << size;
+    const SideDatagram aside{sealed, kElsewhere, world.now};
+    EXPECT_EQ(aside.datagram().size(), std::min(size, link::kDatagramSizeMax));
+    EXPECT_TRUE(
+        std::ranges::equal(aside.datagram(), std::span{sealed}.first(aside.datagram().size())));
+  }
 }
 
 TEST(RoamingTest, ThePatientFollowsTheSurgeonToANewAddress) {

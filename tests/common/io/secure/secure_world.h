@@ -78,6 +78,7 @@ struct Site {
     if (output.event) {
       if (const auto* session = std::get_if<link::Established>(&*output.event)) {
         established.push_back(*session);
+        if (wrap_protection) output.protection = wrap_protection(std::move(output.protection));
         (void)link.adopt({.transport = std::make_unique<WireEnd>(wire),
                           .protection = std::move(output.protection),
                           .send_connection = session->send_connection,
@@ -128,6 +129,9 @@ struct Site {
   std::vector<Endpoint> moved_to;
   Telegram telegram;
   std::function<void(const link::Arrivals&)> look;
+  /// Puts something around the protection of each new session.
+  std::function<std::unique_ptr<link::PacketProtection>(std::unique_ptr<link::PacketProtection>)>
+      wrap_protection;
   int closed{};
   int rekeyed{};
 };
