@@ -54,6 +54,7 @@ struct SideInbox {
   SpscQueue<SideDatagram> datagrams{kCapacity};  ///< writer: rt, reader: io
   SpscQueue<SideDatagram> detours{kCapacity};    ///< writer: io, reader: rt
   SocketCounts counting;                         ///< rt's own
+  TimePoint peer_heard_at{};                     ///< rt's own: a telegram over the peer's address
   Mailbox<SocketCounts> counts;                  ///< its copy for io
 };
 

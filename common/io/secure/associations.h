@@ -28,7 +28,7 @@ struct Letter {
 /// What one handshake left: a proven peer and keys. `data` serves one session at most.
 struct Association {
   std::uint64_t id{};  ///< ours, for this process; never 0
-  Endpoint peer;       ///< where the handshake was made with
+  Endpoint peer;       ///< where the handshake was made with, or where its holder has moved to
   DtlsResult proof;
   std::unique_ptr<link::AeadProtection> control;
   link::ReplayWindow received;  ///< control datagrams
@@ -62,8 +62,11 @@ class Associations {
     Association* association{};
     std::vector<std::byte> datagram;  ///< as PlainProtection would have it
   };
-  /// A datagram of ours that is not data. nullopt: not sealed for us, or seen before.
-  [[nodiscard]] std::optional<Opened> open(std::span<const std::byte> datagram, TimePoint now);
+  /// A datagram of ours that is not data. nullopt: not sealed for us, seen before, or from another
+  /// address than its sender's.
+  [[nodiscard]] std::optional<Opened> open(std::span<const std::byte> datagram,
+                                           const Endpoint& from,
+                                           TimePoint now);
   /// Seals what PlainProtection framed.
   void send(Association& by, std::span<const std::byte> plain, const Endpoint& to);
 

@@ -91,8 +91,10 @@ class SessionServer::Io {
             std::unique_ptr<link::PacketProtection> protection,
             const Endpoint& peer);
   void replace_keys(std::unique_ptr<link::PacketProtection> protection);
-  void move(const Endpoint& peer);
-  [[nodiscard]] Result<std::unique_ptr<link::Transport>> way_to(const Endpoint& peer);
+  void move(const Endpoint& peer, const Endpoint& former);
+  /// `former`: the address that the peer had until now, or none.
+  [[nodiscard]] Result<std::unique_ptr<link::Transport>> way_to(const Endpoint& peer,
+                                                                const Endpoint& former);
   void offer_waiting();
   void leave();
   [[nodiscard]] std::string refusal_opening();
@@ -254,7 +256,7 @@ void SessionServer::Io::carry_out(SessionEndpointOutput output, const Endpoint& 
     }
   }
   if (output.protection != nullptr) replace_keys(std::move(output.protection));
-  if (output.moved_to) move(*output.moved_to);
+  if (output.moved_to) move(*output.moved_to, output.moved_from);
   for (const Letter& letter : output.letters) {
     boost::system::error_code refusal;  // nothing to do about it: what matters is repeated
     listening_.send_to(asio::buffer(letter.bytes), as_asio(letter.to), 0, refusal);
@@ -278,7 +280,7 @@ void SessionServer::Io::meet(const link::Established& session,
                         .session_id = session.session_id,
                         .peer_devices = session.peer_devices};
   if (!(peer == connected_)) {
-    Result<std::unique_ptr<link::Transport>> way = way_to(peer);
+    Result<std::unique_ptr<link::Transport>> way = way_to(peer, {});
     if (!way) {
       tell(SessionNews::Kind::Refused, peer, "no session: " + way.error().text);
       leave();
@@ -316,9 +318,9 @@ void SessionServer::Io::replace_keys(std::unique_ptr<link::PacketProtection> pro
 }
 
 /// The present session goes on with another address of the peer.
-void SessionServer::Io::move(const Endpoint& peer) {
+void SessionServer::Io::move(const Endpoint& peer, const Endpoint& former) {
   if (present_.session_id == 0 || peer == connected_) return;
-  Result<std::unique_ptr<link::Transport>> way = way_to(peer);
+  Result<std::unique_ptr<link::Transport>> way = way_to(peer, former);
   if (!way) return;  // its next datagram begins anew
   waiting_.push_back({.transport = std::move(*way),
                       .protection = nullptr,
@@ -330,7 +332,8 @@ void SessionServer::Io::move(const Endpoint& peer) {
   tell(SessionNews::Kind::Moved, peer, "the peer's address is now " + peer.to_string());
 }
 
-Result<std::unique_ptr<link::Transport>> SessionServer::Io::way_to(const Endpoint& peer) {
+Result<std::unique_ptr<link::Transport>> SessionServer::Io::way_to(const Endpoint& peer,
+                                                                   const Endpoint& former) {
   // Only as long as it takes: with this option any process could share the port and its datagrams.
   set_option(listening_, SOL_SOCKET, SO_REUSEADDR, 1);
   Result<std::unique_ptr<UdpSocket>> socket =
@@ -339,6 +342,8 @@ Result<std::unique_ptr<link::Transport>> SessionServer::Io::way_to(const Endpoin
   if (!socket) {
     return fail(socket.error().text);
   }
+  (*socket)->follow(former);
+  session_endpoint_->set_own_address((*socket)->local());
   // Before it was connected it took what strangers sent: that is ours to hear.
   for (int i = 0; i < kEarlyMax; ++i) {
     const auto stranger = (*socket)->take_early(buffer_);
