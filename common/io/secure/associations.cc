@@ -30,13 +30,11 @@ void Associations::begin(Attempt attempt, TimePoint now) {
   collect(attempts_.back(), now);
 }
 
-/// The oldest of the host that has most: whoever begins many loses its own.
+/// The oldest of the host that has begun most without finishing: whoever does so loses its own.
 void Associations::make_room() {
-  const auto of_its_host = [this](const Attempt& one) {
-    return std::ranges::count_if(
-        attempts_, [&](const Attempt& other) { return other.peer.same_host(one.peer); });
-  };
-  attempts_.erase(std::ranges::max_element(attempts_, {}, of_its_host));  // the first of equals
+  attempts_.erase(std::ranges::max_element(attempts_, {}, [this](const Attempt& one) {
+    return admission_.debt(one.peer);
+  }));  // the first of equals
 }
 
 void Associations::call(const Endpoint& peer, TimePoint now) {
@@ -92,6 +90,7 @@ void Associations::collect(Attempt& attempt, TimePoint now) {
   }
   std::optional<DtlsResult> result = attempt.handshake.take_result();
   if (!result) return;
+  admission_.finished(attempt.peer);
   Association made;
   made.id = ++made_;
   made.peer = attempt.peer;

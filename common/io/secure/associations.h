@@ -40,11 +40,11 @@ struct Association {
 
 /// The handshakes under way and what came of them; the control plane is sealed and opened here.
 /// A surgeon calls, a patient answers. Whoever shows no valid cookie leaves nothing behind; those
-/// who do may begin a few in a second, and only few are kept, those of the busiest host the
+/// who do may begin a few in a second, and only few are kept, those of hosts that never finish the
 /// shortest. Thread: io.
 class Associations {
  public:
-  static constexpr std::size_t kAttemptsMax = 16;
+  static constexpr std::size_t kAttemptsMax = 64;
   static constexpr std::size_t kKeptMax = 8;
 
   /// `credentials` outlives it.
