@@ -236,13 +236,15 @@ std::optional<link::Datagram> UdpSocket::receive(
 
 std::optional<link::Datagram> UdpSocket::take_detour(
     std::span<std::byte, link::kDatagramSizeMax> buffer, TimePoint now) noexcept {
-  while (SideDatagram* waiting = inbox_.detours.peek()) {
+  while (taken_ < link::kDatagramsPerTickMax) {
+    const SideDatagram* waiting = inbox_.detours.peek();
+    if (waiting == nullptr) break;
     const Detour::Fate fate = detour_.fate(waiting->from, waiting->arrived_at, now);
-    if (fate == Detour::Fate::Wait) return std::nullopt;
+    if (fate == Detour::Fate::Wait) break;
+    ++taken_;
     const link::Datagram taken{.size = waiting->size,
                                .arrived_at = std::min(waiting->arrived_at, now)};
     if (fate == Detour::Fate::Take) {
-      ++taken_;
       // Unless it was proven meanwhile.
       if (!(waiting->from == peer_)) detour_.heard(waiting->from, waiting->datagram());
       std::ranges::copy(waiting->datagram(), buffer.begin());
