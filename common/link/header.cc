@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/core/check.h"
+#include "common/link/transport.h"
 #include "common/message/limits.h"
 
 namespace palp::link {
@@ -45,7 +46,7 @@ void pack_header(const Header& header, std::span<std::byte, kHeaderSize> out) no
 }
 
 std::optional<Header> parse_header(std::span<const std::byte> datagram) noexcept {
-  if (datagram.size() < kHeaderSize) return std::nullopt;
+  if (datagram.size() < kHeaderSize || datagram.size() > kDatagramSizeMax) return std::nullopt;
   const auto first = std::to_integer<unsigned>(datagram[0]);
   const auto second = std::to_integer<unsigned>(datagram[1]);
   if (first >> 4U != kHeaderVersion) return std::nullopt;

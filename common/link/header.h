@@ -25,7 +25,8 @@ struct Header {
 /// Big-endian bytes. `header` keeps its limits (PALP_CHECK: it is ours).
 void pack_header(const Header& header, std::span<std::byte, kHeaderSize> out) noexcept;
 
-/// @returns nullopt where any field breaks its rule or `length` is not what follows the header.
+/// @returns nullopt where any field breaks its rule, `length` is not what follows the header, or
+/// the datagram is longer than kDatagramSizeMax.
 [[nodiscard]] std::optional<Header> parse_header(std::span<const std::byte> datagram) noexcept;
 
 }  // namespace palp::link

@@ -1,36 +1,98 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
 
+#include "common/core/time.h"
 #include "common/io/net/endpoint.h"
 
 namespace palp::io {
 
-/// The peer's way while its new address is still being proven: its telegrams come through io, and
-/// what rt sends goes there as well as to the old address. For each byte that came from there two
-/// may go back; a third is io's, for its questions. A value. Thread: rt.
+/// The peer's ways beside that of its own address, while another address is still being proven: its
+/// telegrams come through io, and what rt sends goes there as well. As long as the peer's own
+/// address delivers, nothing of this happens: who copies telegrams and is faster than their sender
+/// gets nothing for it. For each byte that came from there two may go back; a third is io's, for
+/// its questions. A value. Thread: rt.
 class Detour {
  public:
-  static constexpr std::size_t kShare = 2;  ///< bytes for each byte that came
+  static constexpr std::size_t kShare = 2;   ///< bytes for each byte that came
+  static constexpr std::size_t kPlaces = 2;  ///< the sender's, and that of who copies it
+  /// Without a telegram over the peer's own address: it may have left.
+  static constexpr Duration kSilence = std::chrono::milliseconds{10};
 
-  void heard(const Endpoint& from, std::size_t size) noexcept {
-    if (!(from == to_)) credit_ = 0;
-    to_ = from;
-    credit_ = std::min(credit_ + kShare * size, kCreditMax);
+  Detour() noexcept = default;
+  /// `former`: the address that the peer had before this one. If it delivers after all, it is heard
+  /// and told everything.
+  explicit Detour(const Endpoint& former) noexcept : former_{former} {}
+
+  /// Each tick; from the first on the peer's own address has its chance.
+  void begin_tick(TimePoint now) noexcept {
+    if (!straight_at_) straight_at_ = now;
   }
-  /// Whether `size` bytes may go to(); if so they count.
-  [[nodiscard]] bool spend(std::size_t size) noexcept {
-    if (size > credit_) return false;
-    credit_ -= size;
-    return true;
+  /// A telegram of the peer's own address. It is not opened here, but has to be of the session.
+  void heard_straight(std::span<const std::byte> datagram, TimePoint now) noexcept {
+    if (!connection_ || connection_of(datagram) == connection_) straight_at_ = now;
   }
-  [[nodiscard]] const Endpoint& to() const noexcept { return to_; }
+  [[nodiscard]] TimePoint straight_at() const noexcept {
+    return straight_at_.value_or(TimePoint{});
+  }
+
+  enum class Fate : std::uint8_t { Wait, Take, Drop };
+  /// What to do with a telegram that came from elsewhere at that time.
+  [[nodiscard]] Fate fate(const Endpoint& from,
+                          TimePoint arrived_at,
+                          TimePoint now) const noexcept {
+    if (silent(now) || from == former_) return Fate::Take;
+    return now - arrived_at > kSilence ? Fate::Drop : Fate::Wait;
+  }
+  /// One that was taken; io has opened it.
+  void heard(const Endpoint& from, std::span<const std::byte> datagram) noexcept {
+    connection_ = connection_of(datagram);
+    if (!(places_[0].to == from) && !(places_[1].to == from)) {
+      places_[1] = places_[0];
+      places_[0] = {.to = from};
+    }
+    Place& place = places_[places_[0].to == from ? 0 : 1];
+    place.credit = std::min(place.credit + kShare * datagram.size(), kCreditMax);
+  }
+  /// Where a copy of `size` bytes may go, if it may: then it counts. `at`: below kPlaces.
+  [[nodiscard]] const Endpoint* spend(std::size_t at, std::size_t size, TimePoint now) noexcept {
+    Place& place = places_[at];
+    if (!silent(now) && !(place.to == former_)) return nullptr;
+    if (size > place.credit) return nullptr;
+    place.credit -= size;
+    return &place.to;
+  }
 
  private:
   static constexpr std::size_t kCreditMax = 4096;  ///< [bytes]; what is not used is soon forgotten
-  Endpoint to_;
-  std::size_t credit_{};  ///< [bytes]
+
+  struct Place {
+    Endpoint to;
+    std::size_t credit{};  ///< [bytes]
+  };
+  using Connection = std::array<std::byte, 4>;  ///< as in the header (WIRE.md)
+
+  [[nodiscard]] static std::optional<Connection> connection_of(
+      std::span<const std::byte> datagram) noexcept {
+    constexpr std::size_t kAt = 4;
+    Connection connection{};
+    if (datagram.size() < kAt + connection.size()) return std::nullopt;
+    std::copy_n(datagram.begin() + kAt, connection.size(), connection.begin());
+    return connection;
+  }
+  [[nodiscard]] bool silent(TimePoint now) const noexcept {
+    return straight_at_ && now - *straight_at_ >= kSilence;
+  }
+
+  Endpoint former_;
+  std::optional<TimePoint> straight_at_;
+  std::optional<Connection> connection_;
+  std::array<Place, kPlaces> places_;
 };
 
 }  // namespace palp::io

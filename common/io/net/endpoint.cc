@@ -87,6 +87,23 @@ std::string Endpoint::to_string() const {
   return bracketed + ":" + std::to_string(port());
 }
 
+Endpoint::Bytes Endpoint::bytes() const noexcept {
+  Bytes bytes{};
+  if (!valid()) return bytes;
+  if (family() == AF_INET6) {
+    std::memcpy(bytes.data(), &in6(address()).sin6_addr, sizeof(in6_addr));
+  } else {
+    constexpr std::size_t kMapped = 12;
+    bytes[kMapped - 2] = bytes[kMapped - 1] = std::byte{0xFF};
+    std::memcpy(&bytes[kMapped],
+                &reinterpret_cast<const sockaddr_in*>(address())->sin_addr,
+                sizeof(in_addr));
+  }
+  bytes[bytes.size() - 2] = static_cast<std::byte>(port() >> 8U);
+  bytes[bytes.size() - 1] = static_cast<std::byte>(port() & 0xFFU);
+  return bytes;
+}
+
 bool Endpoint::operator==(const Endpoint& other) const noexcept {
   if (!valid() || !other.valid() || port() != other.port() ||
       !agree(address(), other.address(), sizeof(in6_addr))) {

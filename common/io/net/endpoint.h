@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -34,6 +36,10 @@ class Endpoint {
   /// Whether both are of one subscriber: the same IPv4 address, or the same /64 of IPv6, which is
   /// what one customer is given.
   [[nodiscard]] bool same_host(const Endpoint& other) const noexcept;
+  /// As the wire tells it: an address of IPv6, IPv4 mapped into it, then the port, all big-endian;
+  /// zeros for None.
+  using Bytes = std::array<std::byte, 18>;
+  [[nodiscard]] Bytes bytes() const noexcept;
   /// Where to call from: the address of the same family that means "any", with port 0; towards a
   /// loopback address a loopback one, which nobody outside this machine can reach.
   [[nodiscard]] Endpoint caller() const noexcept;

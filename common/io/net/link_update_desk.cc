@@ -22,7 +22,8 @@ void LinkUpdateDesk::serve(link::Link& link, TimePoint now) noexcept {
   glance_.put({.state = health.state,
                .session_id = health.session_id,
                .newest_number = health.newest_number,
-               .key = health.key});
+               .key = health.key,
+               .peer_heard_at = inbox_.peer_heard_at});
 }
 
 void LinkUpdateDesk::destroy_retired() {

@@ -19,6 +19,7 @@ struct LinkGlance {
   std::uint64_t session_id{};     ///< which session that is of; 0: none
   std::uint64_t newest_number{};  ///< of the telegrams of that session
   std::uint8_t key{};             ///< id of the keys under which the newest one came
+  TimePoint peer_heard_at{};      ///< a telegram of the address that rt's socket is connected to
 };
 
 /// Where io and rt meet: sessions go to rt, what they replaced comes back to be freed, and both

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <span>
 
 #include "common/core/mailbox.h"
@@ -17,19 +17,19 @@ namespace palp::io {
 /// A datagram that is not for the control thread: a Hello, a Bye, or anybody's noise.
 struct SideDatagram {
   SideDatagram() = default;
-  /// At most kDatagramSizeMax bytes.
+  /// What is longer than kDatagramSizeMax is cut off there: it breaks a rule of form either way.
   SideDatagram(std::span<const std::byte> datagram,
                const Endpoint& sender,
                TimePoint arrival) noexcept
-      : from{sender}, size{datagram.size()}, arrived_at{arrival} {
-    std::memcpy(bytes.data(), datagram.data(), datagram.size());
+      : from{sender}, size{std::min(datagram.size(), bytes.size())}, arrived_at{arrival} {
+    std::copy_n(datagram.begin(), size, bytes.begin());
   }
   [[nodiscard]] std::span<const std::byte> datagram() const noexcept {
     return {bytes.data(), size};
   }
 
   Endpoint from;
-  std::size_t size{};  ///< [bytes]
+  std::size_t size{};  ///< [bytes], at most kDatagramSizeMax
   TimePoint arrived_at{};
   std::array<std::byte, link::kDatagramSizeMax> bytes{};
 };
@@ -54,6 +54,7 @@ struct SideInbox {
   SpscQueue<SideDatagram> datagrams{kCapacity};  ///< writer: rt, reader: io
   SpscQueue<SideDatagram> detours{kCapacity};    ///< writer: io, reader: rt
   SocketCounts counting;                         ///< rt's own
+  TimePoint peer_heard_at{};                     ///< rt's own: a telegram over the peer's address
   Mailbox<SocketCounts> counts;                  ///< its copy for io
 };
 

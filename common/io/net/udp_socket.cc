@@ -135,14 +135,17 @@ Result<std::unique_ptr<UdpSocket>> UdpSocket::connect(const Endpoint& local,
   return std::unique_ptr<UdpSocket>{new UdpSocket{std::move(socket), peer, inbox}};
 }
 
-bool UdpSocket::send(std::span<const std::byte> datagram, TimePoint /*now*/) noexcept {
-  if (detour_.spend(datagram.size()) && ::sendto(socket_.number(),
-                                                 datagram.data(),
-                                                 datagram.size(),
-                                                 MSG_DONTWAIT,
-                                                 detour_.to().address(),
-                                                 detour_.to().size()) >= 0) {
-    ++inbox_.counting.detoured;
+bool UdpSocket::send(std::span<const std::byte> datagram, TimePoint now) noexcept {
+  for (std::size_t at = 0; at < Detour::kPlaces; ++at) {
+    const Endpoint* to = detour_.spend(at, datagram.size(), now);
+    if (to != nullptr && ::sendto(socket_.number(),
+                                  datagram.data(),
+                                  datagram.size(),
+                                  MSG_DONTWAIT,
+                                  to->address(),
+                                  to->size()) >= 0) {
+      ++inbox_.counting.detoured;
+    }
   }
   // A second time, because an error of the path belongs to an earlier datagram and has kept this
   // one from leaving.
@@ -165,6 +168,8 @@ void UdpSocket::begin_tick(TimePoint now) noexcept {
   taken_ = 0;
   errors_ = 0;
   drained_ = false;
+  detour_.begin_tick(now);
+  inbox_.peer_heard_at = detour_.straight_at();
   inbox_.counts.put(inbox_.counting);
 }
 
@@ -219,6 +224,7 @@ std::optional<link::Datagram> UdpSocket::receive(
       ++counting.without_stamp;
     }
     if (size > 0 && bytes.front() == kDataFirstByte) {
+      detour_.heard_straight(bytes, now);
       std::memcpy(buffer.data(), bytes.data(), bytes.size());
       return link::Datagram{.size = size, .arrived_at = arrived_at};
     }
@@ -234,16 +240,23 @@ std::optional<link::Datagram> UdpSocket::receive(
 
 std::optional<link::Datagram> UdpSocket::take_detour(
     std::span<std::byte, link::kDatagramSizeMax> buffer, TimePoint now) noexcept {
-  SideDatagram taken;
-  if (!inbox_.detours.try_dequeue(taken)) {
-    return std::nullopt;
+  while (taken_ < link::kDatagramsPerTickMax) {
+    const SideDatagram* waiting = inbox_.detours.peek();
+    if (waiting == nullptr) break;
+    const Detour::Fate fate = detour_.fate(waiting->from, waiting->arrived_at, now);
+    if (fate == Detour::Fate::Wait) break;
+    ++taken_;
+    const link::Datagram taken{.size = waiting->size,
+                               .arrived_at = std::min(waiting->arrived_at, now)};
+    if (fate == Detour::Fate::Take) {
+      // Unless it was proven meanwhile.
+      if (!(waiting->from == peer_)) detour_.heard(waiting->from, waiting->datagram());
+      std::ranges::copy(waiting->datagram(), buffer.begin());
+    }
+    (void)inbox_.detours.pop();
+    if (fate == Detour::Fate::Take) return taken;
   }
-  ++taken_;
-  if (!(taken.from == peer_)) {  // it was proven meanwhile
-    detour_.heard(taken.from, taken.size);
-  }
-  std::ranges::copy(taken.datagram(), buffer.begin());
-  return link::Datagram{.size = taken.size, .arrived_at = std::min(taken.arrived_at, now)};
+  return std::nullopt;
 }
 
 void UdpSocket::warm_up() noexcept {

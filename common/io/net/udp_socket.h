@@ -35,9 +35,10 @@ void share_port(int socket, bool on) noexcept;
 
 /// A connected, non-blocking UDP socket: the kernel lets through what the peer's address sent.
 /// Datagrams of type data go to the caller, all others into the inbox; both count against the
-/// budget of a tick. Telegrams that io took from an address that is being proven come after them,
-/// and what is sent goes there too, within the bounds of Detour. ICMP errors are counted and never
-/// end anything. Thread: made by io, then rt's. Allocates nothing after construction.
+/// budget of a tick. Where the peer's address is silent, telegrams that io took from others come
+/// after them, and what is sent goes there too, within the bounds of Detour. ICMP errors are
+/// counted and never end anything. Thread: made by io, then rt's. Allocates nothing after
+/// construction.
 class UdpSocket final : public link::Transport {
  public:
   /// Bound to `local` (port 0: any), connected to `peer`. `inbox` outlives receive(), not the
@@ -66,6 +67,9 @@ class UdpSocket final : public link::Transport {
     std::size_t size{};  ///< [bytes]; over buffer size: cut off
   };
   [[nodiscard]] std::optional<Stranger> take_early(std::span<std::byte> buffer) noexcept;
+
+  /// io, before rt gets the socket: the address that the peer had until now.
+  void follow(const Endpoint& former) noexcept { detour_ = Detour{former}; }
 
   [[nodiscard]] Endpoint local() const noexcept;
   [[nodiscard]] Endpoint peer() const noexcept { return peer_; }

@@ -1,17 +1,45 @@
 #include "common/io/secure/admission.h"
 
 #include <algorithm>
+#include <ranges>
 
 namespace palp::io {
 
-bool Admission::open_to(const Endpoint& from, TimePoint now) {
-  while (!begun_.empty() && now - begun_.front().at >= std::chrono::seconds{1}) begun_.pop_front();
-  if (begun_.size() >= kOfAll) return false;
-  const auto of_host =
-      std::ranges::count_if(begun_, [&](const Begun& one) { return one.from.same_host(from); });
-  return static_cast<std::size_t>(of_host) < kOfOneHost;
+void Admission::forget(TimePoint now) {
+  while (!begun_.empty() && now - begun_.front().at >= kMemory) begun_.pop_front();
 }
 
-void Admission::note(const Endpoint& from, TimePoint now) { begun_.push_back({from, now}); }
+bool Admission::open_to(const Endpoint& from, TimePoint now) {
+  forget(now);
+  std::size_t of_all = 0;
+  std::size_t of_debtors = 0;
+  std::size_t of_host = 0;
+  bool debtor = false;
+  for (const Begun& one : std::views::reverse(begun_)) {  // newest first: a flood ends here soon
+    const bool lately = now - one.at < kPause;
+    if (!lately && debtor) break;
+    of_all += lately ? 1 : 0;
+    of_debtors += lately && one.by_debtor ? 1 : 0;
+    if (!one.from.same_host(from)) continue;
+    of_host += lately ? 1 : 0;
+    debtor = debtor || !one.finished;
+    if (lately && !one.finished) return false;
+  }
+  if (debtor && of_debtors >= kOfDebtors) return false;
+  return of_host < kOfOneHost && of_all < kOfAll;
+}
+
+void Admission::note(const Endpoint& from, TimePoint now) {
+  begun_.push_back({.from = from, .at = now, .by_debtor = debt(from) > 0});
+}
+
+void Admission::finished(const Endpoint& from) {
+  for (Begun& one : begun_) one.finished = one.finished || one.from.same_host(from);
+}
+
+std::size_t Admission::debt(const Endpoint& from) const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      begun_, [&](const Begun& one) { return !one.finished && one.from.same_host(from); }));
+}
 
 }  // namespace palp::io

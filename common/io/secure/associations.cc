@@ -30,13 +30,11 @@ void Associations::begin(Attempt attempt, TimePoint now) {
   collect(attempts_.back(), now);
 }
 
-/// The oldest of the host that has most: whoever begins many loses its own.
+/// The oldest of the host that has begun most without finishing: whoever does so loses its own.
 void Associations::make_room() {
-  const auto of_its_host = [this](const Attempt& one) {
-    return std::ranges::count_if(
-        attempts_, [&](const Attempt& other) { return other.peer.same_host(one.peer); });
-  };
-  attempts_.erase(std::ranges::max_element(attempts_, {}, of_its_host));  // the first of equals
+  attempts_.erase(std::ranges::max_element(attempts_, {}, [this](const Attempt& one) {
+    return admission_.debt(one.peer);
+  }));  // the first of equals
 }
 
 void Associations::call(const Endpoint& peer, TimePoint now) {
@@ -92,6 +90,7 @@ void Associations::collect(Attempt& attempt, TimePoint now) {
   }
   std::optional<DtlsResult> result = attempt.handshake.take_result();
   if (!result) return;
+  admission_.finished(attempt.peer);
   Association made;
   made.id = ++made_;
   made.peer = attempt.peer;
@@ -106,7 +105,11 @@ void Associations::collect(Attempt& attempt, TimePoint now) {
   newly_made_.push_back(made_);
 }
 
+/// Whoever copies words and is faster than their sender must not use up their numbers: those of
+/// control count from the peer's address only. The answer to a question about an address comes from
+/// there, so it may come from anywhere; it is good for nothing but what its nonce was drawn for.
 std::optional<Associations::Opened> Associations::open(std::span<const std::byte> datagram,
+                                                       const Endpoint& from,
                                                        TimePoint now) {
   const std::optional<link::Header> header = link::parse_header(datagram);
   if (!header) return std::nullopt;
@@ -114,13 +117,14 @@ std::optional<Associations::Opened> Associations::open(std::span<const std::byte
     return one.proof.keys.receive_connection == header->connection;
   });
   if (found == kept_.end()) return std::nullopt;
-  if (found->received.judge(header->number) != link::ReplayWindow::Verdict::New) {
-    return std::nullopt;
-  }
+  const bool answer =
+      credentials_.role() == Role::Patient && header->type == link::PacketType::Path;
+  const bool is_new = found->received.judge(header->number) == link::ReplayWindow::Verdict::New;
+  if (!answer && (!is_new || !(from == found->peer))) return std::nullopt;
   std::array<std::byte, link::kDatagramSizeMax> plain{};
   const auto size = found->control->open(datagram, plain);
   if (!size) return std::nullopt;
-  found->received.mark(header->number);
+  if (!answer) found->received.mark(header->number);
   found->heard = true;
   found->heard_at = now;
   Opened opened{.association = &*found,

@@ -28,7 +28,7 @@ struct Letter {
 /// What one handshake left: a proven peer and keys. `data` serves one session at most.
 struct Association {
   std::uint64_t id{};  ///< ours, for this process; never 0
-  Endpoint peer;       ///< where the handshake was made with
+  Endpoint peer;       ///< where the handshake was made with, or where its holder has moved to
   DtlsResult proof;
   std::unique_ptr<link::AeadProtection> control;
   link::ReplayWindow received;  ///< control datagrams
@@ -40,11 +40,11 @@ struct Association {
 
 /// The handshakes under way and what came of them; the control plane is sealed and opened here.
 /// A surgeon calls, a patient answers. Whoever shows no valid cookie leaves nothing behind; those
-/// who do may begin a few in a second, and only few are kept, those of the busiest host the
+/// who do may begin a few in a second, and only few are kept, those of hosts that never finish the
 /// shortest. Thread: io.
 class Associations {
  public:
-  static constexpr std::size_t kAttemptsMax = 16;
+  static constexpr std::size_t kAttemptsMax = 64;
   static constexpr std::size_t kKeptMax = 8;
 
   /// `credentials` outlives it.
@@ -62,8 +62,11 @@ class Associations {
     Association* association{};
     std::vector<std::byte> datagram;  ///< as PlainProtection would have it
   };
-  /// A datagram of ours that is not data. nullopt: not sealed for us, or seen before.
-  [[nodiscard]] std::optional<Opened> open(std::span<const std::byte> datagram, TimePoint now);
+  /// A datagram of ours that is not data. nullopt: not sealed for us, seen before, or from another
+  /// address than its sender's.
+  [[nodiscard]] std::optional<Opened> open(std::span<const std::byte> datagram,
+                                           const Endpoint& from,
+                                           TimePoint now);
   /// Seals what PlainProtection framed.
   void send(Association& by, std::span<const std::byte> plain, const Endpoint& to);
 

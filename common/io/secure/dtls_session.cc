@@ -1,10 +1,10 @@
 #include "common/io/secure/dtls_session.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <variant>
 
-#include "common/io/net/detour.h"
 #include "common/io/process/entropy.h"
 
 namespace palp::io {
@@ -22,39 +22,7 @@ constexpr Duration kChangeover = seconds{2};
 constexpr Duration kUnanswered = milliseconds{1500};
 constexpr Duration kGreetingPause = milliseconds{200};
 constexpr Duration kGreetingLife = seconds{15};
-constexpr Duration kQuestionPause = milliseconds{200};
-constexpr int kQuestionsMax = 3;
-/// How far a sender may lie behind somebody who copies its telegrams.
-constexpr std::uint64_t kBehindMax = 256;  // [numbers]
-/// Bytes of questions to an unproven address per byte from it; to no more than three altogether,
-/// because rt sends telegrams there as well.
-constexpr std::size_t kUnprovenShare = 3 - Detour::kShare;
 constexpr Duration kFailurePause = seconds{10};
-constexpr std::byte kQuestion{0};
-constexpr std::byte kAnswer{1};
-constexpr std::size_t kPathSize = 9;  // [bytes]: what it is, and eight random ones
-
-std::array<std::byte, 8> draw_question() {
-  const std::uint64_t bits = draw_entropy();
-  std::array<std::byte, 8> bytes{};
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    bytes[i] = static_cast<std::byte>(bits >> (8 * i) & 0xFFU);
-  }
-  return bytes;
-}
-
-std::vector<std::byte> path_message(std::byte what,
-                                    std::span<const std::byte> nonce,
-                                    std::uint64_t number) {
-  std::array<std::byte, kPathSize> content{what};
-  std::ranges::copy(nonce, content.begin() + 1);
-  std::vector<std::byte> datagram(link::kHeaderSize + content.size());
-  link::PlainProtection{}.seal(
-      {.type = PacketType::Path, .key = 0, .length = 0, .connection = 0, .number = number},
-      content,
-      datagram);
-  return datagram;
-}
 
 }  // namespace
 
@@ -103,13 +71,13 @@ void DtlsSession::hear_sealed(std::span<const std::byte> datagram,
     out.detours = hear_data(datagram, from, now);
     return;
   }
-  const auto opened = associations_.open(datagram, now);
+  const auto opened = associations_.open(datagram, from, now);
   if (!opened) {
     ++foreign_;
     return;
   }
   if (header->type == PacketType::Path) {
-    hear_path(*opened, from, out);
+    hear_path(*opened, from, now);
     return;
   }
   Association& by = *opened->association;
@@ -146,12 +114,10 @@ void DtlsSession::establish(Association& by, const Endpoint& from, SessionEndpoi
   next_ = 0;
   key_id_ = 0;
   changeover_ends_at_.reset();
-  candidates_ = {};
   greeted_ = 0;
-  peer_ = from;
+  roaming_.begin(from);
   proof_ = by.proof.peer_name;
   data_connection_ = std::get<link::Established>(*out.event).receive_connection;
-  data_newest_.reset();
   out.protection = std::make_unique<AeadProtection>(data_keys(by, key_id_));
   opener_ = std::make_unique<AeadProtection>(data_keys(by, key_id_));
   associations_.keep_only(present_, 0);
@@ -162,7 +128,7 @@ void DtlsSession::forget() {
   next_ = 0;
   greeted_ = 0;
   changeover_ends_at_.reset();
-  candidates_ = {};
+  roaming_.end();
   opener_.reset();
   data_connection_ = 0;
   associations_.keep_only(0, 0);
@@ -229,9 +195,7 @@ SessionEndpointOutput DtlsSession::tick(TimePoint now, const LinkGlance& link) {
     speak_as_surgeon(said, made, now);
     greet(now);
   }
-  for (std::optional<Candidate>& one : candidates_) {
-    if (one && now >= one->next_at) ask(one, now);
-  }
+  if (config_.session.role == Role::Patient) follow(now, out);
   tell_failure(now, out);
   out.letters = associations_.take_letters();
   return out;
@@ -270,10 +234,16 @@ void DtlsSession::greet(TimePoint now) {
 SessionEndpointOutput DtlsSession::close(std::string_view why) {
   SessionEndpointOutput out;
   const link::SessionOutput said = session_.close(why);
-  if (Association* by = associations_.find(present_)) say(said, *by, peer_);
+  if (Association* by = associations_.find(present_)) say(said, *by, roaming_.peer());
   forget();
   out.letters = associations_.take_letters();
   return out;
+}
+
+Roaming::Straight DtlsSession::straight(TimePoint now) const {
+  // Before rt has this session, its present address has not had a chance yet.
+  const bool ours = session_.established() && link_.session_id == session_.session_id();
+  return {.newest_number = link_.newest_number, .heard_at = ours ? link_.peer_heard_at : now};
 }
 
 /// What rt did not get because it comes from elsewhere than the peer's address.
@@ -282,76 +252,52 @@ bool DtlsSession::hear_data(std::span<const std::byte> datagram,
                             TimePoint now) {
   const link::Header header = *link::parse_header(datagram);
   const bool follows = config_.session.role == Role::Patient && opener_ != nullptr &&
-                       header.connection == data_connection_ && !(from == peer_);
-  const auto known = std::ranges::find_if(
-      candidates_, [&](const auto& one) { return one && one->address == from; });
-  // Only what is newer than all: an old datagram, sent again from elsewhere, must not move us. But
-  // where the newest came from elsewhere already, whoever comes a little later with what came there
-  // first may be the sender, and the other one somebody who copies it on its way and is faster.
-  const std::uint64_t newest_here = data_newest_.value_or(0);
-  const bool newest = header.number > std::max(link_.newest_number, newest_here);
-  const bool second = !newest && data_newest_ && newest_here >= link_.newest_number &&
-                      newest_here - std::min(newest_here, header.number) < kBehindMax &&
-                      (known == candidates_.end() || (*known)->newest < header.number);
+                       header.connection == data_connection_;
   std::array<std::byte, link::kDatagramSizeMax> plain{};
-  if (!follows || !(newest || second) || !opener_->open(datagram, plain)) {
+  if (!follows || !roaming_.counts(header.number, from, straight(now)) ||
+      !opener_->open(datagram, plain)) {
     ++foreign_;
     return false;
   }
-  data_newest_ = std::max(newest_here, header.number);
-  if (known != candidates_.end()) {
-    (*known)->newest = header.number;
-    (*known)->received += datagram.size();
-    return newest;
-  }
-  std::optional<Candidate>& place = candidates_[newest ? 0 : 1];
-  place = Candidate{.address = from,
-                    .question = draw_question(),
-                    .newest = header.number,
-                    .received = datagram.size()};
-  ask(place, now);
-  return newest;
+  roaming_.note(header.number, from, datagram.size(), straight(now), now);
+  return true;
 }
 
-void DtlsSession::ask(std::optional<Candidate>& place, TimePoint now) {
+void DtlsSession::send_path(Association& by, const PathMessage& message, const Endpoint& to) {
+  associations_.send(by, message.framed(path_number_++), to);
+}
+
+/// The patient follows the surgeon.
+void DtlsSession::follow(TimePoint now, SessionEndpointOutput& out) {
   Association* by = associations_.find(present_);
-  constexpr std::size_t kSize = link::kHeaderSize + kPathSize + AeadProtection::kTagSize;
-  Candidate& candidate = *place;
-  if (by == nullptr || candidate.asked >= kQuestionsMax) {
-    place.reset();  // its next datagram may begin anew
-    return;
+  if (by == nullptr) return;
+  while (const auto question = roaming_.ask(straight(now), now)) {
+    send_path(*by, question->message, question->to);
   }
-  candidate.next_at = now + kQuestionPause;
-  if (candidate.sent + kSize > kUnprovenShare * candidate.received) return;
-  ++candidate.asked;
-  candidate.sent += kSize;
-  associations_.send(
-      *by, path_message(kQuestion, candidate.question, path_number_++), candidate.address);
+  out.moved_to = roaming_.move(straight(now), now);
+  if (!out.moved_to) return;
+  out.moved_from = roaming_.former();
+  by->peer = *out.moved_to;
+  if (Association* next = associations_.find(next_)) next->peer = *out.moved_to;
 }
 
 void DtlsSession::hear_path(const Associations::Opened& opened,
                             const Endpoint& from,
-                            SessionEndpointOutput& out) {
-  const auto content = std::span{opened.datagram}.subspan(link::kHeaderSize);
-  if (content.size() != kPathSize) {
+                            TimePoint now) {
+  const auto message = PathMessage::parse(std::span{opened.datagram}.subspan(link::kHeaderSize));
+  if (!message) {
     ++malformed_;
     return;
   }
-  const auto nonce = content.subspan(1);
-  if (content[0] == kQuestion) {
-    associations_.send(*opened.association, path_message(kAnswer, nonce, path_number_++), from);
+  if (config_.session.role == Role::Patient) {
+    if (!roaming_.answer(*message, from, now)) ++foreign_;
     return;
   }
-  const bool answered = std::ranges::any_of(candidates_, [&](const auto& one) {
-    return one && one->address == from && std::ranges::equal(nonce, one->question);
-  });
-  if (content[0] != kAnswer || !answered) {
+  if (const auto answer = path_answers_.answer(*message, from, roaming_.peer())) {
+    send_path(*opened.association, *answer, from);
+  } else {
     ++foreign_;
-    return;
   }
-  peer_ = from;
-  candidates_ = {};
-  out.moved_to = from;
 }
 
 void DtlsSession::tell_failure(TimePoint now, SessionEndpointOutput& out) {

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 
 #include "common/io/secure/associations.h"
+#include "common/io/secure/roaming.h"
 #include "common/io/secure/session_endpoint.h"
 
 namespace palp::io {
@@ -19,8 +19,8 @@ struct DtlsSessionConfig {
 
 /// A Session that speaks under the keys of DTLS handshakes only: whoever has not proven a role is
 /// never heard. The surgeon makes a handshake for each session, for new keys within one, and where
-/// the peer does not answer any more; the patient follows a surgeon whose address changes, after a
-/// challenge that only the holder of the keys can answer. Thread: io.
+/// the peer does not answer any more; the patient follows a surgeon whose address changes.
+/// Thread: io.
 class DtlsSession final : public SessionEndpoint {
  public:
   /// `credentials` outlives it.
@@ -32,23 +32,11 @@ class DtlsSession final : public SessionEndpoint {
                                            TimePoint now) override;
   [[nodiscard]] SessionEndpointOutput tick(TimePoint now, const LinkGlance& link) override;
   [[nodiscard]] SessionEndpointOutput close(std::string_view why) override;
+  void set_own_address(const Endpoint& own) override { path_answers_.set_own(own); }
   [[nodiscard]] link::SessionCounters counters() const override;
   [[nodiscard]] std::string proof() const override { return proof_; }
 
  private:
-  using Nonce = std::array<std::byte, 8>;
-
-  /// An address that sent something authentic, until it has answered.
-  struct Candidate {
-    Endpoint address;
-    Nonce question{};
-    std::uint64_t newest{};  ///< number of the telegrams from there
-    std::size_t received{};  ///< [bytes] from there
-    std::size_t sent{};      ///< [bytes] to there
-    int asked{};
-    TimePoint next_at{};
-  };
-
   void hear_sealed(std::span<const std::byte> datagram,
                    const Endpoint& from,
                    TimePoint now,
@@ -57,10 +45,10 @@ class DtlsSession final : public SessionEndpoint {
   [[nodiscard]] bool hear_data(std::span<const std::byte> datagram,
                                const Endpoint& from,
                                TimePoint now);
-  void hear_path(const Associations::Opened& opened,
-                 const Endpoint& from,
-                 SessionEndpointOutput& out);
-  void ask(std::optional<Candidate>& place, TimePoint now);
+  void hear_path(const Associations::Opened& opened, const Endpoint& from, TimePoint now);
+  [[nodiscard]] Roaming::Straight straight(TimePoint now) const;
+  void follow(TimePoint now, SessionEndpointOutput& out);
+  void send_path(Association& by, const PathMessage& message, const Endpoint& to);
   void say(const link::SessionOutput& output, Association& by, const Endpoint& to);
   void establish(Association& by, const Endpoint& from, SessionEndpointOutput& out);
   void forget();
@@ -77,7 +65,6 @@ class DtlsSession final : public SessionEndpoint {
   link::Session session_;
   Associations associations_;
   LinkGlance link_;
-  Endpoint peer_;  ///< of the session
   std::string proof_;
   std::uint64_t present_{};  ///< association whose data keys the session has; 0: no session
   std::uint64_t next_{};     ///< the one that replaces it, during a changeover
@@ -86,10 +73,8 @@ class DtlsSession final : public SessionEndpoint {
   TimePoint keyed_at_{};
   std::uint32_t data_connection_{};               ///< ours
   std::unique_ptr<link::AeadProtection> opener_;  ///< io's own copy of the present data keys
-  std::optional<std::uint64_t> data_newest_;      ///< number of data seen by io
-  /// Who was the first with a telegram, and who came second: somebody may be faster than the
-  /// sender.
-  std::array<std::optional<Candidate>, 2> candidates_;
+  Roaming roaming_;                               ///< the patient's; holds the peer's address
+  PathAnswers path_answers_;                      ///< the surgeon's
   std::uint64_t path_number_{};
   std::uint64_t greeted_{};  ///< association that waits for an answer to our greeting
   TimePoint greet_next_{};

@@ -21,7 +21,8 @@ struct SessionEndpointOutput {
   /// With Established: for the new session. Alone: replaces that of the present one.
   std::unique_ptr<link::PacketProtection> protection;
   std::optional<Endpoint> moved_to;  ///< the peer of the present session now has this address
-  bool detours{};  ///< what was heard is a telegram for rt, from an address that is being proven
+  Endpoint moved_from;  ///< had that one before, and is heard and told there too; none: it is not
+  bool detours{};  ///< what was heard is a telegram for rt, from another address than the peer's
   std::vector<Letter> letters;
 };
 
@@ -37,6 +38,8 @@ class SessionEndpoint {
   [[nodiscard]] virtual SessionEndpointOutput tick(TimePoint now, const LinkGlance& link) = 0;
   /// We leave; nothing is said afterwards.
   [[nodiscard]] virtual SessionEndpointOutput close(std::string_view why) = 0;
+  /// Where the connected socket sends from, as the kernel has it.
+  virtual void set_own_address(const Endpoint& own) = 0;
   [[nodiscard]] virtual link::SessionCounters counters() const = 0;
   /// For people: who the peer has proven to be; empty: nobody has proven anything.
   [[nodiscard]] virtual std::string proof() const = 0;
@@ -53,6 +56,7 @@ class PlainSession final : public SessionEndpoint {
                                            TimePoint now) override;
   [[nodiscard]] SessionEndpointOutput tick(TimePoint now, const LinkGlance& link) override;
   [[nodiscard]] SessionEndpointOutput close(std::string_view why) override;
+  void set_own_address(const Endpoint& /*own*/) override {}
   [[nodiscard]] link::SessionCounters counters() const override { return session_.counters(); }
   [[nodiscard]] std::string proof() const override { return {}; }
 

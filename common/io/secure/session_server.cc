@@ -17,6 +17,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include "common/io/net/source_watch.h"
 #include "common/io/process/system_text.h"
 #include "common/io/realtime/realtime.h"
 #include "common/io/realtime/steady_clock.h"
@@ -86,9 +87,13 @@ class SessionServer::Io {
   void meet(const link::Established& session,
             std::unique_ptr<link::PacketProtection> protection,
             const Endpoint& peer);
-  void replace_keys(std::unique_ptr<link::PacketProtection> protection);
-  void move(const Endpoint& peer);
-  [[nodiscard]] Result<std::unique_ptr<link::Transport>> way_to(const Endpoint& peer);
+  void carry_on(std::unique_ptr<link::Transport> transport,
+                std::unique_ptr<link::PacketProtection> protection);
+  void move(const Endpoint& peer, const Endpoint& former);
+  void follow_machine();
+  /// `former`: the address that the peer had until now, or none.
+  [[nodiscard]] Result<std::unique_ptr<link::Transport>> way_to(const Endpoint& peer,
+                                                                const Endpoint& former);
   void offer_waiting();
   void leave();
   [[nodiscard]] std::string refusal_opening();
@@ -106,6 +111,7 @@ class SessionServer::Io {
   Endpoint local_;
   Endpoint callee_;                       ///< surgeon: whom to call; patient: none
   Endpoint connected_;                    ///< rt has or will get a socket to there
+  SourceWatch source_;                    ///< of that socket
   link::Established present_;             ///< rt has or will get this session; id 0: none
   std::deque<link::LinkUpdate> waiting_;  ///< for room on the desk
   std::deque<Early> early_;               ///< taken by a data socket before it was connected
@@ -156,9 +162,7 @@ void SessionServer::Io::start() {
 }
 
 void SessionServer::Io::close(const std::string& why) {
-  if (!thread_.joinable()) {
-    return;
-  }
+  if (!thread_.joinable()) return;
   asio::post(context_, [this, why] {
     carry_out(session_endpoint_->close(why), {});
     context_.stop();
@@ -168,9 +172,7 @@ void SessionServer::Io::close(const std::string& why) {
 
 std::optional<SessionNews> SessionServer::Io::news() {
   SessionNews news;
-  if (!news_.try_dequeue(news)) {
-    return std::nullopt;
-  }
+  if (!news_.try_dequeue(news)) return std::nullopt;
   return news;
 }
 
@@ -178,15 +180,14 @@ void SessionServer::Io::run_round() {
   desk_.destroy_retired();
   SideDatagram aside;
   for (std::size_t i = 0; i < SideInbox::kCapacity; ++i) {
-    if (!desk_.inbox().datagrams.try_dequeue(aside)) {
-      break;
-    }
+    if (!desk_.inbox().datagrams.try_dequeue(aside)) break;
     hear(aside.datagram(), aside.from);
   }
   carry_out(session_endpoint_->tick(clock_.now(), desk_.link()), callee_);
   for (std::deque<Early> early = std::exchange(early_, {}); !early.empty(); early.pop_front()) {
     hear(early.front().bytes, early.front().from);
   }
+  follow_machine();
   offer_waiting();
   noise_.put(session_endpoint_->counters());
   strangers_ = 0;
@@ -196,21 +197,15 @@ void SessionServer::Io::run_round() {
     round_.expires_after(kRound);
   }
   round_.async_wait([this](const boost::system::error_code& refusal) {
-    if (!refusal) {
-      run_round();
-    }
+    if (!refusal) run_round();
   });
 }
 
 void SessionServer::Io::wait_for_strangers() {
-  if (std::exchange(listens_, true)) {
-    return;
-  }
+  if (std::exchange(listens_, true)) return;
   listening_.async_wait(udp::socket::wait_read, [this](const boost::system::error_code& refusal) {
     listens_ = false;
-    if (!refusal) {
-      hear_strangers();
-    }
+    if (!refusal) hear_strangers();
   });
 }
 
@@ -249,8 +244,8 @@ void SessionServer::Io::carry_out(SessionEndpointOutput output, const Endpoint& 
       leave();
     }
   }
-  if (output.protection != nullptr) replace_keys(std::move(output.protection));
-  if (output.moved_to) move(*output.moved_to);
+  if (output.protection != nullptr) carry_on(nullptr, std::move(output.protection));
+  if (output.moved_to) move(*output.moved_to, output.moved_from);
   for (const Letter& letter : output.letters) {
     boost::system::error_code refusal;  // nothing to do about it: what matters is repeated
     listening_.send_to(asio::buffer(letter.bytes), as_asio(letter.to), 0, refusal);
@@ -274,7 +269,7 @@ void SessionServer::Io::meet(const link::Established& session,
                         .session_id = session.session_id,
                         .peer_devices = session.peer_devices};
   if (!(peer == connected_)) {
-    Result<std::unique_ptr<link::Transport>> way = way_to(peer);
+    Result<std::unique_ptr<link::Transport>> way = way_to(peer, {});
     if (!way) {
       tell(SessionNews::Kind::Refused, peer, "no session: " + way.error().text);
       leave();
@@ -300,10 +295,11 @@ std::string SessionServer::Io::refusal_opening() {
   return works && config_.session.role == link::Role::Surgeon ? "no new keys: " : "no session: ";
 }
 
-/// The present session goes on under other keys.
-void SessionServer::Io::replace_keys(std::unique_ptr<link::PacketProtection> protection) {
+/// The present session goes on with what is not null.
+void SessionServer::Io::carry_on(std::unique_ptr<link::Transport> transport,
+                                 std::unique_ptr<link::PacketProtection> protection) {
   if (present_.session_id == 0) return;
-  waiting_.push_back({.transport = nullptr,
+  waiting_.push_back({.transport = std::move(transport),
                       .protection = std::move(protection),
                       .send_connection = present_.send_connection,
                       .receive_connection = present_.receive_connection,
@@ -312,21 +308,26 @@ void SessionServer::Io::replace_keys(std::unique_ptr<link::PacketProtection> pro
 }
 
 /// The present session goes on with another address of the peer.
-void SessionServer::Io::move(const Endpoint& peer) {
+void SessionServer::Io::move(const Endpoint& peer, const Endpoint& former) {
   if (present_.session_id == 0 || peer == connected_) return;
-  Result<std::unique_ptr<link::Transport>> way = way_to(peer);
+  Result<std::unique_ptr<link::Transport>> way = way_to(peer, former);
   if (!way) return;  // its next datagram begins anew
-  waiting_.push_back({.transport = std::move(*way),
-                      .protection = nullptr,
-                      .send_connection = present_.send_connection,
-                      .receive_connection = present_.receive_connection,
-                      .session_id = present_.session_id,
-                      .continues = true});
+  carry_on(std::move(*way), nullptr);
   connected_ = peer;
   tell(SessionNews::Kind::Moved, peer, "the peer's address is now " + peer.to_string());
 }
 
-Result<std::unique_ptr<link::Transport>> SessionServer::Io::way_to(const Endpoint& peer) {
+/// The surgeon's session goes on from another address of its own; only the patient follows.
+void SessionServer::Io::follow_machine() {
+  if (!callee_.valid() || !connected_.valid() || !source_.has_changed(clock_.now())) return;
+  Result<std::unique_ptr<link::Transport>> way = way_to(connected_, {});
+  if (!way) return;  // the next look tries again
+  carry_on(std::move(*way), nullptr);
+  tell(SessionNews::Kind::Moved, connected_, "this site's own address has changed");
+}
+
+Result<std::unique_ptr<link::Transport>> SessionServer::Io::way_to(const Endpoint& peer,
+                                                                   const Endpoint& former) {
   // Only as long as it takes: meanwhile any process of this user could share the port.
   share_port(listening_.native_handle(), true);
   Result<std::unique_ptr<UdpSocket>> socket =
@@ -335,20 +336,19 @@ Result<std::unique_ptr<link::Transport>> SessionServer::Io::way_to(const Endpoin
   if (!socket) {
     return fail(socket.error().text);
   }
+  (*socket)->follow(former);
+  source_.begin((*socket)->local(), peer);
+  session_endpoint_->set_own_address((*socket)->local());
   // Before it was connected it took what strangers sent: that is ours to hear.
   for (int i = 0; i < kEarlyMax; ++i) {
     const auto stranger = (*socket)->take_early(buffer_);
-    if (!stranger) {
-      break;
-    }
+    if (!stranger) break;
     const std::size_t size = std::min(stranger->size, buffer_.size());
     if (size > 0 && buffer_[0] != kDataFirstByte) {
       early_.push_back({stranger->from, {buffer_.begin(), buffer_.begin() + size}});
     }
   }
-  if (config_.wrap_transport) {
-    return config_.wrap_transport(std::move(*socket));
-  }
+  if (config_.wrap_transport) return config_.wrap_transport(std::move(*socket));
   return std::move(*socket);
 }
 

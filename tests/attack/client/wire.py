@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from cryptography.exceptions import InvalidTag
 from cryptography.hazmat.primitives.ciphers.aead import AESGCM
 
-PROTOCOL_VERSION = 4
+PROTOCOL_VERSION = 5
 EXPORTER_LABEL = b"EXPORTER-palp-session"
 
 DATA, CONTROL, PATH, CLOSE = range(4)
@@ -17,7 +17,7 @@ DATAGRAM_BYTES_MAX = 1200
 NUMBER_MAX = 1 << 53
 
 QUESTION, ANSWER = 0, 1
-PATH_REST_BYTES = 8  # what the answer repeats
+PATH_REST_BYTES = 26
 
 
 def header(kind: int, key_id: int, length: int, connection: int, number: int) -> bytes:

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "common/link/transport.h"
 #include "common/message/limits.h"
 
 namespace palp::link {
@@ -26,7 +27,7 @@ RC_GTEST_PROP(HeaderTest, ComesBackAsItWasPacked, ()) {
   const Header header{
       .type = static_cast<PacketType>(*rc::gen::inRange(0, 4)),
       .key = *rc::gen::inRange<std::uint8_t>(0, 4),
-      .length = *rc::gen::inRange<std::uint16_t>(0, 1400),
+      .length = *rc::gen::inRange<std::uint16_t>(0, kDatagramSizeMax - kHeaderSize + 1),
       .connection = *rc::gen::arbitrary<std::uint32_t>(),
       .number = *rc::gen::inRange<std::uint64_t>(0, message::kNumberMax + 1),
   };
@@ -84,6 +85,14 @@ TEST(HeaderTest, RefusesEveryLengthButTheTrueOne) {
     auto bytes = whole;
     bytes.resize(size);
     EXPECT_EQ(parse_header(bytes).has_value(), size == whole.size()) << size;
+  }
+}
+
+TEST(HeaderTest, RefusesWhatIsLongerThanADatagramOfOursWhateverItsLengthSays) {
+  for (const std::size_t size : {1199U, 1200U, 1201U, 1400U, 65'000U}) {
+    Header header = kSome;
+    header.length = static_cast<std::uint16_t>(size - kHeaderSize);
+    EXPECT_EQ(parse_header(packed(header)).has_value(), size <= kDatagramSizeMax) << size;
   }
 }
 

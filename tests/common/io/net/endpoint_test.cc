@@ -43,6 +43,19 @@ TEST(EndpointTest, AHostIsAnAddressOrAPrefixOfSixtyFourBits) {
   EXPECT_FALSE(Endpoint{}.same_host(Endpoint{}));
 }
 
+TEST(EndpointTest, TheWireKnowsOneFormForBothFamilies) {
+  const auto bytes = [](const char* text) { return resolve_endpoint(text)->bytes(); };
+  EXPECT_EQ(bytes("192.0.2.1:9000"), bytes("[::ffff:192.0.2.1]:9000"));
+  const Endpoint::Bytes six = bytes("[2001:db8::102]:258");
+  EXPECT_EQ(six[0], std::byte{0x20});
+  EXPECT_EQ(six[15], std::byte{2});
+  EXPECT_EQ(six[16], std::byte{1});
+  EXPECT_EQ(six[17], std::byte{2});
+  EXPECT_NE(bytes("192.0.2.1:9000"), bytes("192.0.2.1:9001"));
+  EXPECT_NE(bytes("192.0.2.1:9000"), bytes("192.0.2.2:9000"));
+  EXPECT_EQ(Endpoint{}.bytes(), Endpoint::Bytes{});
+}
+
 TEST(EndpointTest, LoopbackIsWhatNeverLeavesTheMachine) {
   for (const char* text : {"127.0.0.1:1", "127.255.255.254:1", "[::1]:1"}) {
     EXPECT_TRUE(resolve_endpoint(text)->loopback()) << text;

@@ -220,6 +220,42 @@ TEST_F(UdpSocketTest, WarmUpsTakeNothingAndStampsRemain) {
   EXPECT_EQ(inbox_.counting.without_stamp, 0U);
 }
 
+TEST_F(UdpSocketTest, WhatCameFromElsewhereIsTakenWhenThePeersAddressIsSilentAndAnsweredThere) {
+  PlainSocket elsewhere;
+  tick();  // from now on the peer has its chance
+  const TimePoint arrived = clock_.now();
+  for (const std::size_t size : {1199U, 1200U, 1201U, 2000U}) {
+    ASSERT_TRUE(inbox_.detours.try_emplace(bytes_of(0x80, size), elsewhere.local(), arrived));
+  }
+  const auto taken = ticks_until(4);
+  EXPECT_GE(clock_.now() - arrived, milliseconds{8});
+  for (const link::Datagram& one : taken) {
+    EXPECT_LE(one.size, buffer_.size());
+    EXPECT_EQ(one.arrived_at, arrived);
+  }
+  ASSERT_TRUE(socket_->send(bytes_of(0x80, 177), clock_.now()));
+  EXPECT_EQ(elsewhere.receive(), bytes_of(0x80, 177));
+  EXPECT_EQ(peer_.receive(), bytes_of(0x80, 177));
+  EXPECT_EQ(inbox_.counting.detoured, 1U);
+}
+
+TEST_F(UdpSocketTest, WhatCameFromElsewhereIsDroppedWhileThePeersAddressDelivers) {
+  PlainSocket elsewhere;
+  tick();
+  ASSERT_TRUE(inbox_.detours.try_emplace(bytes_of(0x80, 300), elsewhere.local(), clock_.now()));
+  TimePoint last = clock_.now();
+  const TimePoint later = last + milliseconds{30};
+  EXPECT_TRUE(wait_until([&] {
+    EXPECT_TRUE(peer_.send_to(socket_->local(), bytes_of(0x80, 40)));
+    const TimePoint before = std::exchange(last, clock_.now());
+    for (const link::Datagram& one : tick()) {
+      EXPECT_TRUE(one.size == 40 || clock_.now() - before >= Detour::kSilence) << "or stalled";
+    }
+    return clock_.now() > later;
+  }));
+  EXPECT_EQ(inbox_.detours.peek(), nullptr);
+}
+
 TEST_F(UdpSocketTest, HearsNobodyButItsPeer) {
   PlainSocket stranger;
   ASSERT_TRUE(stranger.send_to(socket_->local(), bytes_of(0x80, 31)));

@@ -22,17 +22,47 @@ Endpoint host(int number, int port = 1000) {
   return *resolve_endpoint("192.0.2." + std::to_string(number) + ":" + std::to_string(port));
 }
 
-TEST(AdmissionTest, OneHostBeginsFewHandshakesInASecondWhateverItsPorts) {
+TEST(AdmissionTest, WhoFinishesBeginsAFewInASecondWhateverItsPorts) {
   Admission admission;
   TimePoint now{};
   for (int i = 0; i < static_cast<int>(Admission::kOfOneHost); ++i, now += milliseconds{1}) {
     ASSERT_TRUE(admission.open_to(host(1, 1000 + i), now));
     admission.note(host(1, 1000 + i), now);
+    admission.finished(host(1, 1000 + i));
   }
   EXPECT_FALSE(admission.open_to(host(1, 999), now));
   EXPECT_TRUE(admission.open_to(host(2), now));
   EXPECT_FALSE(admission.open_to(host(1), TimePoint{milliseconds{999}}));
   EXPECT_TRUE(admission.open_to(host(1), TimePoint{milliseconds{1000}}));
+}
+
+TEST(AdmissionTest, WhoDoesNotFinishBeginsOneASecondUntilThatIsForgotten) {
+  Admission admission;
+  admission.note(host(1), TimePoint{});
+  EXPECT_FALSE(admission.open_to(host(1, 999), TimePoint{milliseconds{999}}));
+  EXPECT_TRUE(admission.open_to(host(1, 999), TimePoint{milliseconds{1000}}));
+  admission.note(host(1, 999), TimePoint{milliseconds{1000}});
+  EXPECT_EQ(admission.debt(host(1)), 2U);
+  EXPECT_EQ(admission.debt(host(2)), 0U);
+  EXPECT_TRUE(admission.open_to(host(1), TimePoint{Admission::kMemory}));
+  EXPECT_EQ(admission.debt(host(1)), 1U);
+  admission.finished(host(1, 5));
+  EXPECT_EQ(admission.debt(host(1)), 0U);
+}
+
+TEST(AdmissionTest, HostsWithUnfinishedOnesLeaveRoomForOthers) {
+  Admission admission;
+  TimePoint now{};
+  for (int i = 0; i < 100; ++i, now += milliseconds{100}) admission.note(host(i), now);
+  std::size_t begun = 0;
+  for (int i = 0; i < 100; ++i) {
+    if (!admission.open_to(host(i), now)) continue;
+    admission.note(host(i), now);
+    ++begun;
+  }
+  EXPECT_GE(begun, 1U);
+  EXPECT_LE(begun, Admission::kOfDebtors + 1) << "one is forgotten by then";
+  EXPECT_TRUE(admission.open_to(host(200), now));
 }
 
 TEST(AdmissionTest, AllHostsTogetherBeginNotManyMore) {
@@ -89,12 +119,34 @@ class Door {
   Endpoint at{host(100, 2000)};
 };
 
-TEST(AssociationsTest, ACookieShownAThousandTimesBeginsFewHandshakesAndOthersGetTheirs) {
+/// Hosts that have each been given a cookie, and show it again and again.
+class Idlers {
+ public:
+  Idlers(Door& door, int hosts) : door_{door} {
+    for (int i = 0; i < hosts; ++i) hellos_.push_back(door.proven_hello(host(1 + i)));
+  }
+  /// @returns how many handshakes they began.
+  std::size_t show() {
+    std::size_t begun = 0;
+    for (int i = 0; i < static_cast<int>(hellos_.size()); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      begun += door_.begins(hellos_[at], host(1 + i), ++shown_) ? 1U : 0U;
+    }
+    return begun;
+  }
+
+ private:
+  Door& door_;
+  std::vector<DtlsDatagram> hellos_;
+  std::uint64_t shown_{};
+};
+
+TEST(AssociationsTest, ACookieShownAThousandTimesBeginsOneHandshakeAndOthersGetTheirs) {
   Door door;
-  const DtlsDatagram hello = door.proven_hello(host(1));
+  Idlers idler{door, 1};
   std::size_t begun = 0;
-  for (std::uint64_t i = 0; i < 1000; ++i) begun += door.begins(hello, host(1), i) ? 1U : 0U;
-  EXPECT_EQ(begun, Admission::kOfOneHost);
+  for (int i = 0; i < 1000; ++i) begun += idler.show();
+  EXPECT_EQ(begun, 1U);
   Associations surgeon{*door.surgeon_keys_};
   surgeon.call(door.at, door.now);
   bool made = false;
@@ -102,19 +154,40 @@ TEST(AssociationsTest, ACookieShownAThousandTimesBeginsFewHandshakesAndOthersGet
   EXPECT_TRUE(made);
 }
 
-TEST(AssociationsTest, AHandshakeUnderWayIsNotCrowdedOutByABusyHost) {
+TEST(AssociationsTest, HostsThatShowCookiesAndNeverFinishKeepNobodyWaiting) {
+  constexpr Duration kStep = milliseconds{50};  // a round trip
+  for (const int hosts : {1, 4, 8, 16, 60}) {
+    Door door;
+    Idlers idlers{door, hosts};
+    int honest = 100;
+    for (int step = 0; step < 120; ++step, door.now += kStep) {
+      (void)idlers.show();
+      if (step % 40 != 39) continue;
+      Associations surgeon{*door.surgeon_keys_};
+      surgeon.call(door.at, door.now);
+      bool made = false;
+      const Endpoint from = host(++honest);
+      for (int trip = 0; trip < 4 && !made; ++trip, door.now += kStep) {
+        (void)idlers.show();
+        made = door.exchange(surgeon, from);
+      }
+      EXPECT_TRUE(made) << hosts << " hosts, step " << step;
+    }
+  }
+}
+
+TEST(AssociationsTest, AHandshakeUnderWayIsNotCrowdedOut) {
   Door door;
   Associations surgeon{*door.surgeon_keys_};
   surgeon.call(door.at, door.now);
-  ASSERT_FALSE(door.exchange(surgeon, host(2)));  // a cookie
-  ASSERT_FALSE(door.exchange(surgeon, host(2)));  // the patient's flight; the answer waits
-  const DtlsDatagram hello = door.proven_hello(host(1));
+  const Endpoint from = host(200);
+  ASSERT_FALSE(door.exchange(surgeon, from));  // a cookie
+  ASSERT_FALSE(door.exchange(surgeon, from));  // the patient's flight; the answer waits
+  Idlers idlers{door, 60};
   std::size_t begun = 0;
-  for (std::uint64_t i = 0; i < 5000; ++i, door.now += milliseconds{1}) {
-    begun += door.begins(hello, host(1), i) ? 1U : 0U;
-  }
-  EXPECT_GT(begun, Associations::kAttemptsMax);
-  EXPECT_TRUE(door.exchange(surgeon, host(2)));
+  for (int i = 0; i < 180; ++i, door.now += milliseconds{50}) begun += idlers.show();
+  EXPECT_GT(begun, Associations::kAttemptsMax + 10);
+  EXPECT_TRUE(door.exchange(surgeon, from));
 }
 
 }  // namespace

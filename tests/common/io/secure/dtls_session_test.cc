@@ -31,11 +31,6 @@ using test::Site;
 using test::World;
 using testing::HasSubstr;
 
-bool is_question(std::span<const std::byte> bytes) {
-  const auto header = link::parse_header(bytes);
-  return header && header->type == link::PacketType::Path;
-}
-
 TEST(DtlsSessionTest, SitesMeetUnderKeysAndSayByeUnderThem) {
   World world{"meet"};
   world.run(milliseconds{300});
@@ -192,126 +187,6 @@ TEST(DtlsSessionTest, ASecondSurgeonWithAGoodCertificateIsToldThatThePatientIsBu
   EXPECT_TRUE(second.established.empty());
   ASSERT_FALSE(second.refused.empty());
   EXPECT_THAT(second.refused[0], HasSubstr("busy"));
-}
-
-TEST(RoamingTest, ThePatientFollowsTheSurgeonToANewAddress) {
-  World world{"roam"};
-  world.run(seconds{1});
-  world.surgeon_seen_at = kElsewhere;
-  world.run(milliseconds{20});
-  ASSERT_EQ(world.patient->moved_to.size(), 1U);
-  EXPECT_TRUE(world.patient->moved_to[0] == kElsewhere);
-  world.run(seconds{1});
-  EXPECT_TRUE(world.live());
-  EXPECT_EQ(world.patient->established.size(), 1U) << "no new session, no new handshake";
-  EXPECT_EQ(world.patient->rekeyed, 0);
-}
-
-TEST(RoamingTest, AnOldTelegramFromElsewhereMovesNobody) {
-  World world{"spoof"};
-  world.run(seconds{1});
-  world.patient->tick(world.now);  // takes what was on the way
-  for (const auto& bytes : world.recorded) {
-    const auto out = world.patient->session_endpoint.hear(bytes, kElsewhere, world.now);
-    EXPECT_TRUE(out.letters.empty());
-    EXPECT_FALSE(out.moved_to);
-  }
-}
-
-TEST(RoamingTest, AnOldTelegramMovesNobodyAfterAChangeOfAddressEither) {
-  World world{"after"};
-  world.run(seconds{1});
-  world.surgeon_seen_at = kElsewhere;
-  world.run(milliseconds{100});
-  ASSERT_EQ(world.patient->moved_to.size(), 1U);
-  world.patient->tick(world.now);
-  const Endpoint third = *resolve_endpoint("127.0.0.3:1000");
-  for (const auto& bytes : world.recorded) {
-    const auto out = world.patient->session_endpoint.hear(bytes, third, world.now);
-    EXPECT_TRUE(out.letters.empty());
-    EXPECT_FALSE(out.detours);
-  }
-}
-
-TEST(RoamingTest, ANewTelegramTakenOffTheWayMovesNobodyAndDrawsLittle) {
-  World world{"steal"};
-  world.run(seconds{1});
-  world.elsewhere_watched = kElsewhere;
-  std::size_t in = 0;
-  // Somebody on the way holds each telegram back and sends it from elsewhere, but cannot answer.
-  for (int i = 0; i < 10'000; ++i, world.now += milliseconds{1}) {
-    world.surgeon->tick(world.now);
-    world.patient->tick(world.now);
-    if (i < 1) {
-      for (auto& bytes : std::exchange(world.surgeon->wire.out, {})) {
-        in += bytes.size();
-        test::Parcel stolen{world.now, false, kPatientAt, kElsewhere, bytes};
-        world.arrive(stolen, *world.patient);
-      }
-    }
-    world.pass(*world.surgeon, *world.patient, kSurgeonAt);
-    world.pass(*world.patient, *world.surgeon, kPatientAt);
-  }
-  std::size_t out = 0;
-  for (const auto& bytes : world.watched) out += bytes.size();
-  EXPECT_GT(out, 0U);
-  EXPECT_LE(out, 3 * in);
-  EXPECT_LE(std::ranges::count_if(world.watched, is_question), 3);
-  EXPECT_GE(std::ranges::count_if(world.watched, is_question), 1);
-  EXPECT_TRUE(world.patient->moved_to.empty());
-  EXPECT_TRUE(world.live());
-}
-
-TEST(RoamingTest, AThiefWhoIsFasterThanTheSenderKeepsHimFromNothing) {
-  const Endpoint thief = *resolve_endpoint("127.0.0.3:1000");
-  for (const std::size_t ahead : {0U, 5U}) {  // telegrams
-    World world{"faster"};
-    world.run(seconds{1});
-    world.surgeon_seen_at = kElsewhere;
-    world.elsewhere_watched = thief;
-    std::size_t in = 0;
-    std::deque<std::vector<std::byte>> behind;
-    for (int i = 0; i < 400; ++i, world.now += milliseconds{1}) {
-      world.surgeon->tick(world.now);
-      world.patient->tick(world.now);
-      for (auto& bytes : std::exchange(world.surgeon->wire.out, {})) {
-        in += bytes.size();
-        test::Parcel stolen{world.now, false, kPatientAt, thief, bytes};
-        world.arrive(stolen, *world.patient);
-        behind.push_back(bytes);
-      }
-      for (; behind.size() > ahead; behind.pop_front()) {
-        world.surgeon->wire.out.push_back(behind.front());
-      }
-      world.pass(*world.surgeon, *world.patient, kElsewhere);
-      world.pass(*world.patient, *world.surgeon, kPatientAt);
-    }
-    ASSERT_EQ(world.patient->moved_to.size(), 1U) << ahead;
-    EXPECT_TRUE(world.patient->moved_to[0] == kElsewhere);
-    EXPECT_TRUE(world.live());
-    std::size_t out = 0;
-    for (const auto& bytes : world.watched) out += bytes.size();
-    EXPECT_LE(out, 3 * in);
-  }
-}
-
-TEST(RoamingTest, AnAnswerFromAnotherPlaceThanTheQuestionWentToMovesNobody) {
-  World world{"answer"};
-  world.run(seconds{1});
-  world.elsewhere_watched = kElsewhere;
-  world.surgeon->tick(world.now);
-  const auto stolen = world.surgeon->wire.out.back();
-  world.surgeon->wire.out.clear();
-  world.patient->take(world.patient->session_endpoint.hear(stolen, kElsewhere, world.now),
-                      world.now);
-  ASSERT_EQ(world.patient->letters.size(), 1U);
-  // The question reaches the surgeon after all, who answers it from where he is.
-  auto answer =
-      world.surgeon->session_endpoint.hear(world.patient->letters[0].bytes, kPatientAt, world.now);
-  ASSERT_EQ(answer.letters.size(), 1U);
-  const auto out =
-      world.patient->session_endpoint.hear(answer.letters[0].bytes, kSurgeonAt, world.now);
-  EXPECT_FALSE(out.moved_to);
 }
 
 TEST(FailureTest, AForeignCertificateIsToldOnceAndNotForEachAttempt) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/io/net/detour.h"
+#include "common/io/net/side_inbox.h"
 #include "common/io/secure/dtls_session.h"
 #include "common/link/codec_wire.h"
 #include "common/link/link.h"
@@ -68,16 +69,19 @@ struct Site {
                          credentials,
                          entropy} {}
 
-  void take(SessionEndpointOutput output, TimePoint now) {
+  /// `from`: where the datagram came from that is answered, if one came.
+  void take(SessionEndpointOutput output, TimePoint now, const Endpoint& from = {}) {
     for (Letter& letter : output.letters) letters.push_back(std::move(letter));
     if (output.moved_to) {
       moved_to.push_back(*output.moved_to);
-      detour = {};
+      detour = Detour{output.moved_from};
       hears = *output.moved_to;
     }
     if (output.event) {
       if (const auto* session = std::get_if<link::Established>(&*output.event)) {
         established.push_back(*session);
+        if (from.valid()) hears = from;
+        if (wrap_protection) output.protection = wrap_protection(std::move(output.protection));
         (void)link.adopt({.transport = std::make_unique<WireEnd>(wire),
                           .protection = std::move(output.protection),
                           .send_connection = session->send_connection,
@@ -103,7 +107,20 @@ struct Site {
                        now);
     }
   }
+  /// As UdpSocket does.
+  void take_detours(TimePoint now) {
+    detour.begin_tick(now);
+    for (; !aside.empty(); aside.pop_front()) {
+      const SideDatagram& one = aside.front();
+      const Detour::Fate fate = detour.fate(one.from, one.arrived_at, now);
+      if (fate == Detour::Fate::Wait) return;
+      if (fate == Detour::Fate::Drop) continue;
+      if (!(one.from == hears)) detour.heard(one.from, one.datagram());
+      wire.in.emplace_back(one.datagram().begin(), one.datagram().end());
+    }
+  }
   void tick(TimePoint now) {
+    take_detours(now);
     const link::Arrivals arrivals = link.receive(now);
     if (look) look(arrivals);
     link.send(telegram, now);
@@ -112,13 +129,15 @@ struct Site {
                                {.state = health.state,
                                 .session_id = health.session_id,
                                 .newest_number = health.newest_number,
-                                .key = health.key}),
+                                .key = health.key,
+                                .peer_heard_at = detour.straight_at()}),
          now);
   }
 
   Endpoint at;
   Endpoint hears;  ///< whom the data socket is connected to
   Detour detour;   ///< of that socket
+  std::deque<SideDatagram> aside;
   DtlsSession session_endpoint;
   link::Link link{{}, std::make_unique<link::WireCodec>()};
   Wire wire;
@@ -128,6 +147,9 @@ struct Site {
   std::vector<Endpoint> moved_to;
   Telegram telegram;
   std::function<void(const link::Arrivals&)> look;
+  /// Puts something around the protection of each new session.
+  std::function<std::unique_ptr<link::PacketProtection>(std::unique_ptr<link::PacketProtection>)>
+      wrap_protection;
   int closed{};
   int rekeyed{};
 };
@@ -164,29 +186,45 @@ class World {
     for (const TimePoint end = now + span; now < end; now += milliseconds{1}) {
       surgeon->tick(now);
       patient->tick(now);
+      std::vector<Parcel> early = std::exchange(thrown_, {});
+      for (Parcel& one : early) {
+        if (one.due > now) {
+          thrown_.push_back(std::move(one));
+        } else {
+          arrive(one, one.to == kPatientAt ? *patient : *surgeon);
+        }
+      }
       pass(*surgeon, *patient, surgeon_seen_at);
       pass(*patient, *surgeon, kPatientAt);
+      if (each_ms) each_ms();
     }
   }
+  /// Somebody on the way sends it, under whatever address.
+  void throw_in(Parcel parcel) { thrown_.push_back(std::move(parcel)); }
   /// What `from` has said goes on its way; what is due arrives at `to`.
   void pass(Site& from, Site& to, const Endpoint& seen_at) {
     auto& road = under_way_[from.at == kSurgeonAt ? 0 : 1];
+    const auto set_out = [&](bool letter, const Endpoint& where, std::vector<std::byte> bytes) {
+      if (where == elsewhere_watched) watched.push_back(bytes);
+      road.push_back({now + way, letter, where, seen_at, std::move(bytes)});
+      if (observer) observer(road.back());
+      if (lose_after_observer && lose_after_observer(road.back())) road.pop_back();
+    };
     for (auto& bytes : std::exchange(from.wire.out, {})) {
       if (on_the_way) on_the_way(bytes);
       if (cut || (lose && lose())) continue;
       if (from.at == kSurgeonAt) recorded.push_back(bytes);
-      if (from.detour.spend(bytes.size())) {
-        if (from.detour.to() == elsewhere_watched) watched.push_back(bytes);
-        road.push_back({now + way, false, from.detour.to(), seen_at, bytes});
+      for (std::size_t at = 0; at < Detour::kPlaces; ++at) {
+        const Endpoint* copied_to = from.detour.spend(at, bytes.size(), now);
+        if (copied_to != nullptr) set_out(false, *copied_to, bytes);
       }
-      road.push_back({now + way, false, from.hears, seen_at, std::move(bytes)});
+      set_out(false, from.hears, std::move(bytes));
     }
     for (Letter& letter : std::exchange(from.letters, {})) {
       if (on_the_way) on_the_way(letter.bytes);
       // Lost handshakes are repeated by OpenSSL's clock, which does not know this time.
       if (cut || (lose && !looks_like_dtls(letter.bytes) && lose())) continue;
-      if (letter.to == elsewhere_watched) watched.push_back(letter.bytes);
-      road.push_back({now + way, true, letter.to, seen_at, std::move(letter.bytes)});
+      set_out(true, letter.to, std::move(letter.bytes));
     }
     for (; !road.empty() && road.front().due <= now; road.pop_front()) arrive(road.front(), to);
   }
@@ -195,16 +233,14 @@ class World {
     if (!(parcel.to == (to.at == kSurgeonAt ? surgeon_seen_at : to.at))) return;
     // As the kernel does: rt's socket is connected to the peer's address, the others go to io.
     if (!parcel.letter && parcel.from == to.hears) {
+      to.detour.heard_straight(parcel.bytes, now);
       to.wire.in.push_back(std::move(parcel.bytes));
       return;
     }
     if (parcel.letter) control.push_back(parcel.bytes);
     SessionEndpointOutput heard = to.session_endpoint.hear(parcel.bytes, parcel.from, now);
-    if (heard.detours) {
-      to.detour.heard(parcel.from, parcel.bytes.size());
-      to.wire.in.push_back(parcel.bytes);
-    }
-    to.take(std::move(heard), now);
+    if (heard.detours) to.aside.emplace_back(parcel.bytes, parcel.from, now);
+    to.take(std::move(heard), now, parcel.from);
   }
   [[nodiscard]] LinkState state(const Site& site) const { return site.link.health(now).state; }
   [[nodiscard]] bool live() const {
@@ -221,6 +257,9 @@ class World {
   bool cut{};
   std::function<bool()> lose;
   std::function<void(std::span<const std::byte>)> on_the_way;  ///< told of all that is sent
+  std::function<void(const Parcel&)> observer;  ///< somebody on the way, who sees all that passes
+  std::function<bool(const Parcel&)> lose_after_observer;  ///< between him and its receiver
+  std::function<void()> each_ms;
   Endpoint surgeon_seen_at{kSurgeonAt};
   Endpoint elsewhere_watched;
   std::vector<std::vector<std::byte>> watched;   ///< datagrams to that address
@@ -229,6 +268,7 @@ class World {
 
  private:
   std::array<std::deque<Parcel>, 2> under_way_;  ///< up, down
+  std::vector<Parcel> thrown_;
   Duration rekey_after_;
   std::uint64_t started_{};
 };

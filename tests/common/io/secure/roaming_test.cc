@@ -1,0 +1,385 @@
+// Goal: the patient follows a surgeon whose address changes, and nobody else: not who repeats,
+// holds back or copies telegrams, however fast. Method: both sites in virtual time; somebody on the
+// way who sees all and sends from elsewhere.
+#include "common/io/secure/roaming.h"
+
+#include <algorithm>
+#include <deque>
+
+#include <gtest/gtest.h>
+
+#include "common/core/random.h"
+#include "common/io/net/side_inbox.h"
+#include "tests/common/io/secure/secure_world.h"
+
+namespace palp::io {
+namespace {
+
+using link::Role;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using test::kElsewhere;
+using test::kPatientAt;
+using test::kSurgeonAt;
+using test::Parcel;
+using test::World;
+
+bool is_path(std::span<const std::byte> bytes) {
+  const auto header = link::parse_header(bytes);
+  return header && header->type == link::PacketType::Path;
+}
+
+/// Seals so many zeros in place of a telegram, properly and of any length, and keeps them.
+class LongWords final : public link::PacketProtection {
+ public:
+  LongWords(std::unique_ptr<link::PacketProtection> inner,
+            const std::size_t& wanted,
+            std::vector<std::byte>& kept)
+      : inner_{std::move(inner)}, wanted_{wanted}, kept_{kept} {}
+  [[nodiscard]] std::size_t overhead() const noexcept override { return inner_->overhead(); }
+  std::size_t seal(const link::Header& header,
+                   std::span<const std::byte> plain,
+                   std::span<std::byte> out) noexcept override {
+    if (wanted_ == 0) return inner_->seal(header, plain, out);
+    kept_.resize(wanted_);
+    const std::vector<std::byte> zeros(wanted_ - link::kHeaderSize - overhead());
+    EXPECT_EQ(inner_->seal(header, zeros, kept_), wanted_);
+    return 0;  // the link sends nothing
+  }
+  tl::expected<std::size_t, link::Rejection> open(std::span<const std::byte> datagram,
+                                                  std::span<std::byte> plain) noexcept override {
+    return inner_->open(datagram, plain);
+  }
+
+ private:
+  std::unique_ptr<link::PacketProtection> inner_;
+  const std::size_t& wanted_;
+  std::vector<std::byte>& kept_;
+};
+
+TEST(RoamingTest, WhatIsLongerThanADatagramOfOursIsRefusedHoweverWellSealed) {
+  for (const std::size_t size : {1199U, 1200U, 1201U, 1202U, 1500U, 9000U}) {
+    World world{"long"};
+    std::size_t wanted = 0;
+    std::vector<std::byte> sealed;
+    world.surgeon->wrap_protection = [&](auto inner) {
+      return std::make_unique<LongWords>(std::move(inner), wanted, sealed);
+    };
+    world.run(seconds{1});
+    ASSERT_TRUE(world.live());
+    wanted = size;
+    world.surgeon->tick(world.now);
+    const auto out = world.patient->session_endpoint.hear(sealed, kElsewhere, world.now);
+    EXPECT_EQ(out.detours, size <= link::kDatagramSizeMax) << size;
+    const SideDatagram aside{sealed, kElsewhere, world.now};
+    EXPECT_EQ(aside.datagram().size(), std::min(size, link::kDatagramSizeMax));
+    EXPECT_TRUE(
+        std::ranges::equal(aside.datagram(), std::span{sealed}.first(aside.datagram().size())));
+  }
+}
+
+TEST(RoamingTest, ThePatientFollowsTheSurgeonToANewAddress) {
+  World world{"roam"};
+  world.run(seconds{1});
+  world.surgeon_seen_at = kElsewhere;
+  world.run(milliseconds{60});
+  ASSERT_EQ(world.patient->moved_to.size(), 1U);
+  EXPECT_TRUE(world.patient->moved_to[0] == kElsewhere);
+  world.run(seconds{1});
+  EXPECT_TRUE(world.live());
+  EXPECT_EQ(world.patient->established.size(), 1U) << "no new session, no new handshake";
+  EXPECT_EQ(world.patient->rekeyed, 0);
+}
+
+TEST(RoamingTest, AnOldTelegramFromElsewhereMovesNobody) {
+  World world{"spoof"};
+  world.run(seconds{1});
+  world.patient->tick(world.now);  // takes what was on the way
+  for (const auto& bytes : world.recorded) {
+    const auto out = world.patient->session_endpoint.hear(bytes, kElsewhere, world.now);
+    EXPECT_TRUE(out.letters.empty());
+    EXPECT_FALSE(out.detours);
+    EXPECT_FALSE(out.moved_to);
+  }
+}
+
+TEST(RoamingTest, AnOldTelegramMovesNobodyAfterAChangeOfAddressEither) {
+  World world{"after"};
+  world.run(seconds{1});
+  world.surgeon_seen_at = kElsewhere;
+  world.run(milliseconds{100});
+  ASSERT_EQ(world.patient->moved_to.size(), 1U);
+  world.patient->tick(world.now);
+  const Endpoint third = *resolve_endpoint("127.0.0.3:1000");
+  for (const auto& bytes : world.recorded) {
+    const auto out = world.patient->session_endpoint.hear(bytes, third, world.now);
+    EXPECT_TRUE(out.letters.empty());
+    EXPECT_FALSE(out.detours);
+  }
+}
+
+TEST(RoamingTest, TelegramsTakenOffTheWayMoveNobodyAndDrawLittle) {
+  World world{"steal"};
+  world.run(seconds{1});
+  world.elsewhere_watched = kElsewhere;
+  std::size_t in = 0;
+  // Somebody on the way takes telegrams off and sends them from elsewhere, but cannot answer.
+  for (int i = 0; i < 10'000; ++i, world.now += milliseconds{1}) {
+    world.surgeon->tick(world.now);
+    world.patient->tick(world.now);
+    if (i < 300) {
+      for (auto& bytes : std::exchange(world.surgeon->wire.out, {})) {
+        in += bytes.size();
+        test::Parcel stolen{world.now, false, kPatientAt, kElsewhere, bytes};
+        world.arrive(stolen, *world.patient);
+      }
+    }
+    world.pass(*world.surgeon, *world.patient, kSurgeonAt);
+    world.pass(*world.patient, *world.surgeon, kPatientAt);
+  }
+  std::size_t out = 0;
+  for (const auto& bytes : world.watched) out += bytes.size();
+  EXPECT_GT(out, 0U);
+  EXPECT_LE(out, 3 * in);
+  EXPECT_EQ(std::ranges::count_if(world.watched, is_path), 1);
+  EXPECT_TRUE(world.patient->moved_to.empty());
+  EXPECT_TRUE(world.live());
+}
+
+TEST(RoamingTest, AThiefWhoIsFasterThanTheSenderKeepsHimFromNothing) {
+  const Endpoint thief = *resolve_endpoint("127.0.0.3:1000");
+  for (const std::size_t ahead : {0U, 5U}) {  // telegrams
+    World world{"faster"};
+    world.run(seconds{1});
+    world.surgeon_seen_at = kElsewhere;
+    world.elsewhere_watched = thief;
+    std::size_t in = 0;
+    std::deque<std::vector<std::byte>> behind;
+    for (int i = 0; i < 400; ++i, world.now += milliseconds{1}) {
+      world.surgeon->tick(world.now);
+      world.patient->tick(world.now);
+      for (auto& bytes : std::exchange(world.surgeon->wire.out, {})) {
+        in += bytes.size();
+        test::Parcel stolen{world.now, false, kPatientAt, thief, bytes};
+        world.arrive(stolen, *world.patient);
+        behind.push_back(bytes);
+      }
+      for (; behind.size() > ahead; behind.pop_front()) {
+        world.surgeon->wire.out.push_back(behind.front());
+      }
+      world.pass(*world.surgeon, *world.patient, kElsewhere);
+      world.pass(*world.patient, *world.surgeon, kPatientAt);
+    }
+    ASSERT_EQ(world.patient->moved_to.size(), 1U) << ahead;
+    EXPECT_TRUE(world.patient->moved_to[0] == kElsewhere);
+    EXPECT_TRUE(world.live());
+    std::size_t out = 0;
+    for (const auto& bytes : world.watched) out += bytes.size();
+    EXPECT_LE(out, 3 * in);
+  }
+}
+
+/// Sees everything, drops nothing, and is faster than the way by `lead`. Sends copies of the
+/// surgeon's words from its own address, and hands what comes there to the surgeon.
+struct Thief {
+  Thief(World& the_world, Duration its_lead, bool lies) : world{the_world}, lead{its_lead} {
+    spoofs = lies;
+    world.observer = [this](const Parcel& parcel) { see(parcel); };
+  }
+  void see(const Parcel& parcel) {
+    if (parcel.from == world.surgeon_seen_at && active) {
+      const TimePoint due = std::max(world.now, parcel.due - lead);
+      world.throw_in({due, parcel.letter, kPatientAt, address, parcel.bytes});
+    } else if (parcel.from == kPatientAt && parcel.to.same_host(address)) {
+      const bool question = is_path(parcel.bytes);
+      questions += question ? 1 : 0;
+      telegrams += parcel.letter ? 0 : 1;
+      if (question && last_question) pause_min = std::min(pause_min, world.now - *last_question);
+      if (question) last_question = world.now;
+      const Endpoint& from = spoofs ? kPatientAt : address;
+      if (question) world.throw_in({world.now, true, world.surgeon_seen_at, from, parcel.bytes});
+    }
+  }
+
+  World& world;
+  Duration lead;
+  bool spoofs{};  ///< it can send in the patient's name
+  bool active{true};
+  Endpoint address{*resolve_endpoint("127.0.0.3:1000")};
+  int questions{};
+  int telegrams{};
+  std::optional<TimePoint> last_question;
+  Duration pause_min{Duration::max()};
+};
+
+TEST(ThiefTest, CopiesOfTheFirstWordsOfASessionKeepNobodyFromIt) {
+  for (const int lead : {0, 20}) {
+    World world{"first-words"};
+    world.way = milliseconds{25};
+    Thief thief{world, milliseconds{lead}, true};
+    world.run(seconds{2});
+    EXPECT_TRUE(world.live());
+    EXPECT_TRUE(world.patient->hears == kSurgeonAt);
+    EXPECT_EQ(world.patient->established.size(), 1U);
+    EXPECT_EQ(thief.telegrams + thief.questions, 0);
+  }
+}
+
+/// A session in which the surgeon is behind something that changes addresses, or not.
+void begin(World& world, bool translated) {
+  const Endpoint inside = *resolve_endpoint("10.0.0.7:1000");
+  world.way = milliseconds{25};
+  world.surgeon->session_endpoint.set_own_address(translated ? inside : kSurgeonAt);
+  world.run(seconds{2});
+  ASSERT_TRUE(world.live());
+}
+
+TEST(ThiefTest, WhoCopiesEachTelegramFasterThanItsSenderGetsNothingAndKeepsNobodyFromAnything) {
+  for (const bool spoofs : {false, true}) {
+    for (const int lead : {0, 1, 5, 20}) {
+      World world{"thief"};
+      begin(world, true);
+      Thief thief{world, milliseconds{lead}, spoofs};
+      world.each_ms = [&] { ASSERT_TRUE(world.live()); };
+      world.run(lead == 20 ? seconds{60} : seconds{5});
+      EXPECT_EQ(thief.telegrams, 0);
+      EXPECT_EQ(thief.questions, 0) << "where the surgeon is heard, nobody else is asked";
+      EXPECT_TRUE(world.patient->moved_to.empty());
+      EXPECT_EQ(world.patient->link.health(world.now).lost, 0U);
+    }
+  }
+}
+
+TEST(ThiefTest, WhoComesAndGoesUnderManyAddressesMovesNobody) {
+  World world{"flapping"};
+  begin(world, true);
+  Thief thief{world, milliseconds{20}, true};
+  std::uint64_t draws = 0;
+  world.each_ms = [&] {
+    ASSERT_TRUE(world.live());
+    const std::uint64_t bits = random_bits(5, 6, ++draws);
+    thief.active = bits % 7 < 4;
+    thief.address = *resolve_endpoint("127.0.0.3:" + std::to_string(1000 + bits % 50));
+  };
+  world.run(seconds{20});
+  EXPECT_EQ(thief.telegrams + thief.questions, 0);
+  EXPECT_TRUE(world.patient->moved_to.empty());
+}
+
+/// The straight way loses all for a while, again and again; copies are not lost.
+TEST(ThiefTest, InGapsOfTheStraightWayHeIsAskedOnceASecondAndTheSurgeonIsFollowedBack) {
+  for (const bool spoofs : {false, true}) {
+    World world{"gaps"};
+    begin(world, true);
+    Thief thief{world, milliseconds{20}, spoofs};
+    const TimePoint began = world.now;
+    world.lose_after_observer = [&](const Parcel& parcel) {
+      return parcel.from == kSurgeonAt &&
+             (world.now - began) % milliseconds{1500} < milliseconds{80};
+    };
+    world.each_ms = [&] { ASSERT_TRUE(world.live()); };
+    world.run(seconds{30});
+    EXPECT_GE(thief.questions, 5);
+    EXPECT_GE(thief.pause_min, seconds{1});
+    EXPECT_LE(world.patient->moved_to.size(), spoofs ? 30U : 0U);
+    world.lose_after_observer = nullptr;
+    world.run(seconds{3});
+    const std::size_t moves = world.patient->moved_to.size();
+    thief.telegrams = 0;
+    world.run(seconds{3});
+    EXPECT_EQ(thief.telegrams, 0);
+    EXPECT_TRUE(world.patient->hears == kSurgeonAt);
+    EXPECT_EQ(world.patient->moved_to.size(), moves);
+    EXPECT_EQ(world.patient->established.size(), 1U);
+  }
+}
+
+TEST(ThiefTest, ASurgeonThatIsSeenUnderItsOwnAddressAnswersForNoOther) {
+  World world{"untranslated"};
+  begin(world, false);
+  Thief thief{world, milliseconds{20}, true};
+  world.lose_after_observer = [&](const Parcel& parcel) { return parcel.from == kSurgeonAt; };
+  world.run(seconds{3});
+  EXPECT_GE(thief.questions, 2);
+  EXPECT_TRUE(world.patient->moved_to.empty());
+}
+
+TEST(RoamingTest, MovesAreASecondApartHoweverOftenTheAddressChanges) {
+  World world{"pace"};
+  begin(world, true);
+  TimePoint moved_at{};
+  std::size_t moves = 0;
+  world.each_ms = [&] {
+    ASSERT_TRUE(world.live());
+    if (world.patient->moved_to.size() == moves) return;
+    EXPECT_TRUE(moves == 0 || world.now - moved_at >= seconds{1});
+    moves = world.patient->moved_to.size();
+    moved_at = world.now;
+  };
+  for (int i = 0; i < 100; ++i) {
+    world.surgeon_seen_at = *resolve_endpoint("127.0.0.1:" + std::to_string(3000 + i % 50));
+    world.run(milliseconds{150});
+  }
+  world.run(seconds{3});
+  EXPECT_TRUE(world.patient->hears == world.surgeon_seen_at);
+}
+
+const Roaming::Straight kSilent{.newest_number = 10, .heard_at = TimePoint{}};
+
+TEST(PathAnswersTest, QuestionsOfThePatientsAddressOnlyAreAnswered) {
+  PathAnswers answers;
+  const PathMessage question{PathMessage::Kind::Question, {std::byte{3}}, kSurgeonAt.bytes()};
+  const auto answer = answers.answer(question, kPatientAt, kPatientAt);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->kind, PathMessage::Kind::Answer);
+  EXPECT_EQ(answer->nonce, question.nonce);
+  EXPECT_EQ(answer->asked, question.asked);
+  EXPECT_FALSE(answers.answer(question, kElsewhere, kPatientAt));
+  EXPECT_FALSE(answers.answer(question, kElsewhere, {}));
+  EXPECT_FALSE(answers.answer(*answer, kPatientAt, kPatientAt)) << "an answer is no question";
+}
+
+TEST(PathMessageTest, IsReadAsItWasWrittenAndInNoOtherSize) {
+  const PathMessage message{PathMessage::Kind::Answer, {std::byte{9}}, kElsewhere.bytes()};
+  const auto framed = message.framed(7);
+  const auto content = std::span{framed}.subspan(link::kHeaderSize);
+  EXPECT_EQ(content.size(), PathMessage::kSize);
+  const auto read = PathMessage::parse(content);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->kind, message.kind);
+  EXPECT_EQ(read->nonce, message.nonce);
+  EXPECT_EQ(read->asked, message.asked);
+  EXPECT_FALSE(PathMessage::parse(content.first(content.size() - 1)));
+  EXPECT_FALSE(PathMessage::parse({}));
+  auto other = framed;
+  other[link::kHeaderSize] = std::byte{2};
+  EXPECT_FALSE(PathMessage::parse(std::span{other}.subspan(link::kHeaderSize)));
+}
+
+TEST(RoamingTest, AnAnswerCountsOnlyFromTheAddressThatItNames) {
+  const TimePoint now{seconds{1}};
+  Roaming roaming;
+  roaming.begin(kSurgeonAt);
+  (void)roaming.ask(kSilent, now);  // of the first address
+  roaming.note(11, kElsewhere, 20, kSilent, now);
+  EXPECT_FALSE(roaming.ask(kSilent, now)) << "longer than what came from there";
+  roaming.note(12, kElsewhere, 200, kSilent, now);
+  auto question = roaming.ask(kSilent, now);
+  ASSERT_TRUE(question);
+  ASSERT_TRUE(question->to == kElsewhere);
+  PathMessage answer = question->message;
+  answer.kind = PathMessage::Kind::Answer;
+  EXPECT_FALSE(roaming.answer(answer, kSurgeonAt, now));
+  EXPECT_FALSE(roaming.move(kSilent, now));
+  answer.asked = kSurgeonAt.bytes();
+  EXPECT_FALSE(roaming.answer(answer, kElsewhere, now));
+  EXPECT_FALSE(roaming.answer(answer, kSurgeonAt, now));
+  EXPECT_FALSE(roaming.answer(question->message, kElsewhere, now)) << "a question is no answer";
+  answer.asked = kElsewhere.bytes();
+  EXPECT_TRUE(roaming.answer(answer, kElsewhere, now));
+  EXPECT_FALSE(roaming.move({.newest_number = 10, .heard_at = now - milliseconds{49}}, now));
+  EXPECT_TRUE(roaming.move(kSilent, now));
+}
+
+}  // namespace
+}  // namespace palp::io
