@@ -91,6 +91,11 @@ struct RunMetrics {
   /// surgeon's process lives and its pedal is down. Not metrics_of()'s: whoever made the ticks
   /// knows.
   double force_step_guarded{};
+  // Of pauses of a site's process. Whoever made the ticks knows.
+  double force_kick{};                 ///< [N], most that the force grew in 10 ms for no motion
+  double force_drop{};                 ///< [N], the same as it fell
+  double energy_given{};               ///< [J], as energy_operator, less what forces gave while the
+                                       ///< process stood still
   double force_peak{};                 ///< [N]
   double contact_force_max{};          ///< [N]
   double phantom_force{kUndefined};    ///< [N], |F_h| in the air in and after a blackout

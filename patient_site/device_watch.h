@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/lapse.h"
 #include "common/core/time.h"
 
 namespace palp::patient {
@@ -34,10 +35,10 @@ class DeviceWatch {
 
   void reset() noexcept { begun_ = false; }
   /// Once a tick while the site follows its law. @returns true: one of them is stuck.
-  [[nodiscard]] bool stuck(const Look& look, Duration dt) noexcept {
+  [[nodiscard]] bool stuck(const Look& look, const Lapse& lapse) noexcept {
     if (!begun_) begin(look);
     begun_ = true;
-    return sensor_stuck(look) || stage_stuck(look, dt);
+    return sensor_stuck(look) || stage_stuck(look, lapse);
   }
 
  private:
@@ -56,14 +57,14 @@ class DeviceWatch {
     highest_ = std::max(highest_, look.tip);
     return highest_ - lowest_ > config_.sensor_travel;
   }
-  [[nodiscard]] bool stage_stuck(const Look& look, Duration dt) noexcept {
+  [[nodiscard]] bool stage_stuck(const Look& look, const Lapse& lapse) noexcept {
     const bool on_its_way = std::abs(look.tip - still_at_) > config_.stage_still;
     if (on_its_way || std::abs(look.target - look.tip) <= config_.stage_error) {
       still_at_ = look.tip;
       still_for_ = Duration{0};
     }
     // A late tick proves no more than a short one: nothing was looked at in between.
-    still_for_ += std::min<Duration>(dt, std::chrono::milliseconds{10});
+    still_for_ += lapse.period;
     return still_for_ > config_.stage_time;
   }
 

@@ -17,8 +17,6 @@ constexpr double kNoiseSmoothing = 1e-3;    // per tick: 1 s
 constexpr double kOutside = 0.5e-3;         // [m], of the learned surface: more than its error
 constexpr double kInside = 1e-3;            // [m], the same to the other side, and some force
 constexpr double kRetractedWithin = 50e-6;  // [m]
-/// A late tick must not buy a bigger step: what the process slept through, the stage has stood.
-constexpr Duration kTickMax = std::chrono::milliseconds{10};
 
 }  // namespace
 
@@ -133,9 +131,10 @@ void MotionGate::note_once(MotionAnswer& answer, NoteCode code, double detail) n
   noted_ = code;
 }
 
-MotionAnswer MotionGate::pass(const MotionRequest& request, Duration dt) noexcept {
+MotionAnswer MotionGate::pass(const MotionRequest& request, const Lapse& lapse) noexcept {
   MotionAnswer answer;
-  const double span = seconds(std::min(dt, kTickMax));
+  // What the process slept through, the stage has stood: a late tick buys no bigger step.
+  const double span = seconds(lapse.period);
   NoteCode condition = NoteCode::None;
   const bool finite = std::isfinite(request.position);
   if (request.state == SiteState::Stopped) {

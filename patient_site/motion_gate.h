@@ -4,6 +4,7 @@
 
 #include "common/core/device_facts.h"
 #include "common/core/filters.h"
+#include "common/core/lapse.h"
 #include "common/core/place.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
@@ -78,7 +79,7 @@ class MotionGate {
   void feel(double tip, double contact_force) noexcept;
   /// Catch up slowly from here: after a gap, at an engagement.
   void resynchronise() noexcept { resynchronising_ = true; }
-  [[nodiscard]] MotionAnswer pass(const MotionRequest& request, Duration dt) noexcept;
+  [[nodiscard]] MotionAnswer pass(const MotionRequest& request, const Lapse& lapse) noexcept;
 
   /// No contact felt, or the tip well outside: the stage may begin to follow, or change its place.
   [[nodiscard]] bool free_to_follow(double tip) const noexcept;

@@ -86,7 +86,7 @@ void PatientControl::take_force(const std::optional<ForceSample>& read) noexcept
 }
 
 /// Only while the tip has somewhere to go: the state is that of the tick before, and so the target.
-void PatientControl::watch_devices(Duration dt) noexcept {
+void PatientControl::watch_devices(const Lapse& lapse) noexcept {
   if (now_.state != SiteState::Engaged) {
     watch_.reset();
     return;
@@ -95,11 +95,12 @@ void PatientControl::watch_devices(Duration dt) noexcept {
                                    .target = now_.command,
                                    .force = now_.contact_force,
                                    .in_tissue = gate_.inside(now_.position)},
-                                  dt);
+                                  lapse);
   device_faulted_ = device_faulted_ || stuck;
 }
 
-SupervisorOutput PatientControl::supervise(const PatientInputs& given) noexcept {
+SupervisorOutput PatientControl::supervise(const PatientInputs& given,
+                                           const Lapse& lapse) noexcept {
   SupervisorInput in;
   in.link = given.link.state;
   in.session_id = given.link.session_id;
@@ -107,6 +108,7 @@ SupervisorOutput PatientControl::supervise(const PatientInputs& given) noexcept 
   in.peer_heard = given.arrived.peer_heard;
   in.emergency_stop = given.user.emergency_stop;
   in.device_faulted = device_faulted_;
+  in.overslept = lapse.passed() > kLateMax;
   in.force_exceeded = now_.contact_force > config_.gate.force_stop;
   in.local_reset = given.user.resets != resets_;
   in.free_to_follow = gate_.free_to_follow(now_.position);
@@ -143,14 +145,14 @@ coupling::PatientInput PatientControl::law_input(const link::Arrivals& arrived) 
   return in;
 }
 
-MotionAnswer PatientControl::limit(double target, const Place& place, Duration dt) noexcept {
+MotionAnswer PatientControl::limit(double target, const Place& place, const Lapse& lapse) noexcept {
   const MotionAnswer answer = gate_.pass({.state = now_.state,
                                           .position = target,
                                           .place = place,
                                           .tip = now_.position,
                                           .contact_force = now_.contact_force,
                                           .stands = now_.place},
-                                         dt);
+                                         lapse);
   if (answer.note != NoteCode::None) account_.note(answer.note, answer.detail);
   if (answer.place_note != NoteCode::None) {
     account_.note(answer.place_note, is_finite(place) ? distance(place, answer.place) : 0);
@@ -164,13 +166,13 @@ MotionAnswer PatientControl::limit(double target, const Place& place, Duration d
 }
 
 PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
-  const Duration dt = account_.begin_tick(in.now);
+  const Lapse lapse = account_.begin_tick(in.now);
   now_.at = in.now;
   device_faulted_ = false;
   take_stage(in.stage);
   take_force(in.force);
   gate_.feel(now_.position, now_.contact_force);
-  watch_devices(dt);
+  watch_devices(lapse);
   begun_ = true;
 
   session_began_ = in.link.session_id != now_.link.session_id;
@@ -181,15 +183,15 @@ PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
   account_.arrived(in.arrived);
 
   const SiteState before = now_.state;
-  const SupervisorOutput decision = supervise(in);
+  const SupervisorOutput decision = supervise(in, lapse);
   record_decision(decision, before);
   if (decision.engaged_now) coupling::begin_epoch(parts_.law, gate_.command());
   if (decision.engaged_now || decision.resumed_now) gate_.resynchronise();
 
-  const coupling::PatientOutput wanted = coupling::step(parts_.law, law_input(in.arrived), dt);
+  const coupling::PatientOutput wanted = coupling::step(parts_.law, law_input(in.arrived), lapse);
   const bool place_asked = in.arrived.peer_heard && now_.state == SiteState::Engaged;
   const MotionAnswer answer =
-      limit(wanted.target_position, place_asked ? in.arrived.peer.place : gate_.place(), dt);
+      limit(wanted.target_position, place_asked ? in.arrived.peer.place : gate_.place(), lapse);
   now_.depth = in.depth;
   return {.halt = answer.halt,
           .target = {answer.position, answer.place},

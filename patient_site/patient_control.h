@@ -79,12 +79,12 @@ class PatientControl {
  private:
   void take_stage(const StageState& read) noexcept;
   void take_force(const std::optional<ForceSample>& read) noexcept;
-  void watch_devices(Duration dt) noexcept;
+  void watch_devices(const Lapse& lapse) noexcept;
   void note_not_finite(bool finite, bool& was_finite) noexcept;
-  [[nodiscard]] SupervisorOutput supervise(const PatientInputs& in) noexcept;
+  [[nodiscard]] SupervisorOutput supervise(const PatientInputs& in, const Lapse& lapse) noexcept;
   void record_decision(const SupervisorOutput& decision, SiteState before) noexcept;
   [[nodiscard]] coupling::PatientInput law_input(const link::Arrivals& arrived) const noexcept;
-  [[nodiscard]] MotionAnswer limit(double target, const Place& place, Duration dt) noexcept;
+  [[nodiscard]] MotionAnswer limit(double target, const Place& place, const Lapse& lapse) noexcept;
   [[nodiscard]] DepthReport depth_report() const noexcept;
   void give_contact_sample() noexcept;
   void record_readings(const PatientInputs& in) noexcept;

@@ -63,13 +63,15 @@ PatientSupervisor::Arrow PatientSupervisor::decide(const SupervisorInput& in) co
   const Arrow lost = by_link(in);
   if (lost.reason != NoteCode::None) return lost;
   if (state_ == SiteState::Clutched) {
-    if (!engagement(in)) return {};
+    if (!engagement(in) || in.overslept) return {};
     // Nobody could ever engage again over a tip that stands in the tissue: it is walked out.
     if (!in.free_to_follow) return {SiteState::Retract, NoteCode::EngageRefusedForce};
     return {SiteState::Engaged, NoteCode::PeerEngaged};
   }
   // Engaged or Hold.
   if (session_began(in)) return {SiteState::Retract, NoteCode::SessionBegan};
+  // What it was told while it slept is old: the stage stays until the pedal is pressed again.
+  if (in.overslept) return {SiteState::Clutched, NoteCode::TickLate};
   if (state_ == SiteState::Hold && in.link == LinkState::Hold) return {};
   const Arrow told = by_peer(in);
   if (told.reason != NoteCode::None) return told;
@@ -103,7 +105,7 @@ SupervisorOutput PatientSupervisor::step(const SupervisorInput& in) noexcept {
   } else if (asked && (before == SiteState::Clutched || before == SiteState::Engaged ||
                        before == SiteState::Hold)) {
     epoch_ = in.peer.epoch;
-    out.refused = NoteCode::EngageRefusedForce;
+    out.refused = in.overslept ? NoteCode::TickLate : NoteCode::EngageRefusedForce;
     out.detail = in.contact_force;
   }
   if (out.reason == NoteCode::ForceLimit) out.detail = in.contact_force;

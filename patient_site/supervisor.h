@@ -16,6 +16,7 @@ struct SupervisorInput {
   bool peer_heard{};
   bool emergency_stop{};
   bool device_faulted{};
+  bool overslept{};        ///< this tick is late beyond what a law may go on over
   bool force_exceeded{};   ///< the contact force is beyond what a site may go on with
   bool local_reset{};      ///< the user's way out of Stopped, true for one tick
   bool free_to_follow{};   ///< no contact, or clear of the surface

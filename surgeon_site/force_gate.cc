@@ -9,9 +9,6 @@
 namespace palp::surgeon {
 namespace {
 
-/// A late tick must not buy a bigger step of a fade.
-constexpr Duration kFadeTickMax = std::chrono::milliseconds{10};
-
 constexpr bool may_carry_force(SiteState state) noexcept {
   return state == SiteState::Engaged || state == SiteState::Hold || state == SiteState::Retract;
 }
@@ -37,14 +34,15 @@ double ForceGate::limit() const noexcept {
          (config_.force_max - config_.force_continuous) * std::clamp(room, 0.0, 1.0);
 }
 
-void ForceGate::heat_up(Duration dt) noexcept {
-  const double share = std::min(1.0, seconds(dt) / config_.thermal_time);
+void ForceGate::heat_up(Duration passed) noexcept {
+  const double share = std::min(1.0, seconds(passed) / config_.thermal_time);
   heat_ += share * (force_ * force_ - heat_);
 }
 
-ForceAnswer ForceGate::pass(const ForceRequest& asked, Duration dt) noexcept {
-  heat_up(dt);
-  guard_left_ = std::max(Duration{0}, guard_left_ - dt);
+ForceAnswer ForceGate::pass(const ForceRequest& asked, const Lapse& lapse) noexcept {
+  heat_up(lapse.passed());
+  guard_left_ = std::max(Duration{0}, guard_left_ - lapse.passed());
+  fading_ = fading_ || lapse.late();
   if (asked.state != state_ || asked.pedal_held != pedal_held_) {
     fading_ = true;
     guard_left_ = config_.fade_guard;
@@ -61,7 +59,7 @@ ForceAnswer ForceGate::pass(const ForceRequest& asked, Duration dt) noexcept {
     force_ = 0;
     fading_ = true;
   } else if (fading_ || guard_left_ > Duration{0}) {
-    const double step = config_.fade_slew * seconds(std::min(dt, kFadeTickMax));
+    const double step = config_.fade_slew * seconds(lapse.period);
     // Through an open gate only growing forces are faded in: holding one up that the law lets go of
     // would give the hand energy behind the law's back.
     const double from =

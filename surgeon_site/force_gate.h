@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "common/core/lapse.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
 #include "common/record/notes.h"
@@ -37,18 +38,19 @@ struct ForceAnswer {
 /// The last word before the hand. Limits the force to the device's peak and, by an i^2 t account
 /// of the motors' heat, to its continuous force; passes none in Parked, Clutched and Stopped or
 /// while the pedal is up; and turns every jump that a change of state or pedal would make into a
-/// fade, where the force grows or the gate closes: there no faster than the law can pay for.
-/// Between changes it leaves the law's force alone. Thread: rt. A value.
+/// fade, where the force grows or the gate closes: there no faster than the law can pay for. So it
+/// does with what a late tick finds. Between changes it leaves the law's force alone. Thread: rt. A
+/// value.
 class ForceGate {
  public:
   explicit ForceGate(const ForceGateConfig& config) noexcept;
-  ForceAnswer pass(const ForceRequest& asked, Duration dt) noexcept;
+  ForceAnswer pass(const ForceRequest& asked, const Lapse& lapse) noexcept;
 
   [[nodiscard]] double force() const noexcept { return force_; }  ///< [N], of the last pass()
 
  private:
   [[nodiscard]] double limit() const noexcept;
-  void heat_up(Duration dt) noexcept;
+  void heat_up(Duration passed) noexcept;
 
   ForceGateConfig config_;
   double force_{};     ///< [N]

@@ -15,7 +15,7 @@ bool SurgeonSupervisor::pedal_pressed(const SupervisorInput& in) const noexcept 
 }
 
 bool SurgeonSupervisor::ready_to_engage(const SupervisorInput& in) const noexcept {
-  return pedal_pressed(in) && in.link == LinkState::Live && in.peer_heard &&
+  return pedal_pressed(in) && !in.overslept && in.link == LinkState::Live && in.peer_heard &&
          in.peer.state == SiteState::Clutched && in.tip_known;
 }
 
@@ -49,11 +49,13 @@ SurgeonSupervisor::Arrow SurgeonSupervisor::from_clutched(
   return {};
 }
 
-/// What ends a session of the hand whatever the gap: in Engaged and in Hold alike.
+/// What ends a session of the hand whatever the gap: in Engaged and in Hold alike. What happened to
+/// the pedal while the site slept nobody knows: it must be pressed again.
 SurgeonSupervisor::Arrow SurgeonSupervisor::by_peer_or_pedal(
     const SupervisorInput& in) const noexcept {
   if (session_began(in)) return {SiteState::Retract, NoteCode::SessionBegan};
   if (in.link == LinkState::Down) return {SiteState::Retract, NoteCode::LinkDown};
+  if (in.overslept) return {SiteState::Clutched, NoteCode::TickLate};
   if (in.peer_heard && in.peer.epoch >= epoch_) {
     if (in.peer.state == SiteState::Retract || in.peer.state == SiteState::Parked) {
       return {SiteState::Retract, NoteCode::PeerRetracting};

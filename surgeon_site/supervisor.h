@@ -24,6 +24,7 @@ struct SupervisorInput {
   bool pedal_held{};
   bool emergency_stop{};
   bool device_faulted{};
+  bool overslept{};            ///< this tick is late beyond what a law may go on over
   bool local_reset{};          ///< the user's way out of Stopped, true for one tick
   LinkState link{};            ///< Live only once the round trip was measured
   std::uint64_t session_id{};  ///< 0: none

@@ -9,9 +9,6 @@ namespace {
 
 using record::NoteCode;
 
-/// What a law may do in one tick is bounded by time; what the process slept through buys nothing.
-constexpr Duration kLawTickMax = std::chrono::milliseconds{10};
-
 ForceGateConfig within_device(ForceGateConfig gate, const HandFacts& hand) noexcept {
   gate.force_max = std::min(gate.force_max, hand.force_peak);
   gate.force_continuous = std::min(gate.force_continuous, hand.force_continuous);
@@ -72,12 +69,14 @@ void SurgeonControl::hear(const link::Arrivals& arrived) noexcept {
   }
 }
 
-SupervisorOutput SurgeonControl::supervise(const SurgeonInputs& given) noexcept {
+SupervisorOutput SurgeonControl::supervise(const SurgeonInputs& given,
+                                           const Lapse& lapse) noexcept {
   SupervisorInput in;
   in.now = now_.at;
   in.pedal_held = hand_.pedal_held;
   in.emergency_stop = hand_.emergency_stop || given.user.emergency_stop;
   in.device_faulted = hand_.faulted;
+  in.overslept = lapse.passed() > kLateMax;
   in.local_reset = given.user.resets != resets_;
   in.link = now_.link.state;
   in.session_id = now_.link.session_id;
@@ -128,7 +127,7 @@ double SurgeonControl::pressing_force() const noexcept {
 }
 
 SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
-  const Duration dt = account_.begin_tick(in.now);
+  const Lapse lapse = account_.begin_tick(in.now);
   now_.at = in.now;
   take_hand(in.hand);
   session_began_ = std::exchange(now_.link, in.link).session_id != in.link.session_id;
@@ -136,15 +135,14 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
   hear(in.arrived);
 
   const SiteState before = now_.state;
-  const SupervisorOutput decision = supervise(in);
+  const SupervisorOutput decision = supervise(in, lapse);
   record_decision(decision, before);
   if (decision.engaged_now) engage();
 
   const coupling::SurgeonInput given = law_input(in.arrived, decision.engaged_now);
-  const coupling::SurgeonOutput wanted =
-      coupling::step(parts_.law, given, std::min(dt, std::max(kLawTickMax, config_.period)));
+  const coupling::SurgeonOutput wanted = coupling::step(parts_.law, given, lapse);
   const bool cut = hand_.faulted || hand_.emergency_stop || in.user.emergency_stop;
-  answer_ = gate_.pass({wanted.force, now_.state, hand_.pedal_held, cut, wanted.fade_max}, dt);
+  answer_ = gate_.pass({wanted.force, now_.state, hand_.pedal_held, cut, wanted.fade_max}, lapse);
   force_before_ = now_.force;
   now_.force = answer_.force;
   now_.gate_acted = answer_.acted;

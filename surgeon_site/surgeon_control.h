@@ -75,7 +75,7 @@ class SurgeonControl {
   void take_hand(const HandState& read) noexcept;
   void begin_session(const DeviceFacts& peer) noexcept;
   void hear(const link::Arrivals& arrived) noexcept;
-  [[nodiscard]] SupervisorOutput supervise(const SurgeonInputs& in) noexcept;
+  [[nodiscard]] SupervisorOutput supervise(const SurgeonInputs& in, const Lapse& lapse) noexcept;
   void record_decision(const SupervisorOutput& decision, SiteState before) noexcept;
   void engage() noexcept;
   [[nodiscard]] coupling::SurgeonInput law_input(const link::Arrivals& arrived,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 /// Small discrete filters used on both sites. Values: copy them freely. Thread: their owner's.
 namespace palp {
 
@@ -10,6 +12,8 @@ class LowPass {
   LowPass(double cut_off, double period) noexcept;
   void reset(double value) noexcept { value_ = value; }
   double step(double input) noexcept { return value_ += gain_ * (input - value_); }
+  /// As `periods` >= 1 steps of the same input.
+  double step(double input, std::int64_t periods) noexcept;
   [[nodiscard]] double value() const noexcept { return value_; }
   [[nodiscard]] double gain() const noexcept { return gain_; }
 
@@ -18,12 +22,13 @@ class LowPass {
   double value_{};  ///< [unit of the input]
 };
 
-/// Rate of a sampled position [m] through a low pass: [m/s]. The first sample gives 0.
+/// Rate of a sampled position [m] through a low pass: [m/s]. The first sample gives 0. A sample
+/// that comes `periods` after the one before is the end of an even motion in between.
 class VelocityEstimate {
  public:
   VelocityEstimate(double cut_off, double period) noexcept;
   void reset() noexcept;
-  double step(double position) noexcept;
+  double step(double position, std::int64_t periods = 1) noexcept;
   [[nodiscard]] double value() const noexcept { return filter_.value(); }
 
  private:

@@ -59,11 +59,15 @@ inline void begin_epoch(SurgeonCoupling& law, double position) noexcept {
 inline void begin_epoch(PatientCoupling& law, double position) noexcept {
   with_half(law, [&](auto& half) { half.begin_epoch(position); });
 }
-inline SurgeonOutput step(SurgeonCoupling& law, const SurgeonInput& in, Duration dt) noexcept {
-  return with_half(law, [&](auto& half) { return half.step(in, dt); });
+inline SurgeonOutput step(SurgeonCoupling& law,
+                          const SurgeonInput& in,
+                          const Lapse& lapse) noexcept {
+  return with_half(law, [&](auto& half) { return half.step(in, lapse); });
 }
-inline PatientOutput step(PatientCoupling& law, const PatientInput& in, Duration dt) noexcept {
-  return with_half(law, [&](auto& half) { return half.step(in, dt); });
+inline PatientOutput step(PatientCoupling& law,
+                          const PatientInput& in,
+                          const Lapse& lapse) noexcept {
+  return with_half(law, [&](auto& half) { return half.step(in, lapse); });
 }
 
 }  // namespace palp::coupling

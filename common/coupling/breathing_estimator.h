@@ -31,6 +31,7 @@ class BreathingEstimator {
 
   explicit BreathingEstimator(double period) noexcept;  ///< [s], between calls of step()
   void step() noexcept;                                 ///< time goes on
+  void sleep(double span) noexcept { time_ += span; }   ///< [s], in which nobody looked
   /// The tip at `position` [m] meets `force` [N], both through the same filters. Every tick.
   void see(double position, double force) noexcept;
   /// Another place, and with it another surface and tissue; it breathes with the same breath.

@@ -27,6 +27,7 @@ constexpr std::size_t kNear = 4;             // candidates around the best that 
 constexpr std::size_t kStride = 12;          // of the others, one in so many
 constexpr std::size_t kEdge = 3;             // so near the grid's end it is moved
 constexpr double kAstray = 3e-3;             // [m], a surface above where the tip felt nothing
+constexpr std::int64_t kFollowed = 64;       // periods, in which all that is short settles
 /// [m], where the force is `force` [N]; 8 mm at most.
 double depth_of(const ContactModel& model, double force) noexcept {
   double depth = 0;
@@ -266,10 +267,13 @@ void ContactEstimator::publish(const Solution& solution) noexcept {
   model_.depth_max = std::max(0.0, here_.deepest - model_.surface);
 }
 
-/// Where the surface must be for the present force: depth and force through the same filters.
-void ContactEstimator::watch_surface(double position) noexcept {
+void ContactEstimator::track(double position) noexcept {
   sensed_.raw_tip += gain_ * (position - sensed_.raw_tip);
   sensed_.raw_tip_mean += kMeanGain * (sensed_.raw_tip - sensed_.raw_tip_mean);
+}
+
+/// Where the surface must be for the present force: depth and force through the same filters.
+void ContactEstimator::watch_surface() noexcept {
   swing_.step();
   if (model_.version == 0) return;
   double gain = 1;
@@ -286,12 +290,14 @@ double ContactEstimator::sense(double position, double force) noexcept {
     sensed_.raw_tip = sensed_.raw_tip_mean = position;
     sensed_.started = true;
     sensed_.position_before = position;
+    sensed_.force_before = force;
     sensed_.tip.reset(position);
     sensed_.tip_mean = position;
   }
   // The transducer's pole acted all through the period: the tip was half-way on average.
   const double moving = 0.5 * (position + sensed_.position_before);
   sensed_.position_before = position;
+  sensed_.force_before = force;
   const Swing swing = swing_.swing();
   model_.swing = swing.now;
   model_.swing_quadrature = swing.quadrature;
@@ -303,8 +309,29 @@ double ContactEstimator::sense(double position, double force) noexcept {
   sensed_.force_mean += kMeanGain * (force - sensed_.force_mean);
   sensed_.tip_mean += kMeanGain * (sensed_.tip.value() - sensed_.tip_mean);
 
-  watch_surface(moving);
+  track(moving);
   return halfway;
+}
+
+/// What filters would have seen of periods in which nobody looked: an even way to where the tip is
+/// now. No such reading becomes an equation, or says where a surface is.
+void ContactEstimator::follow(double position, double force, std::int64_t periods) noexcept {
+  const std::int64_t followed = std::min(periods, kFollowed);
+  swing_.sleep(static_cast<double>(periods) * config_.period);
+  const double unseen = static_cast<double>(periods - followed) * config_.period;
+  for (std::size_t k = 0; k < beside_.past.size(); ++k) {
+    beside_.past[k] -= std::expm1(-unseen / kModelTimes[k]) * (elastic() - beside_.past[k]);
+  }
+  const double position_step =
+      (position - sensed_.position_before) / static_cast<double>(followed + 1);
+  const double force_step = (force - sensed_.force_before) / static_cast<double>(followed + 1);
+  for (std::int64_t i = 0; i < followed; ++i) {
+    const double halfway =
+        sense(sensed_.position_before + position_step, sensed_.force_before + force_step);
+    if (!placed_) continue;
+    filter_shapes(halfway);
+    relax();
+  }
 }
 
 /// `threshold` [N]: from here on a mean force counts as contact.
@@ -327,8 +354,10 @@ void ContactEstimator::begin_contact() noexcept {
   publish(prior);
 }
 
-void ContactEstimator::step(double position, double force) noexcept {
+void ContactEstimator::step(double position, double force, std::int64_t periods) noexcept {
+  if (periods > 1 && sensed_.started) follow(position, force, periods - 1);
   const double halfway = sense(position, force);
+  watch_surface();
   // Six standard deviations of a mean over 10 ms.
   const double threshold = std::max(config_.detection_force, 1.4 * noise_.deviation());
   const bool contact = sensed_.force_mean >= threshold && noise_.known();

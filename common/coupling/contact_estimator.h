@@ -34,8 +34,9 @@ class ContactEstimator {
  public:
   explicit ContactEstimator(const ContactEstimatorConfig& config) noexcept;
 
-  /// Once per control period. `force` [N] as measured, noise may make it negative.
-  void step(double position, double force) noexcept;
+  /// Once per control period, or where a tick came late, `periods` after the last. `force` [N] as
+  /// measured, noise may make it negative.
+  void step(double position, double force, std::int64_t periods = 1) noexcept;
   /// Another place along the surface: what was learned becomes what is expected.
   void new_place() noexcept;
 
@@ -56,6 +57,7 @@ class ContactEstimator {
 
   /// @returns the way the tip went in this period, half of it on average, the surface at rest [m].
   [[nodiscard]] double sense(double position, double force) noexcept;
+  void follow(double position, double force, std::int64_t periods) noexcept;
   void doubt(double threshold) noexcept;
   void begin_contact() noexcept;
   void place_grid(double centre) noexcept;
@@ -66,7 +68,8 @@ class ContactEstimator {
   void publish(const Solution& solution) noexcept;
   void begin_again() noexcept;
   void withdraw() noexcept;
-  void watch_surface(double position) noexcept;
+  void track(double position) noexcept;
+  void watch_surface() noexcept;
   [[nodiscard]] Solution solve(std::size_t candidate) noexcept;
   [[nodiscard]] double surface_of(std::size_t candidate) const noexcept;
   [[nodiscard]] double equation_noise() const noexcept;
@@ -80,6 +83,7 @@ class ContactEstimator {
     double position_before{};  ///< [m]
     LowPass tip;               ///< [m], behind the transducer's pole
     double tip_speed{};        ///< [m/s]
+    double force_before{};     ///< [N]
     double force_mean{};       ///< [N], over 10 ms
     double tip_mean{};         ///< [m], over 10 ms
     double raw_tip{};          ///< [m], behind the transducer's pole

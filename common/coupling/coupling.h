@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 
+#include "common/core/lapse.h"
 #include "common/core/place.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
@@ -50,10 +51,10 @@ struct PatientOutput {
 /// A law is a value: copy it and both copies go on alike.
 template <class Law, class Input, class Output>
 concept HalfOfLaw = std::copyable<Law> &&
-    requires(Law law, const Input& in, double position, Duration dt) {
+    requires(Law law, const Input& in, double position, const Lapse& lapse) {
   { law.begin_epoch(position) }
   noexcept;  // sums restart; an energy tank is never refilled
-  { law.step(in, dt) }
+  { law.step(in, lapse) }
   noexcept->std::same_as<Output>;
 };
 

@@ -7,15 +7,15 @@ void DirectSurgeon::begin_epoch(double /*position*/) noexcept {
   fade_.set(1);  // nothing was heard, so the force is zero: there is nothing to fade in
 }
 
-SurgeonOutput DirectSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
+SurgeonOutput DirectSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexcept {
   if (const Incoming* last = newest(in.arrived)) {
     tip_ = last->sample;
     heard_ = true;
   }
   if (in.state == SiteState::Engaged) {
-    fade_.rise(seconds(dt), config_.fade_in);
+    fade_.rise(seconds(lapse.period), config_.fade_in);
   } else {
-    fade_.fall(seconds(dt), config_.fade_out);
+    fade_.fall(seconds(lapse.period), config_.fade_out);
   }
   double force = 0;
   if (heard_) {
@@ -28,7 +28,7 @@ SurgeonOutput DirectSurgeon::step(const SurgeonInput& in, Duration dt) noexcept 
 
 void DirectPatient::begin_epoch(double position) noexcept { target_ = position; }
 
-PatientOutput DirectPatient::step(const PatientInput& in, Duration /*dt*/) noexcept {
+PatientOutput DirectPatient::step(const PatientInput& in, const Lapse& /*lapse*/) noexcept {
   if (const Incoming* last = newest(in.arrived)) {
     target_ = config_.position_scale * last->sample.position;
   }

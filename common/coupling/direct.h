@@ -21,7 +21,7 @@ class DirectSurgeon {
  public:
   explicit DirectSurgeon(const DirectConfig& config) noexcept : config_{config} {}
   void begin_epoch(double position) noexcept;
-  SurgeonOutput step(const SurgeonInput& in, Duration dt) noexcept;
+  SurgeonOutput step(const SurgeonInput& in, const Lapse& lapse) noexcept;
 
  private:
   DirectConfig config_;
@@ -35,7 +35,7 @@ class DirectPatient {
  public:
   explicit DirectPatient(const DirectConfig& config) noexcept : config_{config} {}
   void begin_epoch(double position) noexcept;
-  PatientOutput step(const PatientInput& in, Duration dt) noexcept;
+  PatientOutput step(const PatientInput& in, const Lapse& lapse) noexcept;
 
  private:
   DirectConfig config_;

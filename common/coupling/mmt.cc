@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palp::coupling {
 namespace {
@@ -72,8 +73,9 @@ void MmtSurgeon::hear(std::span<const Incoming> arrived, Duration round_trip) no
 
 /// The shown model ages at `depth` and moves towards the newest one; in the air at once, for
 /// nothing is stored there.
-void MmtSurgeon::approach_candidate(double position, double depth, double dt) noexcept {
-  if (!candidate_) return shown_.age(depth, dt);
+void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& lapse) noexcept {
+  const double passed = seconds(lapse.passed());
+  if (!candidate_) return shown_.age(depth, passed);
   ContactModel aim = *candidate_;
   for (double& coefficient : aim.c) coefficient *= presence_.value();
   // The surface swings on by itself; what is blended is the rest.
@@ -83,11 +85,11 @@ void MmtSurgeon::approach_candidate(double position, double depth, double dt) no
   aim.surface += swung;
   swung_ = swung;
   if (!showing_ || (depth <= 0 && position <= aim.surface)) {
-    shown_.age_into(aim, candidate_relaxing_, depth, dt);
+    shown_.age_into(aim, candidate_relaxing_, depth, passed);
     showing_ = true;
     return;
   }
-  const double share = -std::expm1(-dt / config_.blend);
+  const double share = -std::expm1(-seconds(lapse.period) / config_.blend);
   elastic.surface += share * (aim.surface - elastic.surface);
   elastic.reach += share * (aim.reach - elastic.reach);
   for (std::size_t term = 0; term < kModelTerms; ++term) {
@@ -97,7 +99,7 @@ void MmtSurgeon::approach_candidate(double position, double depth, double dt) no
   for (std::size_t k = 0; k < relaxing.size(); ++k) {
     relaxing[k] += share * (candidate_relaxing_[k] - relaxing[k]);
   }
-  shown_.age_into(elastic, relaxing, depth, dt);
+  shown_.age_into(elastic, relaxing, depth, passed);
 }
 
 /// The least offset with which energy and force stay below their limits.
@@ -165,15 +167,20 @@ SurgeonOutput MmtSurgeon::let_go(const SurgeonInput& in, double work) noexcept {
   stored_ -= paid;
   tank_ = std::min(config_.tank_max, tank_ + work + paid);
   if (in.force_applied == 0) drop_model();
+  // A hand that was let out under a force held too long has taken of this already.
+  const double left = std::max(0.0, stored_ + tank_);
+  if (shown_.energy(depth_at(in.position) - offset_) > left) {
+    choose_offset(in.position, left, std::numeric_limits<double>::infinity());
+  }
   shown_force_ = shown_.force(depth_at(in.position) - offset_);
   return {0, {in.position, in.velocity, 0, std::monostate{}}, shown_force_};
 }
 
-SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
-  const double span = seconds(dt);
-  swing_age_ += span;
+SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexcept {
+  const double span = seconds(lapse.period);
+  swing_age_ += seconds(lapse.passed());
   hear(in.arrived, in.round_trip);
-  const double speed = velocity_.step(in.position);
+  const double speed = velocity_.step(in.position, lapse.periods);
   const double work = in.force_applied * (in.position - position_before_);
   position_before_ = in.position;
 
@@ -185,7 +192,7 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
   const double force_before = shown_.force(depth_before);
   tank_ = std::min(config_.tank_max, tank_ + work - (moved - stored_));
 
-  approach_candidate(in.position, depth_before, span);
+  approach_candidate(in.position, depth_before, lapse);
   const double rise_max = slew_for(in.position, in.round_trip) * span;
   // As a hand stops less and less comes in: what stops it must not push it back.
   const double moving = std::clamp(config_.slew_rest + speed / config_.slew_speed, 0.0, 1.0);
@@ -218,7 +225,7 @@ void MmtPatient::begin_epoch(double position) noexcept {
 }
 
 /// A hand that is not heard of is taken to stand still.
-double MmtPatient::target(const PatientInput& in) noexcept {
+double MmtPatient::target(const PatientInput& in, const Lapse& lapse) noexcept {
   const Incoming* last = newest(in.arrived);
   if (last != nullptr) {
     hand_ = last->sample.position;
@@ -227,18 +234,18 @@ double MmtPatient::target(const PatientInput& in) noexcept {
   }
   if (in.now - heard_at_ > kStale) hand_velocity_ = 0;
   const double lead = std::min(config_.lead_max, stage_lead_ + 0.5 * seconds(in.round_trip));
-  return hand_ + lead * lead_velocity_.step(finite_or(hand_velocity_, 0));
+  return hand_ + lead * lead_velocity_.step(finite_or(hand_velocity_, 0), lapse.periods);
 }
 
-PatientOutput MmtPatient::step(const PatientInput& in, Duration /*dt*/) noexcept {
-  const double aim = target(in);
+PatientOutput MmtPatient::step(const PatientInput& in, const Lapse& lapse) noexcept {
+  const double aim = target(in, lapse);
   if (!began_) place_ = in.place;
   began_ = true;
   if (distance(in.place, place_) > kSamePlace) {
     estimator_.new_place();
     place_ = in.place;
   }
-  estimator_.step(in.position, in.contact_force);
+  estimator_.step(in.position, in.contact_force, lapse.periods);
   return {aim, {in.position, in.velocity, in.contact_force, estimator_.model()}};
 }
 

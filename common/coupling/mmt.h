@@ -55,7 +55,7 @@ class MmtSurgeon {
  public:
   explicit MmtSurgeon(const MmtConfig& config) noexcept;
   void begin_epoch(double position) noexcept;
-  SurgeonOutput step(const SurgeonInput& in, Duration dt) noexcept;
+  SurgeonOutput step(const SurgeonInput& in, const Lapse& lapse) noexcept;
 
   [[nodiscard]] double tank() const noexcept { return tank_; }      ///< [J]
   [[nodiscard]] double stored() const noexcept { return stored_; }  ///< [J], in the shown model
@@ -69,7 +69,7 @@ class MmtSurgeon {
   void hear(std::span<const Incoming> arrived, Duration round_trip) noexcept;
   void drop_model() noexcept;
   [[nodiscard]] SurgeonOutput let_go(const SurgeonInput& in, double work) noexcept;
-  void approach_candidate(double position, double depth, double dt) noexcept;
+  void approach_candidate(double position, double depth, const Lapse& lapse) noexcept;
   [[nodiscard]] double depth_at(double position) const noexcept {
     return position - shown_.elastic().surface;
   }
@@ -106,10 +106,10 @@ class MmtPatient {
   /// The estimator's sensor is that of `devices`.
   explicit MmtPatient(const MmtConfig& config, const PatientDevices& devices = {}) noexcept;
   void begin_epoch(double position) noexcept;
-  PatientOutput step(const PatientInput& in, Duration dt) noexcept;
+  PatientOutput step(const PatientInput& in, const Lapse& lapse) noexcept;
 
  private:
-  [[nodiscard]] double target(const PatientInput& in) noexcept;
+  [[nodiscard]] double target(const PatientInput& in, const Lapse& lapse) noexcept;
 
   MmtConfig config_;
   double stage_lead_;  ///< [s], what the servo takes away, in whole ticks

@@ -104,9 +104,20 @@ void PlayOut::follow_age(double clock) noexcept {
   delay_ -= kShrinkage * period_;
 }
 
-double PlayOut::step(TimePoint now, std::span<const Incoming> arrived) noexcept {
+void PlayOut::skip(const HeldWave& held) noexcept {
+  energy_played_ += 0.5 * held.wave * held.wave * held.span;
+  if (!playing_) return;
+  played_to_ = std::clamp(played_to_ + held.span, played_to_, std::max(played_to_, newest_at_));
+  bool in_gap = false;
+  integral_played_ = integral_at(played_to_, in_gap);
+}
+
+double PlayOut::step(TimePoint now,
+                     std::span<const Incoming> arrived,
+                     const HeldWave& held) noexcept {
   for (const Incoming& incoming : arrived) hear(incoming);
   if (!heard_ || count_ == 0) return 0;
+  if (held.span > 0) skip(held);
   const double clock = seconds(now - arrived_first_);
   if (!playing_) {
     playing_ = true;

@@ -9,6 +9,12 @@
 
 namespace palp::coupling {
 
+/// What came out before a late tick, whatever there was to be played: that is skipped.
+struct HeldWave {
+  double wave{};  ///< [sqrt(W)]
+  double span{};  ///< [s] >= 0
+};
+
 /// Plays the integral of a wave out on the sender's own time line: the mean wave over each tick,
 /// never with more energy than the sender put in. Averaging cannot raise energy (Cauchy-Schwarz),
 /// and what was played is held against what is known to have been sent. Needs no common clock: an
@@ -25,7 +31,7 @@ class PlayOut {
   explicit PlayOut(double period) noexcept : period_{period} {}  ///< [s] > 0
   void restart() noexcept;
   /// The wave [sqrt(W)] of this tick.
-  double step(TimePoint now, std::span<const Incoming> arrived) noexcept;
+  double step(TimePoint now, std::span<const Incoming> arrived, const HeldWave& held = {}) noexcept;
 
   [[nodiscard]] double energy_received() const noexcept { return energy_received_; }  ///< [J]
   [[nodiscard]] double energy_played() const noexcept { return energy_played_; }      ///< [J]
@@ -43,6 +49,7 @@ class PlayOut {
   void follow_age(double clock) noexcept;
   [[nodiscard]] double integral_at(double at, bool& in_gap) const noexcept;
   void forget_before(double at) noexcept;
+  void skip(const HeldWave& held) noexcept;
 
   double period_;                           ///< [s]
   std::array<Point, kPointsMax> points_{};  ///< by time

@@ -31,11 +31,11 @@ void take_largest(double& known, std::span<const Incoming> arrived) noexcept {
 }  // namespace
 
 TdpaSurgeon::TdpaSurgeon(const TdpaConfig& config) noexcept
-    : config_{config}, velocity_{config.velocity_cut_off, config.period} {}
+    : config_{config}, velocity_{config.velocity_cut_off, config.period}, tank_{config.tank} {}
 
 void TdpaSurgeon::begin_epoch(double position) noexcept {
   velocity_.reset();
-  position_before_ = position;
+  tank_.begin_epoch(position);
   energy_in_ = energy_out_ = energy_remote_ = 0;
   tip_force_ = calm_force_ = mean_force_ = reserve_ = pull_ = drag_ = 0;
   tip_position_ = position;
@@ -74,13 +74,14 @@ double TdpaSurgeon::wanted_force(double position, double trip) noexcept {
 
 /// Letting go of the spring gives energy back, pulling it costs. It is pulled no faster than it
 /// would be by a hand that moves its reach in a round trip: one that moves away faster lets go.
-void TdpaSurgeon::approach(double wanted, double trip) noexcept {
+void TdpaSurgeon::approach(double wanted, double trip, double passed) noexcept {
   const double remote = std::max(0.0, energy_remote_ - energy_out_);
   const double before = stored();
   const double whole = std::max(0.0, before + reserve_ + remote);
   const double pace = std::max(config_.creep, config_.reach / std::max(trip, config_.period));
-  const double rise = std::min(config_.slew, config_.spring * pace) * config_.period;
-  pull_ = std::min({wanted, pull_ + rise, std::sqrt(2 * config_.spring * whole)});
+  const double rise = std::min(config_.slew, config_.spring * pace) * passed;
+  pull_ =
+      std::min({wanted, pull_ + rise, std::sqrt(2 * config_.spring * whole), tank_.force_max()});
   reserve_ -= stored() - before;
 }
 
@@ -112,23 +113,24 @@ double TdpaSurgeon::damping(double speed) const noexcept {
   return config_.damping_back + contact * (config_.damping_out - config_.damping_back);
 }
 
-SurgeonOutput TdpaSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
+SurgeonOutput TdpaSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexcept {
   hear(in.arrived);
-  const double speed = velocity_.step(in.position);
-  const double way = in.position - position_before_;
-  position_before_ = in.position;
+  const double speed = velocity_.step(in.position, lapse.periods);
+  const double way = tank_.account(in.force_applied, in.position);
   const double pulled = pull_;
   account(in.force_applied * way, way);
   if (in.state == SiteState::Engaged) {
-    fade_.rise(seconds(dt), config_.fade_in);
+    fade_.rise(seconds(lapse.period), config_.fade_in);
   } else {
-    fade_.fall(seconds(dt), config_.fade_out);
+    fade_.fall(seconds(lapse.period), config_.fade_out);
   }
   const double trip = std::max(0.0, seconds(in.round_trip));
-  const double change = config_.slew * seconds(dt);
+  const double change = config_.slew * seconds(lapse.period);
   const double felt = wanted_force(in.position, trip);
   const double wanted = heard_ ? fade_.value() * felt : 0;
-  approach(std::max(0.0, std::clamp(wanted, pulled - change, pulled + change)), trip);
+  approach(std::max(0.0, std::clamp(wanted, pulled - change, pulled + change)),
+           trip,
+           config_.period * static_cast<double>(lapse.periods));
   share_energy(trip);
   // Spring and damping have one slew: what is felt is their sum.
   const double left = std::max(kDragShare * change, change - std::abs(pull_ - pulled));
@@ -165,14 +167,19 @@ void TdpaPatient::account(double work) noexcept {
   energy_in_ += -work - pay;
 }
 
-PatientOutput TdpaPatient::step(const PatientInput& in, Duration /*dt*/) noexcept {
+PatientOutput TdpaPatient::step(const PatientInput& in, const Lapse& lapse) noexcept {
   if (!started_) tip_.reset(in.position);
   const double before = started_ ? tip_.value() : in.position;
   started_ = true;
-  tip_.step(in.position);
+  tip_.step(in.position, lapse.periods);
   hear(in.arrived);
   const double force = std::max(0.0, in.contact_force);
-  account(force * (tip_.value() - before));
+  const double way = tip_.value() - before;
+  // Nobody knows the force in between: at most the larger of both went out, and the smaller came
+  // in.
+  const double other = lapse.late() ? force_before_ : force;
+  account((way > 0 ? std::max(force, other) : std::min(force, other)) * way);
+  force_before_ = force;
   if (in.state != SiteState::Engaged) {
     target_ = in.position;
     return {target_, {in.position, in.velocity, in.contact_force, TdpaPayload{energy_in_}}};

@@ -4,6 +4,7 @@
 #include "common/core/filters.h"
 #include "common/core/limits.h"
 #include "common/coupling/coupling.h"
+#include "common/coupling/port_tank.h"
 
 /// Coupling `tdpa`: position forward, force back, and at both ends an observer of the energy that
 /// has come out of the channel against what is known to have gone in, with a controller that
@@ -31,14 +32,16 @@ struct TdpaConfig {
   double drift_rate{20};       ///< [1/s], of what the controller kept the stage from doing
   double fade_out{0.2};        ///< [s], in Hold
   double fade_in{0.5};         ///< [s]
-  double period{1e-3};         ///< [s]
+  PortTankConfig tank;
+  double period{1e-3};  ///< [s]
 };
 
 /// The hand holds one end of a spring; at its other end is what the tip feels. The spring makes the
 /// controller exact and smooth: whatever raises its force costs energy that is known to be there,
 /// and where there is none left the force falls along the spring, not at once. At every tick:
 /// reserve + stored = work of the hand + energy out - energy in, energy out <= energy known to have
-/// entered at the other end, reserve >= 0 up to what holding the force for a tick may cost.
+/// entered at the other end, reserve >= 0 up to what holding the force for a tick may cost. What
+/// the other end declares beyond what this hand put in is believed up to the tank of the port.
 ///
 /// Over a long path the force comes late. To a hand at rest it is given all the same, out of work
 /// that the hand has done before; a hand that has moved on is not pushed after it, which would only
@@ -48,7 +51,7 @@ class TdpaSurgeon {
  public:
   explicit TdpaSurgeon(const TdpaConfig& config) noexcept;
   void begin_epoch(double position) noexcept;
-  SurgeonOutput step(const SurgeonInput& in, Duration dt) noexcept;
+  SurgeonOutput step(const SurgeonInput& in, const Lapse& lapse) noexcept;
 
   [[nodiscard]] double energy_out() const noexcept { return energy_out_; }        ///< [J]
   [[nodiscard]] double energy_remote() const noexcept { return energy_remote_; }  ///< [J]
@@ -59,22 +62,22 @@ class TdpaSurgeon {
   void account(double work, double way) noexcept;
   [[nodiscard]] double damping(double speed) const noexcept;
   [[nodiscard]] double wanted_force(double position, double trip) noexcept;
-  void approach(double wanted, double trip) noexcept;
+  void approach(double wanted, double trip, double passed) noexcept;
   void share_energy(double trip) noexcept;
 
   TdpaConfig config_;
   VelocityEstimate velocity_;
-  double position_before_{};  ///< [m]
-  double tip_force_{};        ///< [N], newest
-  double tip_position_{};     ///< [m], newest
-  double calm_force_{};       ///< [N], the tip's, smoothed
-  double mean_force_{};       ///< [N], the tip's over 5 samples: noise is no touch
-  double energy_in_{};        ///< [J], that entered here
-  double energy_out_{};       ///< [J], that left here
-  double energy_remote_{};    ///< [J], known to have entered there
-  double reserve_{};          ///< [J], entered here and not yet sent on
-  double pull_{};             ///< [N], of the spring
-  double drag_{};             ///< [N], of the damping
+  PortTank tank_;
+  double tip_force_{};      ///< [N], newest
+  double tip_position_{};   ///< [m], newest
+  double calm_force_{};     ///< [N], the tip's, smoothed
+  double mean_force_{};     ///< [N], the tip's over 5 samples: noise is no touch
+  double energy_in_{};      ///< [J], that entered here
+  double energy_out_{};     ///< [J], that left here
+  double energy_remote_{};  ///< [J], known to have entered there
+  double reserve_{};        ///< [J], entered here and not yet sent on
+  double pull_{};           ///< [N], of the spring
+  double drag_{};           ///< [N], of the damping
   bool heard_{};
   Ramp fade_{1};
 };
@@ -83,7 +86,7 @@ class TdpaPatient {
  public:
   explicit TdpaPatient(const TdpaConfig& config, const PatientDevices& devices = {}) noexcept;
   void begin_epoch(double position) noexcept;
-  PatientOutput step(const PatientInput& in, Duration dt) noexcept;
+  PatientOutput step(const PatientInput& in, const Lapse& lapse) noexcept;
 
   [[nodiscard]] double energy_out() const noexcept { return energy_out_; }  ///< [J]
 
@@ -95,6 +98,7 @@ class TdpaPatient {
   double step_max_;  ///< [m], of the target in a tick: what the stage can run
   LowPass tip_;      ///< [m], behind the sensor's pole, as the force is
   bool started_{};
+  double force_before_{};   ///< [N]
   double hand_{};           ///< [m], newest
   double hand_taken_{};     ///< [m], the part of it the target has been given
   double target_{};         ///< [m]

@@ -28,25 +28,40 @@ WaveSurgeon::WaveSurgeon(const WaveConfig& config, const PatientDevices& devices
       impedance_{wave_impedance(config, devices)},
       root_{std::sqrt(2 * impedance_)},
       velocity_{config.velocity_cut_off, config.period},
-      play_out_{config.period} {}
+      play_out_{config.period},
+      tank_{config.tank} {}
 
 void WaveSurgeon::meet(const PatientDevices& devices) noexcept {
   impedance_ = wave_impedance(config_, devices);
   root_ = std::sqrt(2 * impedance_);
 }
 
-void WaveSurgeon::begin_epoch(double /*position*/) noexcept {
+void WaveSurgeon::begin_epoch(double position) noexcept {
+  tank_.begin_epoch(position);
   velocity_.reset();
   play_out_.restart();
   sent_ = {};
   presence_.set(1);
 }
 
-SurgeonOutput WaveSurgeon::step(const SurgeonInput& in, Duration dt) noexcept {
-  const double speed = velocity_.step(in.position);
-  const double wave = play_out_.step(in.now, in.arrived);
-  if (in.state == SiteState::Retract) presence_.fall(seconds(dt), config_.fade);
-  const double force = (impedance_ * speed - root_ * wave) * presence_.value();
+/// What went through the port since the last tick. @returns what came out of it as a wave.
+HeldWave WaveSurgeon::account(const SurgeonInput& in, const Lapse& lapse) noexcept {
+  const double way = tank_.account(in.force_applied, in.position);
+  if (!lapse.late()) return {};
+  const double pace = impedance_ * way / seconds(lapse.passed());
+  if (in.state == SiteState::Engaged) {
+    send(sent_, (pace + in.force_applied) / root_, lapse.held());
+  }
+  return {(pace - in.force_applied) / root_, lapse.held()};
+}
+
+SurgeonOutput WaveSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexcept {
+  const HeldWave held = account(in, lapse);
+  const double speed = velocity_.step(in.position, lapse.periods);
+  const double wave = play_out_.step(in.now, in.arrived, held);
+  if (in.state == SiteState::Retract) presence_.fall(seconds(lapse.period), config_.fade);
+  const double told = std::clamp(root_ * wave, -tank_.force_max(), tank_.force_max());
+  const double force = (impedance_ * speed - told) * presence_.value();
   // Only in Engaged does the hand speak: a wave sent in Hold would be a step when it is over.
   if (in.state == SiteState::Engaged) {
     send(sent_, (impedance_ * speed + force) / root_, config_.period);
@@ -73,15 +88,17 @@ double WavePatient::termination(Duration round_trip) const noexcept {
   return impedance_ * std::lerp(config_.termination, 1.0, std::clamp(late, 0.0, 1.0));
 }
 
-PatientOutput WavePatient::step(const PatientInput& in, Duration /*dt*/) noexcept {
-  const double wave = play_out_.step(in.now, in.arrived);
-  if (const Incoming* last = newest(in.arrived)) hand_ = last->sample.position;
+PatientOutput WavePatient::step(const PatientInput& in, const Lapse& lapse) noexcept {
+  // While nobody commanded it the stage stood, and the tissue pressed on it.
   const double force = std::max(0.0, in.contact_force);
+  const double wave = play_out_.step(in.now, in.arrived, {force / root_, lapse.held()});
+  if (const Incoming* last = newest(in.arrived)) hand_ = last->sample.position;
   force_mean_ += kMeanGain * (in.contact_force - force_mean_);
   if (in.state != SiteState::Engaged) {
     target_ = in.position;
     return {target_, {in.position, in.velocity, in.contact_force, sent_}};
   }
+  if (lapse.late()) send(sent_, -force / root_, lapse.held());
   const double end = termination(in.round_trip);
   const double speed = (root_ * wave - force) / (impedance_ + end);
   const double port = force + end * speed;

@@ -5,6 +5,7 @@
 #include "common/core/limits.h"
 #include "common/coupling/coupling.h"
 #include "common/coupling/play_out.h"
+#include "common/coupling/port_tank.h"
 
 /// Coupling `wave`: wave variables. Passive over any path, and as soft as a spring of 2b/RTT in
 /// series with the tissue: a tool for short paths, and a baseline.
@@ -21,7 +22,8 @@ struct WaveConfig {
   double drift_speed{0.02};     ///< [m/s], at most
   double contact_zero{0.03};    ///< [N], a mean force below it is none
   double fade{1};               ///< [s], in Retract
-  double period{1e-3};          ///< [s]
+  PortTankConfig tank;
+  double period{1e-3};  ///< [s]
 };
 
 /// The impedance asked for, or what keeps stage and sensor with their lag passive on the stiffest
@@ -29,15 +31,22 @@ struct WaveConfig {
 [[nodiscard]] double wave_impedance(const WaveConfig& config,
                                     const PatientDevices& devices) noexcept;
 
-/// F_h = b v - sqrt(2b) w; sends the integral and the energy of u = (b v + F_h)/sqrt(2b).
+/// F_h = b v - sqrt(2b) w; sends the integral and the energy of u = (b v + F_h)/sqrt(2b). While a
+/// tick was late the device held its force: the waves of that time are those of this force, and
+/// what they brought the hand was played.
+/// Waves push or pull no harder than the tank of the port allows, whatever the other end declares.
 class WaveSurgeon {
  public:
   explicit WaveSurgeon(const WaveConfig& config, const PatientDevices& devices = {}) noexcept;
   void meet(const PatientDevices& devices) noexcept;
   void begin_epoch(double position) noexcept;
-  SurgeonOutput step(const SurgeonInput& in, Duration dt) noexcept;
+  SurgeonOutput step(const SurgeonInput& in, const Lapse& lapse) noexcept;
+
+  [[nodiscard]] double tank() const noexcept { return tank_.level(); }  ///< [J]
 
  private:
+  [[nodiscard]] HeldWave account(const SurgeonInput& in, const Lapse& lapse) noexcept;
+
   WaveConfig config_;
   double impedance_;  ///< [N s/m]
   double root_;       ///< [sqrt(N s/m)], sqrt(2b)
@@ -45,6 +54,7 @@ class WaveSurgeon {
   PlayOut play_out_;
   WavePayload sent_;
   Ramp presence_{1};
+  PortTank tank_;
 };
 
 /// Moves the stage at v = (sqrt(2b) u - F)/(b + t): terminated by t = b a stage which follows
@@ -53,7 +63,7 @@ class WavePatient {
  public:
   explicit WavePatient(const WaveConfig& config, const PatientDevices& devices = {}) noexcept;
   void begin_epoch(double position) noexcept;
-  PatientOutput step(const PatientInput& in, Duration dt) noexcept;
+  PatientOutput step(const PatientInput& in, const Lapse& lapse) noexcept;
 
  private:
   [[nodiscard]] double termination(Duration round_trip) const noexcept;

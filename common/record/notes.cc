@@ -29,6 +29,7 @@ constexpr std::array kTexts{
     Text{NoteCode::DeviceFault, "device fault"},
     Text{NoteCode::EmergencyStop, "emergency stop"},
     Text{NoteCode::LocalReset, "reset on the spot"},
+    Text{NoteCode::TickLate, "this site's program stood still: press the pedal again"},
     Text{NoteCode::EngageRefusedForce, "engagement refused: contact force too high"},
     Text{NoteCode::ForceGateClamped, "force gate limited the force on the hand"},
     Text{NoteCode::MotionGateLimited, "motion gate limited the stage"},
@@ -62,7 +63,10 @@ std::string state_text(SiteState state, NoteCode reason, NoteCode refused) {
     case SiteState::Stopped:
       return name + " (" + std::string{to_string(reason)} + ")";
     case SiteState::Clutched:
-      if (refused == NoteCode::None) break;
+      if (refused == NoteCode::None) {
+        if (reason != NoteCode::TickLate) break;
+        refused = reason;
+      }
       return name + " (" + std::string{to_string(refused)} + ")";
     case SiteState::Parked:
     case SiteState::Engaged:

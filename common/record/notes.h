@@ -28,6 +28,7 @@ enum class NoteCode : std::uint16_t {
   DeviceFault = 14,
   EmergencyStop = 15,
   LocalReset = 16,
+  TickLate = 17,
   // Events.
   EngageRefusedForce = 32,  ///< detail: contact force [N]
   ForceGateClamped = 33,    ///< detail: force asked for [N]

@@ -11,7 +11,7 @@ SiteAccount::SiteAccount(const SiteAccountConfig& config, Recorder& recorder) no
   PALP_CHECK(config.period > Duration{0}, "a period takes time");
 }
 
-Duration SiteAccount::begin_tick(TimePoint now) noexcept {
+Lapse SiteAccount::begin_tick(TimePoint now) noexcept {
   std::int64_t periods = 1;
   if (counts_.ticks > 0) {
     periods = std::max<std::int64_t>(1, (now - now_ + config_.period / 2) / config_.period);
@@ -19,7 +19,7 @@ Duration SiteAccount::begin_tick(TimePoint now) noexcept {
   now_ = now;
   ++counts_.ticks;
   counts_.ticks_missed += static_cast<std::uint64_t>(periods - 1);
-  return periods * config_.period;
+  return {config_.period, periods};
 }
 
 void SiteAccount::record(const Record& record) noexcept {

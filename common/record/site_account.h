@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/core/lapse.h"
 #include "common/core/time.h"
 #include "common/core/user_command.h"
 #include "common/link/telegram.h"
@@ -32,8 +33,8 @@ class SiteAccount {
   SiteAccount(const SiteAccountConfig& config, Recorder& recorder) noexcept;
 
   /// A tick begins. @returns the time since the one before: a whole number of periods, so that a
-  /// law's filters keep their step.
-  [[nodiscard]] Duration begin_tick(TimePoint now) noexcept;
+  /// law's filters keep their step. What a clock jumps ahead is not told from a late tick.
+  [[nodiscard]] Lapse begin_tick(TimePoint now) noexcept;
   [[nodiscard]] const SiteCounts& counts() const noexcept { return counts_; }
 
   void record(const Record& record) noexcept;

@@ -238,10 +238,12 @@ Result<Scenario> make_case(const Plan& plan, const Case& one) {
   if (!scenario) return scenario;
   scenario->bare = true;
   scenario->depths = false;
-  scenario->lying = plan.lying;
+  scenario->lying = plan.lying || one.lying;
   if (plan.blackout) place_blackout(*scenario);
   scenario->fault = one.fault;
-  scenario->fault.at_script_time = fault_time(scenario->script, one.fault_place);
+  scenario->fault.at_script_time =
+      one.fault_place.empty() ? from_seconds(one.fault_share * seconds(scenario->script.length()))
+                              : fault_time(scenario->script, one.fault_place);
   return scenario;
 }
 

@@ -26,7 +26,9 @@ struct Case {
   std::vector<Setting> settings;
   std::vector<std::string> labels;  ///< one per name in Plan::label_names
   Fault fault;                      ///< `at_script_time` is found from `fault_place`
-  std::string_view fault_place;     ///< of kFaultPlaces
+  std::string_view fault_place;     ///< of kFaultPlaces; empty: see `fault_share`
+  double fault_share{};             ///< [-], of the script's length, where it begins
+  bool lying{};                     ///< the patient's site lies
 };
 
 /// In the middle of: a sine in the air, the second tap and the deep press of the first site, the
@@ -55,7 +57,7 @@ struct PlanAsk {
                                       ///< any phantom
 };
 
-/// table, net, mc, mc-hard, mc-noise, mc-adv, grips, inc, blackout, breath, long, faults,
+/// table, net, mc, mc-hard, mc-noise, mc-adv, grips, inc, blackout, breath, long, faults, pauses,
 /// device-faults. Random sets draw case i from (seed, i) alone, so that the first 100 of 1000 are
 /// the first 100 of 100.
 [[nodiscard]] Result<Plan> make_set(const std::string& name, const PlanAsk& ask);

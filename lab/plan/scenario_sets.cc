@@ -194,6 +194,17 @@ void fill_long(Plan& plan, const PlanAsk& ask) {
   plan.cases.back().settings.push_back({"surgeon.hand.master", "script:long"});
 }
 
+constexpr bool is_pause(FaultKind kind) {
+  return kind == FaultKind::PauseSurgeon || kind == FaultKind::PausePatient;
+}
+
+/// Every other one in a burst.
+void draw_pauses(Fault& fault, double uniform, double gap) {
+  if (uniform < 0.5) return;
+  fault.count = 2 + static_cast<std::uint32_t>(20 * (uniform - 0.5) * 2);
+  fault.apart = from_seconds(1e-3 * std::floor(std::pow(10.0, 3 * gap)));
+}
+
 /// One fault in each case, of every kind there is in `kinds`, place and size, over the links and
 /// hands of `mc`.
 void fill_with(std::span<const FaultKind> kinds, Plan& plan, const PlanAsk& ask) {
@@ -212,6 +223,10 @@ void fill_with(std::span<const FaultKind> kinds, Plan& plan, const PlanAsk& ask)
     const bool clock = one.fault.kind == FaultKind::StepSurgeonClock ||
                        one.fault.kind == FaultKind::StepPatientClock;
     if (clock && uniform(3) < 0.5) amount = -amount;
+    if (is_pause(one.fault.kind)) {
+      amount = pick(std::array{0.002, 0.01, 0.04, 0.3, 5.0}, uniform(2));
+      draw_pauses(one.fault, uniform(4), uniform(5));
+    }
     one.fault.amount = from_seconds(amount);
     one.settings.push_back({"duration_s", "600"});
     one.labels.insert(one.labels.end(),
@@ -226,11 +241,39 @@ void fill_faults(Plan& plan, const PlanAsk& ask) {
                               FaultKind::KillPatient,
                               FaultKind::StepSurgeonClock,
                               FaultKind::StepPatientClock,
-                              FaultKind::LiftPedal};
+                              FaultKind::LiftPedal,
+                              FaultKind::PauseSurgeon,
+                              FaultKind::PausePatient};
   fill_with(kKinds, plan, ask);
 }
 
 void fill_device_faults(Plan& plan, const PlanAsk& ask) { fill_with(kDeviceFaults, plan, ask); }
+
+/// Of 1 ms to 5 s, of either process, alone and in bursts, at any moment; every other peer lies.
+void fill_pauses(Plan& plan, const PlanAsk& ask) {
+  fill_random(plan, ask, false);
+  plan.label_names.insert(plan.label_names.end(),
+                          {"fault", "place_share", "amount_s", "count", "apart_s", "peer"});
+  for (Case& one : plan.cases) {
+    const auto uniform = [&](std::uint64_t which) {
+      return random_uniform(ask.seed, kCaseStream + 40 + which, one.index);
+    };
+    Fault& fault = one.fault;
+    fault.kind = uniform(0) < 0.7 ? FaultKind::PauseSurgeon : FaultKind::PausePatient;
+    fault.amount = from_seconds(1e-3 * std::floor(std::pow(10.0, std::log10(5000.0) * uniform(1))));
+    draw_pauses(fault, uniform(2), uniform(3));
+    one.fault_share = uniform(4);
+    one.lying = uniform(5) < 0.5;
+    one.settings.push_back({"duration_s", "600"});
+    one.labels.insert(one.labels.end(),
+                      {std::string{to_string(fault.kind)},
+                       text("%.4f", one.fault_share),
+                       text("%.9g", seconds(fault.amount)),
+                       text("%u", fault.count),
+                       text("%.9g", seconds(fault.apart)),
+                       one.lying ? "lying" : "honest"});
+  }
+}
 
 void set_for_all(Plan& plan, const Setting& setting) {
   for (Case& one : plan.cases) one.settings.push_back(setting);
@@ -269,6 +312,7 @@ constexpr std::array kSets{
     Set{"breath", "a surface that breathes, 1 mm at 0.25 Hz", fill_breath},
     Set{"long", "ten minutes on the worst link", fill_long},
     Set{"faults", "mc with a process killed, a clock that jumps or another epoch", fill_faults},
+    Set{"pauses", "mc with pauses of 1 ms to 5 s of either process, half with a liar", fill_pauses},
     Set{"device-faults",
         "mc with a sensor, a stage or a haptic device that fails",
         fill_device_faults},

@@ -15,6 +15,8 @@ enum class FaultKind : std::uint8_t {
   KillPatient,       ///< the same at the patient's site
   StepSurgeonClock,  ///< the clock that the process reads jumps, and stays there
   StepPatientClock,
+  PauseSurgeon,  ///< the process stands still, as by SIGSTOP, and goes on; its devices hold
+  PausePatient,
   LiftPedal,  ///< the operator lets go and presses again: another epoch
   // Devices that fail and work again.
   SensorSilent,     ///< gives nothing
@@ -42,17 +44,22 @@ inline constexpr std::array kDeviceFaults{FaultKind::SensorSilent,
 struct Fault {
   FaultKind kind{FaultKind::None};
   Duration at_script_time{};
-  /// How long the process is dead, the pedal up or the device failing; by how much the clock jumps,
-  /// of either sign.
+  /// How long the process is dead or stands still, the pedal up or the device failing; by how much
+  /// the clock jumps, of either sign.
   Duration amount{};
+  // Of pauses, which may come in bursts.
+  std::uint32_t count{1};
+  Duration apart{};  ///< from the end of one to the next
 };
 
 [[nodiscard]] constexpr std::string_view to_string(FaultKind kind) noexcept {
-  constexpr std::array<std::string_view, 15> kNames{"none",
+  constexpr std::array<std::string_view, 17> kNames{"none",
                                                     "kill-surgeon",
                                                     "kill-patient",
                                                     "clock-surgeon",
                                                     "clock-patient",
+                                                    "pause-surgeon",
+                                                    "pause-patient",
                                                     "pedal",
                                                     "sensor-silent",
                                                     "sensor-stuck",

@@ -10,6 +10,7 @@
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
 #include "common/record/session_writer.h"
+#include "lab/run/pause_witness.h"
 #include "lab/run/phase_finder.h"
 #include "lab/run/simulator.h"
 #include "lab/run/site_process.h"
@@ -100,7 +101,7 @@ class Probe {
         relaxing_{scenario.phantom.relaxation} {}
 
   /// `at`: since the start of the run [s].
-  void look(const SurgeonProcess& site, double at, Digest& digest) {
+  void look(const SurgeonProcess& site, const PatientProcess& peer, double at, Digest& digest) {
     const surgeon::SurgeonStatus& status = site.status();
     const bool guarded = site.pressed();
     const surgeon::HandTruth hand = hand_.truth();
@@ -125,6 +126,13 @@ class Probe {
     const double depth = hand.position - status.offset - tissue.surface;
     const double force_true =
         relaxing_.step(field_->elastic_force(status.place, depth), seconds(scenario_.link.period));
+    pauses_.look({.held = site.paused(),
+                  .resumed = paused_,
+                  .guarded = guarded,
+                  .force = hand.force,
+                  .force_true = force_true,
+                  .work = hand.work});
+    paused_ = site.paused() || peer.paused();
     if (!hand.performing || !site.alive()) return;
 
     judge::RunTick tick;
@@ -151,6 +159,7 @@ class Probe {
   [[nodiscard]] double net_min() const { return net_min_; }    ///< [J], of the whole run
   /// [N], in 10 ms, whatever the operator was doing.
   [[nodiscard]] double force_step_max() const { return step_max_; }
+  [[nodiscard]] const PauseWitness& pauses() const { return pauses_; }
 
  private:
   /// Against 10 ms ago, or the oldest since the force became the site's own.
@@ -166,8 +175,10 @@ class Probe {
   PhaseFinder phases_;
   std::unique_ptr<patient::TissueField> field_;
   patient::RelaxingForce relaxing_;
-  double work_min_{};          ///< [J]
-  double net_min_{};           ///< [J]
+  double work_min_{};  ///< [J]
+  double net_min_{};   ///< [J]
+  PauseWitness pauses_;
+  bool paused_{};              ///< either site, at the last look
   std::deque<double> forces_;  ///< [N], newest last
   double step_max_{};          ///< [N]
   std::vector<judge::RunTick> ticks_;
@@ -184,6 +195,8 @@ class FaultInjector {
     if (!began_at_ && hand.performing && hand.script_time >= fault_.at_script_time) {
       began_at_ = now;
       begin(now);
+    } else if (began_at_ && pauses()) {
+      pause(now - *began_at_);
     } else if (began_at_ && !over_ && now - *began_at_ >= fault_.amount) {
       over_ = true;
       end(now);
@@ -191,7 +204,19 @@ class FaultInjector {
   }
 
  private:
+  [[nodiscard]] bool pauses() const {
+    return fault_.kind == FaultKind::PauseSurgeon || fault_.kind == FaultKind::PausePatient;
+  }
+  /// `since`: the first began.
+  void pause(Duration since) {
+    const Duration cycle = fault_.amount + fault_.apart;
+    const bool paused =
+        cycle > Duration{0} && since / cycle < fault_.count && since % cycle < fault_.amount;
+    if (fault_.kind == FaultKind::PauseSurgeon) surgeon_.pause(paused);
+    if (fault_.kind == FaultKind::PausePatient) patient_.pause(paused);
+  }
   void begin(TimePoint now) {
+    if (pauses()) pause({});
     if (fault_.kind == FaultKind::KillSurgeon) surgeon_.kill(now);
     if (fault_.kind == FaultKind::KillPatient) patient_.kill(now);
     if (fault_.kind == FaultKind::StepSurgeonClock) surgeon_.clock().ahead += fault_.amount;
@@ -299,6 +324,9 @@ judge::RunMetrics judged(const Probe& probe,
   }
   judge::RunMetrics metrics = judge::metrics_of(probe.ticks(), judging);
   metrics.force_step_guarded = probe.force_step_max();
+  metrics.force_kick = probe.pauses().kick();
+  metrics.force_drop = probe.pauses().drop();
+  metrics.energy_given = probe.pauses().energy_given();
   // Energy has no script: what the hand gets while it waits or lets go counts too.
   metrics.energy_operator = std::max(0.0, -probe.work_min());
   metrics.energy_net = std::max(0.0, -probe.net_min());
@@ -337,7 +365,7 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
     }
     const surgeon::HandTruth truth = surgeon.hand.truth();
     dark.step(now, truth.script_time);
-    probe.look(surgeon.process, seconds(now - start), digest);
+    probe.look(surgeon.process, patient.process, seconds(now - start), digest);
     fault_injector.step(now, truth);
     if (surgeon.hand.finished() && !finished_at) finished_at = now;
   });

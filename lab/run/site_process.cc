@@ -97,6 +97,10 @@ void SurgeonProcess::tick(TimePoint now) {
     session_setup_.lose(now);
     return;
   }
+  if (paused_) {
+    (void)hand_.read(now);
+    return;
+  }
   parts_->node.tick(session_setup_.clock().local(now));
   session_setup_.step(now);
   status_ = parts_->node.status().get();
@@ -144,6 +148,10 @@ void PatientProcess::tick(TimePoint now) {
     (void)around_.phantom.read(now);
     around_.phantom.halt();
     session_setup_.lose(now);
+    return;
+  }
+  if (paused_) {
+    (void)around_.phantom.read(now);
     return;
   }
   parts_->node.tick(session_setup_.clock().local(now));

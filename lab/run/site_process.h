@@ -81,8 +81,11 @@ class SurgeonProcess {
 
   void start(TimePoint now);
   void kill(TimePoint now);
+  /// It stands still: its device holds the last force, and what arrives waits in its socket.
+  void pause(bool paused) noexcept { paused_ = paused; }
   void tick(TimePoint now);
   [[nodiscard]] bool alive() const noexcept { return parts_.has_value(); }
+  [[nodiscard]] bool paused() const noexcept { return paused_; }
   [[nodiscard]] LocalClock& clock() noexcept { return session_setup_.clock(); }
   [[nodiscard]] HandAtClock& hand() noexcept { return device_; }
   /// Alive, and the pedal down: the force at the hand is this process's own.
@@ -97,6 +100,7 @@ class SurgeonProcess {
   HandAtClock device_;
   record::Recorder& recorder_;
   surgeon::SurgeonStatus status_;
+  bool paused_{};
   struct Running {
     explicit Running(SurgeonProcess& owner);
     link::Link link;
@@ -121,7 +125,10 @@ class PatientProcess {
 
   void start(TimePoint now);
   void kill(TimePoint now);
+  /// It stands still: its stage goes on to the last target, and what arrives waits in its socket.
+  void pause(bool paused) noexcept { paused_ = paused; }
   void tick(TimePoint now);
+  [[nodiscard]] bool paused() const noexcept { return paused_; }
   [[nodiscard]] LocalClock& clock() noexcept { return session_setup_.clock(); }
   [[nodiscard]] PhantomAtClock& devices() noexcept { return device_; }
   [[nodiscard]] LinkHealth health(TimePoint now) const noexcept;
@@ -131,6 +138,7 @@ class PatientProcess {
   Surroundings around_;
   SessionSetup session_setup_;
   PhantomAtClock device_;
+  bool paused_{};
   struct Running {
     explicit Running(PatientProcess& owner);
     link::Link link;

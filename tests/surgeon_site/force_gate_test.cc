@@ -128,7 +128,24 @@ TEST(ForceGateTest, LateFirstSampleOfAnEngagementFadesIn) {
 TEST(ForceGateTest, LateTickBuysNoBiggerStepOfAFade) {
   ForceGate gate{ForceGateConfig{}};
   for (int i = 0; i < 2000; ++i) gate.pass(engaged(0), 1ms);
-  EXPECT_NEAR(gate.pass(engaged(5), 100ms).force, 0.4, 1e-12);  // as after 10 ms
+  EXPECT_NEAR(gate.pass(engaged(5), {1ms, 100}).force, 0.04, 1e-12);  // as of any tick
+}
+
+TEST(ForceGateTest, WhatALateTickFindsIsFadedInAndLetGoAtOnce) {
+  for (const std::int64_t periods : {2, 40}) {
+    ForceGate gate = settled();
+    gate.pass(engaged(1), 1ms);
+    double before = gate.pass(engaged(1.5), {1ms, periods}).force;
+    EXPECT_NEAR(before, 1.04, 1e-12) << "no kick";
+    for (int i = 0; i < 20; ++i) {
+      const double force = gate.pass(engaged(1.5), 1ms).force;
+      EXPECT_LE(force - before, 0.04 + 1e-12);
+      before = force;
+    }
+    EXPECT_EQ(before, 1.5) << "it catches up";
+    EXPECT_EQ(gate.pass(engaged(0.7), {1ms, periods}).force, 0.7)
+        << "held up it would give what the law does not pay for";
+  }
 }
 
 TEST(ForceGateTest, AForceThatFadesGivesASnatchedHandNoMoreThanTheLawCanPay) {

@@ -28,6 +28,8 @@ TEST(NotesTest, AStateSaysWhyWhereItIsNotTheUsualOne) {
   EXPECT_EQ(state_text(SiteState::Clutched, kReason, NoteCode::None), "CLUTCHED");
   EXPECT_EQ(state_text(SiteState::Clutched, kReason, kRefused),
             "CLUTCHED (engagement refused: contact force too high)");
+  EXPECT_EQ(state_text(SiteState::Clutched, NoteCode::TickLate, NoteCode::None),
+            "CLUTCHED (this site's program stood still: press the pedal again)");
 }
 
 }  // namespace

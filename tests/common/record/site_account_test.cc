@@ -18,7 +18,7 @@ TEST(SiteAccountTest, TimePassesInWholePeriodsAndMissedOnesAreCounted) {
   SiteAccount account{{}, recorder};
   EXPECT_EQ(account.begin_tick(at(5ms)), 1ms) << "the first";
   EXPECT_EQ(account.begin_tick(at(6100us)), 1ms) << "a little late";
-  EXPECT_EQ(account.begin_tick(at(9000us)), 3ms) << "two were missed";
+  EXPECT_EQ(account.begin_tick(at(9000us)), (Lapse{1ms, 3})) << "two were missed";
   EXPECT_EQ(account.begin_tick(at(1ms)), 1ms) << "a clock that jumps back";
   EXPECT_EQ(account.counts().ticks, 4U);
   EXPECT_EQ(account.counts().ticks_missed, 2U);

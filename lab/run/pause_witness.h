@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+
+namespace palp::lab {
+
+/// What pauses of a site's process did to the hand, judged from the plant's own states: a device
+/// whose process stands still holds its last force, and whatever that does to a hand no law can
+/// undo. Thread: the lab's.
+class PauseWitness {
+ public:
+  struct Look {
+    bool held{};          ///< the surgeon's process stands still: the device holds its force
+    bool resumed{};       ///< a process of either site stood still at the last look
+    bool guarded{};       ///< the force is the site's own: alive, and the pedal down
+    double force{};       ///< [N], on the hand
+    double force_true{};  ///< [N], of the tissue, had the hand pressed it
+    double work{};        ///< [J], of the hand on the device
+  };
+
+  /// Once a tick.
+  void look(const Look& now);
+
+  /// [J], most that the hand ever had from the device, less what a held force had given it and it
+  /// had not paid back yet.
+  [[nodiscard]] double energy_given() const { return energy_given_; }
+  /// [N], in 10 ticks in which the process ran, within 100 after a pause: the smaller of the
+  /// changes of the force and of the force less the true one, so that a hand that moved is no kick.
+  /// Growth of the force only: what lets go pushes nobody.
+  [[nodiscard]] double kick() const { return kick_; }
+  /// [N], the same of a force that falls.
+  [[nodiscard]] double drop() const { return drop_; }
+
+ private:
+  struct Forces {
+    double felt{};  ///< [N]
+    double less{};  ///< [N], than the true one
+  };
+  static constexpr std::size_t kWindow = 10;
+  static constexpr std::size_t kAfter = 100;
+
+  double energy_given_{};  ///< [J]
+  double excused_{};       ///< [J], given by held forces
+  bool held_before_{};
+  double kick_{};              ///< [N]
+  double drop_{};              ///< [N]
+  std::deque<Forces> forces_;  ///< newest last
+  std::size_t judged_for_{};   ///< ticks still to come
+};
+
+}  // namespace palp::lab
