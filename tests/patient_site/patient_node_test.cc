@@ -412,19 +412,6 @@ TEST(PatientNodeTest, RecordsEachTickEachArrivalAndTheLinkTenTimesASecond) {
   EXPECT_EQ(transitions[1].to, SiteState::Engaged);
 }
 
-TEST(PatientNodeTest, ASleepBeyondTheLimitLeavesTheStageWhereItStands) {
-  World world;
-  world.engage();
-  world.move(3e-3, milliseconds{800});
-  const double stood = world.status().command;
-  world.now += milliseconds{200};
-  world.tick();
-  EXPECT_EQ(world.status().state, SiteState::Clutched);
-  EXPECT_EQ(world.status().reason, NoteCode::TickLate);
-  world.move(5e-3, milliseconds{300});  // nobody pressed the pedal again
-  EXPECT_EQ(world.status().command, stood);
-}
-
 TEST(PatientNodeTest, CountsThePeriodsItMissed) {
   World world;
   world.run(milliseconds{10});

@@ -143,7 +143,7 @@ void expect_unharmed(const Scenario& scenario) {
   EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Completed);
   EXPECT_FALSE(result.metrics.unstable) << result.metrics.unstable_reason;
   EXPECT_LE(result.metrics.energy_operator, scenario.coupling.mmt.tank_start + kSlack);
-  EXPECT_LE(result.metrics.force_step_guarded, kStepMax);
+  EXPECT_LE(result.metrics.whole.force_step, kStepMax);
   EXPECT_LE(result.metrics.force_step_10ms, kStepMax);
   EXPECT_LE(result.metrics.tap_error[1], 0.05) << "it was felt all the same";
 }
@@ -177,9 +177,9 @@ TEST(RunTest, AProcessThatStandsStillKicksNobodyWhenItGoesOn) {
       pausing.fault.at_script_time = std::chrono::milliseconds{7850};  // on the way in
       const RunResult result = simulate(pausing);
       EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Completed);
-      EXPECT_LE(result.metrics.force_kick, 0.1);
-      EXPECT_LE(result.metrics.force_drop, 0.2);
-      EXPECT_LE(result.metrics.energy_given, pausing.coupling.mmt.tank_start + kHeldSlack);
+      EXPECT_LE(result.metrics.whole.force_kick, 0.1);
+      EXPECT_LE(result.metrics.whole.force_drop, 0.2);
+      EXPECT_LE(result.metrics.whole.energy_given, pausing.coupling.mmt.tank_start + kHeldSlack);
       EXPECT_LE(result.metrics.contact_force_max, 3.3);
     }
   }
@@ -195,7 +195,7 @@ TEST(RunTest, ManyPausesUnderALyingPeerGiveTheHandNoMoreThanTheTankAndWhatWasHel
       pausing.fault.count = 100;
       pausing.fault.apart = std::chrono::milliseconds{97};
       const RunResult result = simulate(pausing);
-      EXPECT_LE(result.metrics.energy_given, 1e-3 + kHeldSlack);
+      EXPECT_LE(result.metrics.whole.energy_given, 1e-3 + kHeldSlack);
     }
   }
 }
