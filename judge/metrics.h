@@ -62,6 +62,17 @@ struct TapMetrics {
   double stiffness_true{};  ///< [N/m], slope of the static law at the same positions
 };
 
+/// Of the whole run, also while the operator waits or aligns: as long as the surgeon's process
+/// lives and its pedal is down. Not metrics_of()'s: whoever made the ticks knows.
+struct WholeRunMetrics {
+  double force_step{};  ///< [N], worst change of F_h in 10 ms
+  // Of pauses of a site's process.
+  double force_kick{};    ///< [N], most that the force grew in 10 ms for no motion
+  double force_drop{};    ///< [N], the same as it fell
+  double energy_given{};  ///< [J], as energy_operator, less what forces gave while the process
+                          ///< stood still
+};
+
 /// Errors are rendered/true - 1 [-]; NaN: undefined.
 struct RunMetrics {
   bool unstable{};
@@ -87,15 +98,7 @@ struct RunMetrics {
   /// [N], the same less what the hand's own motion does: the smaller of the changes of F_h and of
   /// felt - true, so that a hand that leaves or enters the tissue makes no step by itself.
   double force_step_event{};
-  /// [N], the same over the whole run, also while the operator waits or aligns: as long as the
-  /// surgeon's process lives and its pedal is down. Not metrics_of()'s: whoever made the ticks
-  /// knows.
-  double force_step_guarded{};
-  // Of pauses of a site's process. Whoever made the ticks knows.
-  double force_kick{};                 ///< [N], most that the force grew in 10 ms for no motion
-  double force_drop{};                 ///< [N], the same as it fell
-  double energy_given{};               ///< [J], as energy_operator, less what forces gave while the
-                                       ///< process stood still
+  WholeRunMetrics whole;
   double force_peak{};                 ///< [N]
   double contact_force_max{};          ///< [N]
   double phantom_force{kUndefined};    ///< [N], |F_h| in the air in and after a blackout

@@ -195,7 +195,8 @@ PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
   now_.depth = in.depth;
   return {.halt = answer.halt,
           .target = {answer.position, answer.place},
-          .to_peer = {{now_.state, now_.epoch, now_.place, depth_report()}, wanted.to_surgeon}};
+          .to_peer = {{now_.state, now_.epoch, now_.place, depth_report()},
+                      account_.within_limits(wanted.to_surgeon)}};
 }
 
 void PatientControl::write_down(const PatientInputs& in, const PatientOutputs& out) noexcept {

@@ -150,7 +150,8 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
   now_.place = hand_.place;
   return {.force = answer_.force,
           .hold_in_plane = config_.hold_in_plane && answer_.force >= pressing_force(),
-          .to_peer = {{now_.state, now_.epoch, hand_.place, {}}, wanted.to_patient},
+          .to_peer = {{now_.state, now_.epoch, hand_.place, {}},
+                      account_.within_limits(wanted.to_patient)},
           .view = {now_.state, now_.peer_state, now_.link.state, now_.tip, now_.tip_known}};
 }
 

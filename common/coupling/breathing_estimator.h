@@ -29,9 +29,9 @@ class BreathingEstimator {
   static constexpr std::size_t kShapes = 3;
   static constexpr std::size_t kPaces = 16;
 
-  explicit BreathingEstimator(double period) noexcept;  ///< [s], between calls of step()
-  void step() noexcept;                                 ///< time goes on
-  void sleep(double span) noexcept { time_ += span; }   ///< [s], in which nobody looked
+  explicit BreathingEstimator(double period) noexcept;       ///< [s], between calls of step()
+  void step() noexcept;                                      ///< time goes on
+  void pass_unseen(double span) noexcept { time_ += span; }  ///< [s], in which nobody looked
   /// The tip at `position` [m] meets `force` [N], both through the same filters. Every tick.
   void see(double position, double force) noexcept;
   /// Another place, and with it another surface and tissue; it breathes with the same breath.

@@ -317,7 +317,7 @@ double ContactEstimator::sense(double position, double force) noexcept {
 /// now. No such reading becomes an equation, or says where a surface is.
 void ContactEstimator::follow(double position, double force, std::int64_t periods) noexcept {
   const std::int64_t followed = std::min(periods, kFollowed);
-  swing_.sleep(static_cast<double>(periods) * config_.period);
+  swing_.pass_unseen(static_cast<double>(periods) * config_.period);
   const double unseen = static_cast<double>(periods - followed) * config_.period;
   for (std::size_t k = 0; k < beside_.past.size(); ++k) {
     beside_.past[k] -= std::expm1(-unseen / kModelTimes[k]) * (elastic() - beside_.past[k]);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/core/check.h"
+#include "common/message/port_limits.h"
 
 namespace palp::record {
 
@@ -20,6 +21,11 @@ Lapse SiteAccount::begin_tick(TimePoint now) noexcept {
   ++counts_.ticks;
   counts_.ticks_missed += static_cast<std::uint64_t>(periods - 1);
   return {config_.period, periods};
+}
+
+PortSample SiteAccount::within_limits(PortSample sample) noexcept {
+  if (message::keep_limits(sample)) ++counts_.samples_limited;
+  return sample;
 }
 
 void SiteAccount::record(const Record& record) noexcept {

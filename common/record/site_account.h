@@ -17,8 +17,9 @@ namespace palp::record {
 struct SiteCounts {
   std::uint64_t ticks{};
   std::uint64_t ticks_missed{};
-  std::uint64_t records{};       ///< handed to the recorder and taken
-  std::uint64_t records_lost{};  ///< refused by it
+  std::uint64_t records{};          ///< handed to the recorder and taken
+  std::uint64_t records_lost{};     ///< refused by it
+  std::uint64_t samples_limited{};  ///< of the law, sent within the limits of the wire
 };
 
 struct SiteAccountConfig {
@@ -37,6 +38,8 @@ class SiteAccount {
   [[nodiscard]] Lapse begin_tick(TimePoint now) noexcept;
   [[nodiscard]] const SiteCounts& counts() const noexcept { return counts_; }
 
+  /// What the law tells its peer, as it can be sent.
+  [[nodiscard]] PortSample within_limits(PortSample sample) noexcept;
   void record(const Record& record) noexcept;
   void note(NoteCode code, double detail = 0) noexcept;
   /// A decision of the site's supervisor; nothing is recorded where the reason is None.

@@ -240,6 +240,7 @@ Result<Scenario> make_case(const Plan& plan, const Case& one) {
   scenario->depths = false;
   scenario->lying = plan.lying || one.lying;
   if (plan.blackout) place_blackout(*scenario);
+  if (one.fault.kind == FaultKind::None) return scenario;
   scenario->fault = one.fault;
   scenario->fault.at_script_time =
       one.fault_place.empty() ? from_seconds(one.fault_share * seconds(scenario->script.length()))

@@ -22,6 +22,16 @@ Result<netem::Impairment> make_path(const proto::config::Impairment& path) {
       from_seconds(path.delay_ms() * 1e-3), from_seconds(path.jitter_ms() * 1e-3), path.loss());
 }
 
+/// Its name is one of the document's, which are all there are.
+Fault make_fault(const proto::config::LabFault& message) {
+  const auto* const named = std::find(kFaultNames.begin(), kFaultNames.end(), message.kind());
+  return {.kind = static_cast<FaultKind>(named - kFaultNames.begin()),
+          .at_script_time = from_seconds(message.at_s()),
+          .amount = from_seconds(message.amount_s()),
+          .count = message.count(),
+          .apart = from_seconds(message.apart_s())};
+}
+
 }  // namespace
 
 Result<config::Document> load_scenario(const std::string& name_or_path) {
@@ -85,7 +95,7 @@ Result<Scenario> make_scenario(const std::string& name, const config::Document& 
                   .down = std::move(*down),
                   .duration = from_seconds(message.duration_s()),
                   .bare = false,
-                  .fault = {}};
+                  .fault = make_fault(message.fault())};
 }
 
 std::string describe_scenarios() {

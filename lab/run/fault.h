@@ -52,25 +52,27 @@ struct Fault {
   Duration apart{};  ///< from the end of one to the next
 };
 
+/// In the order of FaultKind.
+inline constexpr std::array<std::string_view, 17> kFaultNames{"none",
+                                                              "kill-surgeon",
+                                                              "kill-patient",
+                                                              "clock-surgeon",
+                                                              "clock-patient",
+                                                              "pause-surgeon",
+                                                              "pause-patient",
+                                                              "pedal",
+                                                              "sensor-silent",
+                                                              "sensor-stuck",
+                                                              "sensor-not-finite",
+                                                              "sensor-offset",
+                                                              "stage-stuck",
+                                                              "stage-faulted",
+                                                              "hand-not-finite",
+                                                              "hand-faulted",
+                                                              "emergency-stop"};
+
 [[nodiscard]] constexpr std::string_view to_string(FaultKind kind) noexcept {
-  constexpr std::array<std::string_view, 17> kNames{"none",
-                                                    "kill-surgeon",
-                                                    "kill-patient",
-                                                    "clock-surgeon",
-                                                    "clock-patient",
-                                                    "pause-surgeon",
-                                                    "pause-patient",
-                                                    "pedal",
-                                                    "sensor-silent",
-                                                    "sensor-stuck",
-                                                    "sensor-not-finite",
-                                                    "sensor-offset",
-                                                    "stage-stuck",
-                                                    "stage-faulted",
-                                                    "hand-not-finite",
-                                                    "hand-faulted",
-                                                    "emergency-stop"};
-  return kNames[static_cast<std::size_t>(kind)];
+  return kFaultNames[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace palp::lab

@@ -323,10 +323,10 @@ judge::RunMetrics judged(const Probe& probe,
     judging.blackout_to = judging.blackout_from + seconds(kBlackout) + kAfterBlackout;
   }
   judge::RunMetrics metrics = judge::metrics_of(probe.ticks(), judging);
-  metrics.force_step_guarded = probe.force_step_max();
-  metrics.force_kick = probe.pauses().kick();
-  metrics.force_drop = probe.pauses().drop();
-  metrics.energy_given = probe.pauses().energy_given();
+  metrics.whole.force_step = probe.force_step_max();
+  metrics.whole.force_kick = probe.pauses().kick();
+  metrics.whole.force_drop = probe.pauses().drop();
+  metrics.whole.energy_given = probe.pauses().energy_given();
   // Energy has no script: what the hand gets while it waits or lets go counts too.
   metrics.energy_operator = std::max(0.0, -probe.work_min());
   metrics.energy_net = std::max(0.0, -probe.net_min());

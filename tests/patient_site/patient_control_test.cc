@@ -8,6 +8,7 @@ namespace palp::patient {
 namespace {
 
 using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
 
 /// A site whose inputs a test makes up.
 struct Bench {
@@ -46,6 +47,20 @@ struct Bench {
   Duration force_age{};
   double force{};  ///< [N]
 };
+
+TEST(PatientControlTest, ASleepBeyondTheLimitLeavesTheStageWhereItStands) {
+  for (const Duration sleep : {Duration{49ms}, Duration{51ms}, Duration{5s}}) {
+    Bench bench;
+    for (int i = 0; i < 10; ++i) bench.engaged_tick(0);
+    ASSERT_EQ(bench.control.status().state, SiteState::Engaged);
+    const double stood = bench.control.status().command;
+    bench.in.now += sleep - 1ms;
+    for (int i = 0; i < 300; ++i) bench.engaged_tick(5e-3);  // nobody pressed the pedal again
+    const bool over = sleep > kLateMax;
+    EXPECT_EQ(bench.control.status().reason == record::NoteCode::TickLate, over);
+    EXPECT_EQ(bench.control.status().command == stood, over) << seconds(sleep);
+  }
+}
 
 TEST(PatientControlTest, NeverRunsFasterThanTheStageSaysItCan) {
   for (const double speed : {0.15, 0.02}) {

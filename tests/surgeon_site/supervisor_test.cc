@@ -60,6 +60,19 @@ TEST(SupervisorTest, BuildersReachEveryState) {
   }
 }
 
+TEST(SupervisorTest, AfterALateTickOnlyAPedalThatIsLiftedAndPressedEngages) {
+  Site site = Site::in_state(SiteState::Engaged);
+  site.in.overslept = true;
+  EXPECT_EQ(site.step().reason, NoteCode::TickLate);
+  site.in.overslept = false;
+  site.in.peer.state = SiteState::Clutched;
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(site.step().state, SiteState::Clutched);
+  site.in.pedal_held = false;
+  site.step();
+  site.in.pedal_held = true;
+  EXPECT_EQ(site.step().state, SiteState::Engaged);
+}
+
 struct Arrow {
   const char* name;
   SiteState from;
@@ -125,6 +138,18 @@ const Arrow kArrows[]{
      S::Stopped,
      NoteCode::PeerStopped},
     {"EngagedStays", S::Engaged, [](auto&) {}, S::Engaged, kNone},
+    {"EngagedSlept",
+     S::Engaged,
+     [](auto& in) { in.overslept = true; },
+     S::Clutched,
+     NoteCode::TickLate},
+    {"HoldSlept", S::Hold, [](auto& in) { in.overslept = true; }, S::Clutched, NoteCode::TickLate},
+    {"ClutchedSleptOverThePedal",
+     S::Clutched,
+     [](auto& in) { in.overslept = in.pedal_held = true; },
+     S::Clutched,
+     kNone},
+    {"RetractSlept", S::Retract, [](auto& in) { in.overslept = true; }, S::Retract, kNone},
     {"EngagedPedalUp",
      S::Engaged,
      [](auto& in) { in.pedal_held = false; },

@@ -374,6 +374,34 @@ TEST(SurgeonNodeTest, AForceFadesNoFasterBecauseTheProcessSlept) {
   EXPECT_GT(bench.status().force, 0.9 * before);
 }
 
+TEST(SurgeonNodeTest, ASleepBeyondTheLimitEndsTheEngagementAndAShorterOneDoesNot) {
+  for (const Duration sleep : {Duration{1ms}, Duration{49ms}, Duration{51ms}, Duration{2s}}) {
+    SimulatedHand hand{firm_hand(), short_script()};
+    Bench bench{hand};
+    bench.run(30s, [&] { return bench.status().force < 0.3; });
+    const double before = bench.status().force;
+    bench.now += sleep - 1ms;
+    bench.run(1ms);
+    const bool over = sleep > kLateMax;
+    EXPECT_EQ(bench.status().state == SiteState::Engaged, !over) << seconds(sleep);
+    EXPECT_EQ(bench.status().reason == NoteCode::TickLate, over) << seconds(sleep);
+    EXPECT_NEAR(bench.status().force, before, 0.04 + 1e-9) << "it goes on from what was held";
+    if (!over) continue;
+    bench.run(1s, [&] { return bench.status().force > 0; });
+    EXPECT_EQ(bench.status().force, 0) << "and fades";
+  }
+}
+
+TEST(SurgeonNodeTest, IsHeardWhateverItsLawComputes) {
+  HeldDevice device;
+  Bench bench{device};
+  bench.run(100ms);
+  device.state.position = 1e6;  // [m]
+  bench.run(100ms);
+  EXPECT_EQ(bench.status().link.unsent, 0U);
+  EXPECT_EQ(bench.status().samples_limited, 100U);
+}
+
 TEST(SurgeonNodeTest, LateTickCountsThePeriodsMissed) {
   HeldDevice device;
   Bench bench{device};

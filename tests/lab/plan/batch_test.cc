@@ -205,6 +205,7 @@ TEST(PlanTest, EverySetCanBeMadeIntoScenarios) {
                            "breath",
                            "long",
                            "faults",
+                           "pauses",
                            "device-faults"}) {
     const auto plan = make_set(name, {.count = 3});
     ASSERT_TRUE(plan) << name;
@@ -221,7 +222,7 @@ TEST(PlanTest, FaultsAreOfEveryKindEverywhereAndWithinTheScript) {
     kinds.insert(one.fault.kind);
     places.insert(one.fault_place);
   }
-  EXPECT_EQ(kinds.size(), 5U);
+  EXPECT_EQ(kinds.size(), 7U);
   EXPECT_EQ(places.size(), kFaultPlaces.size());
   std::set<Duration> moments;
   for (std::size_t i = 0; i < 20; ++i) {

@@ -116,6 +116,23 @@ TEST(ReplayTest, MmtDoesTheSameAgainFromItsFiles) {
   expect_same_again("mmt", FaultKind::LiftPedal);
 }
 
+TEST(ReplayTest, PausesOfAProcessDoSoAgain) {
+  for (const std::string_view law : coupling::kCouplingNames) {
+    for (const FaultKind fault : {FaultKind::PauseSurgeon, FaultKind::PausePatient}) {
+      SCOPED_TRACE(std::string{law} + ", " + std::string{to_string(fault)});
+      Scenario scenario = rough(std::string{law}, fault);
+      scenario.duration = 8s;
+      scenario.fault.amount = 20ms;
+      scenario.fault.count = 10;
+      scenario.fault.apart = 90ms;
+      const Replays again = replay(session_of(scenario));
+      EXPECT_EQ(again.surgeon.difference, "");
+      EXPECT_EQ(again.patient.difference, "");
+      EXPECT_EQ(again.surgeon.ticks + again.patient.ticks, 2 * 8'000U - 10 * 20U);
+    }
+  }
+}
+
 TEST(ReplayTest, DevicesThatFailDoSoAgain) {
   for (const FaultKind fault : kDeviceFaults) {
     SCOPED_TRACE(to_string(fault));

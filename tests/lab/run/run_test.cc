@@ -143,7 +143,7 @@ void expect_unharmed(const Scenario& scenario) {
   EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Completed);
   EXPECT_FALSE(result.metrics.unstable) << result.metrics.unstable_reason;
   EXPECT_LE(result.metrics.energy_operator, scenario.coupling.mmt.tank_start + kSlack);
-  EXPECT_LE(result.metrics.force_step_guarded, kStepMax);
+  EXPECT_LE(result.metrics.whole.force_step, kStepMax);
   EXPECT_LE(result.metrics.force_step_10ms, kStepMax);
   EXPECT_LE(result.metrics.tap_error[1], 0.05) << "it was felt all the same";
 }
@@ -163,6 +163,69 @@ TEST(RunTest, AClockThatJumpsInAPressDoesNoHarm) {
     SCOPED_TRACE(milliseconds);
     expect_unharmed(faulty(FaultKind::StepSurgeonClock, std::chrono::milliseconds{milliseconds}));
     expect_unharmed(faulty(FaultKind::StepPatientClock, std::chrono::milliseconds{milliseconds}));
+  }
+}
+
+/// One of a process that goes on after it.
+constexpr double kHeldSlack = 0.05e-3;  // [J], one tick of held force and half an encoder count
+
+TEST(RunTest, AProcessThatStandsStillKicksNobodyWhenItGoesOn) {
+  for (const FaultKind kind : {FaultKind::PauseSurgeon, FaultKind::PausePatient}) {
+    for (const int milliseconds : {1, 4, 20, 49, 60, 200, 1000, 5000}) {
+      SCOPED_TRACE(std::string{to_string(kind)} + " " + std::to_string(milliseconds));
+      Scenario pausing = faulty(kind, std::chrono::milliseconds{milliseconds});
+      pausing.fault.at_script_time = std::chrono::milliseconds{7850};  // on the way in
+      const RunResult result = simulate(pausing);
+      EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Completed);
+      EXPECT_LE(result.metrics.whole.force_kick, 0.1);
+      EXPECT_LE(result.metrics.whole.force_drop, 0.2);
+      EXPECT_LE(result.metrics.whole.energy_given, pausing.coupling.mmt.tank_start + kHeldSlack);
+      EXPECT_LE(result.metrics.contact_force_max, 3.3);
+    }
+  }
+}
+
+TEST(RunTest, ManyPausesUnderALyingPeerGiveTheHandNoMoreThanTheTankAndWhatWasHeld) {
+  for (const char* law : {"mmt", "wave", "tdpa"}) {
+    for (const int milliseconds : {3, 20, 49}) {
+      SCOPED_TRACE(std::string{law} + " " + std::to_string(milliseconds));
+      Scenario pausing = faulty(FaultKind::PauseSurgeon, std::chrono::milliseconds{milliseconds});
+      pausing.coupling.name = law;
+      pausing.lying = true;
+      pausing.fault.count = 100;
+      pausing.fault.apart = std::chrono::milliseconds{97};
+      const RunResult result = simulate(pausing);
+      EXPECT_LE(result.metrics.whole.energy_given, 1e-3 + kHeldSlack);
+    }
+  }
+}
+
+TEST(RunTest, APeerThatOverstatesItsEnergyFeedsTheHandNoMoreThanATank) {
+  for (const char* law : {"wave", "tdpa"}) {
+    Scenario lying = scenario("metro");
+    lying.bare = true;
+    lying.lying = true;
+    lying.coupling.name = law;
+    const RunResult result = simulate(lying);
+    EXPECT_LE(result.metrics.energy_operator, 1e-3 + kHeldSlack) << law;
+    EXPECT_GT(result.metrics.force_peak, 0.3) << "or nothing was told";
+  }
+}
+
+TEST(RunTest, AScenarioSaysWhatGoesWrong) {
+  const Scenario paused = scenario("metro",
+                                   {"fault.kind=pause-surgeon",
+                                    "fault.at_s=7.85",
+                                    "fault.amount_s=0.02",
+                                    "fault.count=3",
+                                    "fault.apart_s=0.1"});
+  EXPECT_EQ(paused.fault.kind, FaultKind::PauseSurgeon);
+  EXPECT_EQ(paused.fault.at_script_time, std::chrono::milliseconds{7850});
+  EXPECT_EQ(paused.fault.amount, std::chrono::milliseconds{20});
+  EXPECT_EQ(paused.fault.count, 3U);
+  EXPECT_EQ(paused.fault.apart, std::chrono::milliseconds{100});
+  for (const std::string_view name : kFaultNames) {
+    EXPECT_EQ(to_string(scenario("metro", {"fault.kind=" + std::string{name}}).fault.kind), name);
   }
 }
 
