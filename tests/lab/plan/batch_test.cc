@@ -340,17 +340,42 @@ TEST(SpreadTest, CountsUndefinedValuesAsTheWorst) {
   EXPECT_EQ(spread_of(results, 0).undefined, 1U);
 }
 
-TEST(LyingCodecTest, TellsAnotherModelEveryFiftyMilliseconds) {
+/// What the peer reads of 200 telegrams of a site whose law says `honest`.
+std::vector<PortSample> lies(const CouplingPayload& honest) {
   LyingCodec codec{std::make_unique<link::RawCodec>(), 3, std::chrono::milliseconds{1}};
-  std::set<double> surfaces;
+  std::vector<PortSample> told;
   for (int i = 0; i < 200; ++i) {
+    WireTelegram telegram;
+    telegram.telegram.port.payload = honest;
     std::array<std::byte, message::kTelegramSizeMax> bytes{};
-    const std::size_t size = codec.encode({}, bytes);
-    const auto told = codec.decode(std::span{bytes}.first(size));
-    ASSERT_TRUE(told);
-    surfaces.insert(std::get<ModelPayload>(told->telegram.port.payload).surface);
+    const std::size_t size = codec.encode(telegram, bytes);
+    const auto read = codec.decode(std::span{bytes}.first(size));
+    EXPECT_TRUE(read);
+    if (read) told.push_back(read->telegram.port);
+  }
+  return told;
+}
+
+TEST(LyingCodecTest, TellsAnotherModelEveryFiftyMilliseconds) {
+  std::set<double> surfaces;
+  for (const PortSample& port : lies(ModelPayload{})) {
+    surfaces.insert(std::get<ModelPayload>(port.payload).surface);
   }
   EXPECT_EQ(surfaces.size(), 4U);
+}
+
+TEST(LyingCodecTest, LiesInTheWordsOfEveryLaw) {
+  for (const CouplingPayload& honest :
+       {CouplingPayload{}, CouplingPayload{WavePayload{}}, CouplingPayload{TdpaPayload{}}}) {
+    std::set<double> forces;
+    for (const PortSample& port : lies(honest)) {
+      EXPECT_EQ(port.payload.index(), honest.index());
+      forces.insert(port.force);
+    }
+    EXPECT_EQ(forces.size(), 4U);
+  }
+  EXPECT_GT(std::get<WavePayload>(lies(WavePayload{}).back().payload).wave_energy, 100);
+  EXPECT_GT(std::get<TdpaPayload>(lies(TdpaPayload{}).back().payload).energy_in, 100);
 }
 
 }  // namespace
