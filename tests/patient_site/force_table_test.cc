@@ -135,7 +135,6 @@ TEST(ForceTableTest, AForceThatFallsIsRefused) {
   EXPECT_THAT(sentence("d_mm,F_N\n0,0\n1,0.1\n2,0.3\n3,0.2\n"),
               HasSubstr("t.csv: line 5: F_N = 0.2 falls below the row before (0.3)"));
   EXPECT_EQ(sentence("d_mm,F_N\n0,0\n1,0.1\n2,0.1\n3,0.2\n"), "") << "a plateau";
-  EXPECT_FALSE(ForceTable::make({{0, 1}, {1e-3, 0.5}, {2e-3, 0.2}, {3e-3, 0}}));
 }
 
 TEST(ForceTableTest, AByteOrderMarkIsNoPartOfTheFirstName) {
