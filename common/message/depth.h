@@ -54,7 +54,7 @@ struct DepthReport {
   double depth_low{};     ///< [m]
   double depth_high{};    ///< [m]
   double hash{};          ///< [N]
-  Place place;            ///< where the stroke was
+  Place place{};          ///< where the stroke was
 };
 
 namespace message {
