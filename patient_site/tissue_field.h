@@ -107,7 +107,7 @@ class SurveyField final : public TissueField {
   std::size_t weigh(const Place& place, std::span<double> weights) const noexcept;
   [[nodiscard]] Node node_of(std::size_t index) const;
   struct Blend {
-    double log{};              ///< of the force
+    double log{};              ///< [ln N], of the force
     const ForceTable* held{};  ///< the curve that counts alone: there, or the least or the most
   };
   /// `weights`: room for as many as there are curves.

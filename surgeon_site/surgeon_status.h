@@ -28,7 +28,7 @@ struct SurgeonStatus : record::SiteCounts {
   double offset{};  ///< [m], clutch: hand minus tip at the last engagement
   double tip{};     ///< [m], as last heard
   bool tip_known{};
-  Place peer_place;  ///< of the stage, as last heard
+  Place peer_place;        ///< of the stage, as last heard
   double force{};          ///< [N], to the hand
   double contact_force{};  ///< [N], as last heard
   bool gate_acted{};

@@ -10,7 +10,7 @@
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
 #include "common/record/session_writer.h"
-#include "lab/run/pause_witness.h"
+#include "lab/run/pause_probe.h"
 #include "lab/run/phase_finder.h"
 #include "lab/run/simulator.h"
 #include "lab/run/site_process.h"
@@ -159,7 +159,7 @@ class Probe {
   [[nodiscard]] double net_min() const { return net_min_; }    ///< [J], of the whole run
   /// [N], in 10 ms, whatever the operator was doing.
   [[nodiscard]] double force_step_max() const { return step_max_; }
-  [[nodiscard]] const PauseWitness& pauses() const { return pauses_; }
+  [[nodiscard]] const PauseProbe& pauses() const { return pauses_; }
 
  private:
   /// Against 10 ms ago, or the oldest since the force became the site's own.
@@ -177,7 +177,7 @@ class Probe {
   patient::RelaxingForce relaxing_;
   double work_min_{};  ///< [J]
   double net_min_{};   ///< [J]
-  PauseWitness pauses_;
+  PauseProbe pauses_;
   bool paused_{};              ///< either site, at the last look
   std::deque<double> forces_;  ///< [N], newest last
   double step_max_{};          ///< [N]

@@ -7,7 +7,7 @@
 #include "common/core/random.h"
 #include "common/coupling/coupling.h"
 
-/// A hand at a device that renders a law: the independent witness of the law's energy. Integrates
+/// A hand at a device that renders a law: the independent probe of the law's energy. Integrates
 /// in steps of 0.1 ms and books the work of the hand from its own states.
 namespace palp::coupling::hand_loop {
 

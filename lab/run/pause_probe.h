@@ -8,7 +8,7 @@ namespace palp::lab {
 /// What pauses of a site's process did to the hand, judged from the plant's own states: a device
 /// whose process stands still holds its last force, and whatever that does to a hand no law can
 /// undo. Thread: the lab's.
-class PauseWitness {
+class PauseProbe {
  public:
   struct Look {
     bool held{};          ///< the surgeon's process stands still: the device holds its force

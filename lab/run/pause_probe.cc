@@ -1,11 +1,11 @@
-#include "lab/run/pause_witness.h"
+#include "lab/run/pause_probe.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace palp::lab {
 
-void PauseWitness::look(const Look& now) {
+void PauseProbe::look(const Look& now) {
   const double taken = std::max(0.0, -now.work);
   // The last stretch of a pause is seen once it is over.
   const bool held = now.held || held_before_;
