@@ -23,7 +23,7 @@ from client.session_file import hand_of, messages
 from client.site import Patient, Surgeon
 
 # What the hand may gain from any peer, in mJ: docs/safety.md, and a margin of a tick.
-ENERGY_MAX_MJ = {"mmt": 1.05, "wave": 1.05, "tdpa": 1.05, "direct": 1.05}
+ENERGY_MAX_MJ = {"mmt": 1.05, "wave": 1.05, "tdpa": 1.05}  # direct has no bound
 DEPTH_MAX_MM = 3  # Less than the simulated tissue is known for, where the stage stops anyway.
 FORCE_STEP_MAX_N = 0.5  # in 10 ms
 TAPS = ("move -3 0.5", "taps 60 5 0.8 0.1")
@@ -255,7 +255,7 @@ ATTACKS = [
     Attack("lying-surgeon", "the same from a surgeon: the stage keeps to its gates", lying_surgeon),
     *(
         Attack(f"energy-{law}", f"a patient that overstates its energy, {law}", overstated(law))
-        for law in PAYLOADS
+        for law in ENERGY_MAX_MJ
     ),
     Attack("devices", "devices in a Hello that cannot be", wrong_devices),
 ]
