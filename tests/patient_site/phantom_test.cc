@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace palp::patient {
 namespace {
@@ -56,7 +57,8 @@ TEST(PhantomTest, ClosedFormIsItsLaw) {
 }
 
 TEST(PhantomTest, AFileIsSiteBBesideThePapersBlock) {
-  const std::string path = ::testing::TempDir() + "palp_phantom_test.csv";
+  const std::string path =
+      ::testing::TempDir() + "palp_phantom_test_" + std::to_string(::getpid()) + ".csv";
   std::ofstream{path} << "d_mm,F_N\n0,0\n1,0.1\n2,0.3\n4,1\n";
   const auto phantom = make_phantom("file:" + path);
   ASSERT_TRUE(phantom) << phantom.error().text;
@@ -68,7 +70,8 @@ TEST(PhantomTest, AFileIsSiteBBesideThePapersBlock) {
 }
 
 TEST(PhantomTest, AFileMaySayWhereItsCurvesLie) {
-  const std::string path = ::testing::TempDir() + "palp_phantom_places.csv";
+  const std::string path =
+      ::testing::TempDir() + "palp_phantom_places_" + std::to_string(::getpid()) + ".csv";
   std::ofstream{path} << "x_mm,y_mm,d_mm,F_N\n0,0,0,0\n0,0,1,0.1\n0,0,2,0.3\n0,0,4,1\n"
                       << "5,-2,0,0\n5,-2,1,0.2\n5,-2,2,0.6\n5,-2,3,2\n";
   const auto phantom = make_phantom("file:" + path);

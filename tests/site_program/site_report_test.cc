@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "common/io/process/diagnostics.h"
 
@@ -134,7 +135,8 @@ TEST(FinishTest, ARecordingThatFailedIsNoSuccess) {
 }
 
 TEST(FinishTest, WritesTheReportAlsoOfAFailure) {
-  const std::string path = testing::TempDir() + "palp_finish.json";
+  const std::string path =
+      testing::TempDir() + "palp_finish_" + std::to_string(::getpid()) + ".json";
   SiteReport report;
   report.exit_status = cannot_start("the port is taken");
   io::start_diagnostics("test");

@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace palp::surgeon {
 namespace {
@@ -186,7 +187,8 @@ TEST(ScriptReaderTest, LoadsByNameAndByFile) {
   const ScriptSetting setting{.hand_stiffness = kStiffness};
   EXPECT_EQ(load_script("script:standard", setting)->length(), 33700ms);
   EXPECT_TRUE(load_script("script:demo", setting));
-  const std::string path = ::testing::TempDir() + "palp_script_reader_test.txt";
+  const std::string path =
+      ::testing::TempDir() + "palp_script_reader_test_" + std::to_string(::getpid()) + ".txt";
   std::ofstream{path} << "hold 1\nhold x\n";
   EXPECT_THAT(load_script("script:" + path, setting).error().text,
               AllOf(HasSubstr(path), HasSubstr("line 2")));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "lab/plan/scenario_file.h"
 #include "lab/run/run.h"
@@ -18,8 +19,8 @@ namespace {
 
 Scenario plane_scenario(const char* coupling) {
   const std::string folder = ::testing::TempDir();
-  const std::string tissue = folder + "palp_plane_tissue.csv";
-  const std::string script = folder + "palp_plane_script.txt";
+  const std::string tissue = folder + "palp_plane_tissue_" + std::to_string(::getpid()) + ".csv";
+  const std::string script = folder + "palp_plane_script_" + std::to_string(::getpid()) + ".txt";
   std::ofstream{tissue} << test::surveyed_tissue_csv();
   std::ofstream{script} << test::kPlaneScript;
   auto document = load_scenario("metro");

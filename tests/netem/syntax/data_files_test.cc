@@ -5,12 +5,14 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace palp::netem {
 namespace {
 
 TEST(DataFilesTest, ReadsAFileByItsPathAndSaysWhichIsMissing) {
-  const std::string path = ::testing::TempDir() + "palp_data_files_test.csv";
+  const std::string path =
+      ::testing::TempDir() + "palp_data_files_test_" + std::to_string(::getpid()) + ".csv";
   std::ofstream{path} << "t_ms,delay_ms\n";
   const auto text = read_data_file(path);
   ASSERT_TRUE(text);
