@@ -1,7 +1,6 @@
 #include "common/io/secure/admission.h"
 
 #include <algorithm>
-#include <ranges>
 
 namespace palp::io {
 
@@ -15,7 +14,9 @@ bool Admission::open_to(const Endpoint& from, TimePoint now) {
   std::size_t of_debtors = 0;
   std::size_t of_host = 0;
   bool debtor = false;
-  for (const Begun& one : std::views::reverse(begun_)) {  // newest first: a flood ends here soon
+  // Newest first: a flood ends here soon.
+  for (auto at = begun_.rbegin(); at != begun_.rend(); ++at) {
+    const Begun& one = *at;
     const bool lately = now - one.at < kPause;
     if (!lately && debtor) break;
     of_all += lately ? 1 : 0;

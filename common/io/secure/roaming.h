@@ -35,6 +35,17 @@ struct PathQuestion {
   Endpoint to;
 };
 
+/// An address that sent something authentic.
+struct RoamingCandidate {
+  Endpoint address;
+  PathMessage::Nonce nonce{};
+  std::uint64_t newest{};  ///< number of the telegrams from there
+  std::size_t received{};  ///< [bytes] from there
+  std::size_t sent{};      ///< [bytes] to there
+  TimePoint heard_at{};
+  std::optional<TimePoint> answered_at;
+};
+
 /// The patient's: at which address the surgeon is. It moves to where telegrams come from that are
 /// newer than all, if whoever is there answers, and only when the present address has been silent
 /// for a while: somebody who copies telegrams and is faster than their sender cannot silence him.
@@ -78,17 +89,8 @@ class Roaming {
   [[nodiscard]] std::optional<Endpoint> move(const Straight& straight, TimePoint now);
 
  private:
-  /// An address that sent something authentic.
-  struct Candidate {
-    Endpoint address;
-    PathMessage::Nonce nonce{};
-    std::uint64_t newest{};  ///< number of the telegrams from there
-    std::size_t received{};  ///< [bytes] from there
-    std::size_t sent{};      ///< [bytes] to there
-    TimePoint heard_at{};
-    std::optional<TimePoint> answered_at;
-  };
   /// Of first comers, or of second ones.
+  using Candidate = RoamingCandidate;
   struct Place {
     std::optional<Candidate> candidate;
     std::optional<TimePoint> asked_at;  ///< whoever was here then
