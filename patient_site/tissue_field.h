@@ -104,7 +104,7 @@ class SurveyField final : public TissueField {
   };
   /// What each curve counts at a place: together 1, some perhaps below 0. @returns the index of a
   /// curve that is alone there, or the number of curves.
-  std::size_t weigh(const Place& place, std::span<double> weights) const noexcept;
+  [[nodiscard]] std::size_t weigh(const Place& place, std::span<double> weights) const noexcept;
   [[nodiscard]] Node node_of(std::size_t index) const;
   struct Blend {
     double log{};              ///< [ln N], of the force

@@ -52,6 +52,7 @@ Result<std::string> read_or_make_token(const std::string& path) {
   if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
     return fail(quoted + " can be read or written by others, expected mode 0600");
   }
+  if (about.st_uid != ::geteuid()) return fail(quoted + " is another user's");
   std::string text(kFileMax, '\0');
   text.resize(static_cast<std::size_t>(
       std::max<ssize_t>(0, ::read(file.number(), text.data(), text.size()))));

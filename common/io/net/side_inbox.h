@@ -21,7 +21,7 @@ struct SideDatagram {
   SideDatagram(std::span<const std::byte> datagram,
                const Endpoint& sender,
                TimePoint arrival) noexcept
-      : from{sender}, size{std::min(datagram.size(), bytes.size())}, arrived_at{arrival} {
+      : from{sender}, size{std::min(datagram.size(), link::kDatagramSizeMax)}, arrived_at{arrival} {
     std::copy_n(datagram.begin(), size, bytes.begin());
   }
   [[nodiscard]] std::span<const std::byte> datagram() const noexcept {

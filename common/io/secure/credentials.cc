@@ -153,13 +153,20 @@ Result<std::string> use_pre_shared_key(Credentials::Context& context,
   return std::string{"a pre-shared key"};
 }
 
+/// Also a link that leads nowhere: what somebody put there is meant to count.
+bool stands_there(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return std::filesystem::symlink_status(file, ignored).type() !=
+         std::filesystem::file_type::not_found;
+}
+
 Result<bool> trust(SSL_CTX* ssl, const std::filesystem::path& folder) {
   const std::filesystem::path authority = folder / "authority.pem";
   if (SSL_CTX_load_verify_file(ssl, authority.c_str()) != 1) {
     return tl::unexpected{not_taken(authority, "certificate in PEM form")};
   }
   const std::filesystem::path revoked = folder / "revoked.pem";
-  if (!std::filesystem::exists(revoked)) return false;
+  if (!stands_there(revoked)) return false;
   const Openssl<BIO> file{BIO_new_file(revoked.c_str(), "r")};
   X509_STORE* store = SSL_CTX_get_cert_store(ssl);
   int lists = 0;
@@ -168,8 +175,13 @@ Result<bool> trust(SSL_CTX* ssl, const std::filesystem::path& folder) {
     more = list != nullptr && X509_STORE_add_crl(store, list.get()) == 1;
     lists += more ? 1 : 0;
   }
-  if (lists == 0) return tl::unexpected{not_taken(revoked, "revocation list in PEM form")};
-  ERR_clear_error();  // the end of the file
+  // A list that ends in the middle must not pass for a shorter one.
+  const bool to_the_end = ERR_GET_REASON(ERR_peek_last_error()) == PEM_R_NO_START_LINE;
+  if (lists == 0 || !to_the_end) {
+    return tl::unexpected{
+        not_taken(revoked, "revocation list in PEM form, or one that breaks off")};
+  }
+  ERR_clear_error();
   // Of the whole chain: an authority between may be revoked as well.
   X509_STORE_set_flags(store, X509_V_FLAG_CRL_CHECK | X509_V_FLAG_CRL_CHECK_ALL);
   return true;
@@ -208,7 +220,7 @@ Result<std::string> use_certificates(Credentials::Context& context,
                                     : not_taken(key, "private key in PEM form without passphrase")};
   }
   if (const auto trusted = trust(ssl, folder); !trusted) return tl::unexpected{trusted.error()};
-  if (const std::filesystem::path peers = folder / kPeersFile; std::filesystem::exists(peers)) {
+  if (const std::filesystem::path peers = folder / kPeersFile; stands_there(peers)) {
     auto names = read_peer_names(peers);
     if (!names) return tl::unexpected{names.error()};
     context.peer_names = std::move(*names);

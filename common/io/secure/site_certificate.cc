@@ -1,7 +1,6 @@
 #include "common/io/secure/site_certificate.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <fstream>
 
@@ -44,12 +43,13 @@ std::string role_name(Role role) { return role == Role::Surgeon ? "surgeon" : "p
 std::string role_uri(Role role) { return "palp:" + role_name(role); }
 
 std::string site_name(const X509* certificate) {
-  std::array<char, 100> room{};
-  X509_NAME_get_text_by_NID(X509_get_subject_name(certificate),
-                            NID_commonName,
-                            room.data(),
-                            static_cast<int>(room.size()));
-  std::string name = room.data();
+  const X509_NAME* subject = X509_get_subject_name(certificate);
+  const int first = X509_NAME_get_index_by_NID(subject, NID_commonName, -1);
+  // Of two names nobody could tell which counts.
+  if (first < 0 || X509_NAME_get_index_by_NID(subject, NID_commonName, first) >= 0) return {};
+  const ASN1_STRING* text = X509_NAME_ENTRY_get_data(X509_NAME_get_entry(subject, first));
+  std::string name{reinterpret_cast<const char*>(ASN1_STRING_get0_data(text)),
+                   static_cast<std::size_t>(ASN1_STRING_length(text))};
   std::ranges::replace_if(
       name, [](char c) { return c < ' ' || c > '~'; }, '?');
   return name;

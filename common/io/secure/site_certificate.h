@@ -19,7 +19,8 @@ namespace palp::io {
 /// "surgeon" or "patient".
 [[nodiscard]] std::string role_name(link::Role role);
 
-/// The common name, in which a site is known to others; what is not printable ASCII becomes '?'.
+/// The common name, in which a site is known to others, a NUL within it included; what is not
+/// printable ASCII becomes '?'. Empty: there is none, or more than one.
 [[nodiscard]] std::string site_name(const X509* certificate);
 
 enum class CertificateFlaw { None, Authority, Purpose, Role };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -229,6 +230,27 @@ std::string refusal_of_patient_with(const Extensions& extensions) {
   pair.pass();
   EXPECT_EQ(pair.surgeon_.state() == State::Done, pair.surgeon_.failure().empty());
   return pair.surgeon_.failure();
+}
+
+TEST(DtlsHandshakeTest, AListThatCannotBeReadToItsEndStopsASite) {
+  const KeysFolder keys{"broken-lists"};
+  const auto folder = keys.site(Role::Patient);
+  ASSERT_TRUE(revoke_certificate(keys.config(), keys.site(Role::Surgeon) / "certificate.pem"));
+  const auto list = folder / "revoked.pem";
+  const auto size = std::filesystem::file_size(list);
+  std::ifstream in{list};
+  const std::string whole{std::istreambuf_iterator<char>{in}, {}};
+  std::ofstream{list, std::ios::app} << whole;
+  EXPECT_TRUE(Credentials::read(folder, Role::Patient)) << "two whole lists";
+  std::filesystem::resize_file(list, 2 * size - 60);
+  EXPECT_FALSE(Credentials::read(folder, Role::Patient)) << "one and a part";
+  for (const char* name : {"revoked.pem", "peers.txt"}) {
+    std::filesystem::remove(folder / "revoked.pem");
+    std::filesystem::remove(folder / "peers.txt");
+    EXPECT_TRUE(Credentials::read(folder, Role::Patient));
+    std::filesystem::create_symlink("nowhere", folder / name);
+    EXPECT_FALSE(Credentials::read(folder, Role::Patient)) << name << " leads nowhere";
+  }
 }
 
 TEST(DtlsHandshakeTest, WhatAnAuthorityMadeForSomethingElseIsRefused) {
