@@ -38,8 +38,8 @@ constexpr char kPreSharedSuites[] = "ECDHE-PSK-CHACHA20-POLY1305";
 /// OpenSSL keeps private keys in memory of its own, which is neither swapped nor dumped. Where the
 /// system has no locked memory to give, they lie among the rest as without it.
 void keep_private_keys_apart() {
-  constexpr std::size_t kHeap = 64 * 1024;  // [bytes], many times a site's key
-  constexpr std::size_t kSmallest = 32;     // [bytes]
+  constexpr std::size_t kHeap = std::size_t{64} << 10U;  // [bytes], many times a site's key
+  constexpr std::size_t kSmallest = 32;                  // [bytes]
   if (CRYPTO_secure_malloc_initialized() == 0) (void)CRYPTO_secure_malloc_init(kHeap, kSmallest);
 }
 
