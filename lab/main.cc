@@ -18,6 +18,7 @@
 #include "lab/report/run_report.h"
 #include "lab/report/visibility.h"
 #include "lab/run/run.h"
+#include "lab/scenarios_command.h"
 #include "lab/verbs.h"
 
 namespace palp::lab {
@@ -141,8 +142,11 @@ int main(int argc, char** argv) {
   run.argument("SCENARIO", arguments.scenario, "name (palp-lab scenarios) or text file");
   run.required();
   run.whole("--seed", arguments.seed, {.min = 0, .max = 9007199254740991}, "of everything random");
-  run.text("--coupling", arguments.coupling, "NAME", "instead of the scenario's");
-  run.text("--phantom", arguments.phantom, "P", "instead of the scenario's");
+  run.text("--coupling",
+           arguments.coupling,
+           "NAME",
+           "instead of the scenario's: direct, wave, tdpa or mmt");
+  run.text("--phantom", arguments.phantom, "P", "instead of the scenario's; as palp-patient's");
   run.toggle("--bare", arguments.bare, "raw telegrams, no session log: the laws alone");
   run.text("--session-files",
            arguments.session_files,
@@ -152,7 +156,7 @@ int main(int argc, char** argv) {
   run.text("--trace", arguments.trace, "FILE", "every tick of the script as CSV");
   palp::lab::BatchArguments batch;
   palp::lab::declare_batch_verbs(line, batch);
-  line.verb("scenarios", "lists the scenarios that come with the lab");
+  const palp::lab::ScenariosCommand scenarios{line};
   palp::lab::DepthFlags depth;
   declare_depth(line.verb("depth", "how well a depth is estimated, over many phantoms"), depth);
   palp::lab::VisibilityFlags visible;
@@ -161,10 +165,7 @@ int main(int argc, char** argv) {
     const std::string verb = line.chosen_verb();
     if (auto exit_status = palp::lab::run_batch_verb(verb, batch, palp::lab::machine()))
       return *exit_status;
-    if (verb == "scenarios") {
-      return {palp::config::ExitCode::Done,
-              palp::lab::describe_scenarios() + palp::lab::describe_sets()};
-    }
+    if (verb == "scenarios") return scenarios.run();
     if (verb == "depth") return palp::lab::run_depth(depth);
     if (verb == "visible") return palp::lab::run_visible(visible);
     return palp::lab::run(arguments);

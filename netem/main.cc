@@ -16,6 +16,7 @@
 #include "common/core/random.h"
 #include "common/io/net/endpoint.h"
 #include "netem/model/simulation.h"
+#include "netem/presets_command.h"
 #include "netem/relay/control_token.h"
 #include "netem/relay/datagram_socket.h"
 #include "netem/relay/relay_program.h"
@@ -52,7 +53,6 @@ struct Flags {
   std::string report;
   std::optional<double> status_s;
   double duration_s{};  ///< 0: until told to stop
-  std::string shown;    ///< presets NAME
 };
 
 /// The command line of `simulate`.
@@ -77,9 +77,6 @@ struct Plans {
 
 ExitStatus bad_input(const std::string& sentence) {
   return {ExitCode::BadInput, "palp-netem: " + sentence};
-}
-ExitStatus cannot_open(const std::string& sentence) {
-  return {ExitCode::CannotOpen, "palp-netem: " + sentence};
 }
 
 /// The ways to name an impairment exclude each other.
@@ -216,36 +213,6 @@ ExitStatus serve(const Flags& flags) {
   return {ExitCode::Done, ""};
 }
 
-std::string description(const std::string& name, const Timeline& preset) {
-  std::string text = name + ": " + preset.means + '\n';
-  if (preset.up.impairment == preset.down.impairment) {
-    text += "  both ways  " + to_string(preset.up.impairment) + '\n';
-  } else {
-    text += "  up         " + to_string(preset.up.impairment) + '\n';
-    text += "  down       " + to_string(preset.down.impairment) + '\n';
-  }
-  if (const std::size_t changes = preset.up.changes.size(); changes > 0) {
-    text += "  events     " + std::to_string(changes) + " each way, ";
-    text += "again every " + config::number_text(seconds(preset.up.loop)) + " s\n";
-  }
-  for (const std::string& source : preset.sources) text += "  source     " + source + '\n';
-  return text;
-}
-
-/// All in short, or the file of one.
-ExitStatus show_presets(const std::string& name) {
-  std::string text;
-  for (const std::string& known : preset_names()) {
-    if (!name.empty() && known != name) continue;
-    const auto preset = find_preset(known);
-    if (!preset) return cannot_open(preset.error().text);
-    text += description(known, *preset);
-  }
-  if (text.empty()) return bad_input(find_preset(name).error().text);
-  if (!name.empty()) text += '\n' + std::string{preset_text(name)};
-  return {ExitCode::Done, text};
-}
-
 void declare_relay(config::CommandLine& relay, Flags& flags) {
   const config::NumberRange milliseconds{.min = 0, .max = 1e9, .unit = "ms"};
   relay.address("--listen", flags.listen, 0, "where the surgeon sends to; port 0: any");
@@ -373,13 +340,12 @@ int run(int argc, char** argv) {
   Flags flags;
   config::CommandLine line{"palp-netem", "An impaired path for datagrams."};
   declare_relay(line.verb("relay", "forward datagrams between two UDP ports"), flags);
-  config::CommandLine& shown = line.verb("presets", "the named links and where they come from");
-  shown.argument("NAME", flags.shown, "only this one");
+  const PresetsCommand presets{line};
   SimulateFlags simulation;
   declare_simulate(line.verb("simulate", "decide about datagrams without any socket"), simulation);
   return config::run_program(line, argc, argv, [&] {
     if (line.chosen_verb() == "simulate") return run_simulate(simulation);
-    return line.chosen_verb() == "relay" ? serve(flags) : show_presets(flags.shown);
+    return line.chosen_verb() == "relay" ? serve(flags) : presets.run();
   });
 }
 

@@ -6,6 +6,7 @@
 #include <malloc.h>
 
 #include "common/config/program_run.h"
+#include "common/config/report.h"
 #include "common/io/process/hardening.h"
 
 namespace palp::site_program {
@@ -49,8 +50,17 @@ int run(const SiteMain& program, int argc, const char* const* argv) {
   }
   const auto verb = std::ranges::find(program.verbs, program.line.chosen_verb(), &SideVerb::name);
   if (verb != program.verbs.end()) {
+    if (const auto closed = config::closed_report(program.line)) return config::leave(*closed);
     const ExitStatus exit_status = verb->run();
-    return config::leave(program.line, {exit_status.code, exit_status.reason});
+    const std::string sentence =
+        exit_status.reason.empty() ? "" : program.line.program() + ": " + exit_status.reason;
+    return config::leave(program.line, {exit_status.code, sentence});
+  }
+  if (!program.report_file.empty()) {
+    if (const auto can = config::can_write_file(program.report_file); !can) {
+      return config::leave({config::ExitCode::CannotOpen,
+                            program.line.program() + ": --report: " + can.error().text});
+    }
   }
   try {
     report.exit_status = program.session(report);

@@ -1,6 +1,7 @@
 #include "site_program/site_report.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "common/config/json.h"
 #include "common/config/report.h"
@@ -110,9 +111,13 @@ ExitStatus with_recording(ExitStatus exit_status, const RecordAccount& records) 
 }
 
 int finish(const SiteReport& report, const std::string& path) {
+  const std::string program = "palp-" + report.site + ": ";
   if (report.exit_status.code != config::ExitCode::Done) {
-    io::error(report.exit_status.reason.empty() ? report.exit_status.outcome
-                                                : report.exit_status.reason);
+    const std::string& reason = report.exit_status.reason;
+    const bool named = reason.starts_with(program);
+    (void)config::leave(
+        {report.exit_status.code,
+         (named ? "" : program) + (reason.empty() ? report.exit_status.outcome : reason)});
   } else {
     io::info(report.exit_status.outcome + (report.session_file.empty()
                                                ? ""
@@ -122,7 +127,8 @@ int finish(const SiteReport& report, const std::string& path) {
   config::ExitCode code = report.exit_status.code;
   if (!path.empty()) {
     if (const auto written = config::write_whole_file(path, to_json(report)); !written) {
-      io::error("--report: " + written.error().text);
+      (void)config::leave(
+          {config::ExitCode::CannotOpen, program + "--report: " + written.error().text});
       if (code == config::ExitCode::Done) code = config::ExitCode::CannotOpen;
     }
   }

@@ -6,12 +6,21 @@
 
 namespace palp::config {
 
+std::optional<ExitStatus> closed_report(const CommandLine& line) {
+  const std::string file = line.asked_report().file;
+  if (file.empty()) return std::nullopt;
+  const auto can = can_write_file(file);
+  if (can) return std::nullopt;
+  return ExitStatus{ExitCode::CannotOpen, line.program() + ": --report: " + can.error().text};
+}
+
 int run_program(CommandLine& line,
                 int argc,
                 const char* const* argv,
                 const std::function<ExitStatus()>& body) {
   std::optional<ExitStatus> exit_status = line.parse(argc, argv);
   try {
+    if (!exit_status) exit_status = closed_report(line);
     if (!exit_status) exit_status = body();
   } catch (const std::exception& failure) {
     exit_status = refusal(line.program(), {.text = failure.what(), .unreachable = true});

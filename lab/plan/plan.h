@@ -48,6 +48,12 @@ struct Plan {
   bool blackout{};        ///< a blackout of 2 s lies in the middle of A's deep press
 };
 
+/// A name that may be asked for, and what is behind it.
+struct NamedChoice {
+  std::string name;
+  std::string means;
+};
+
 /// What a set is made for.
 struct PlanAsk {
   std::uint64_t count{1000};  ///< cases of the random sets
@@ -61,7 +67,7 @@ struct PlanAsk {
 /// device-faults. Random sets draw case i from (seed, i) alone, so that the first 100 of 1000 are
 /// the first 100 of 100.
 [[nodiscard]] Result<Plan> make_set(const std::string& name, const PlanAsk& ask);
-[[nodiscard]] std::string describe_sets();
+[[nodiscard]] std::vector<NamedChoice> described_sets();
 
 /// The stability map of eq. (1): spring by round trip by grip.
 [[nodiscard]] Plan make_map(const PlanAsk& ask);

@@ -98,16 +98,14 @@ Result<Scenario> make_scenario(const std::string& name, const config::Document& 
                   .fault = make_fault(message.fault())};
 }
 
-std::string describe_scenarios() {
-  std::string lines;
+std::vector<NamedChoice> described_scenarios() {
+  std::vector<NamedChoice> scenarios;
   for (const ScenarioText& known : scenario_texts()) {
     config::Document document = config::scenario_document();
     if (!document.merge(known.text, known.name)) continue;  // tests hold them to be readable
-    std::string name{known.name};
-    name.resize(std::max<std::size_t>(name.size() + 2, 16), ' ');
-    lines += name + document.as<LabScenario>().means() + "\n";
+    scenarios.push_back({std::string{known.name}, document.as<LabScenario>().means()});
   }
-  return lines;
+  return scenarios;
 }
 
 }  // namespace palp::lab

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/config/document.h"
 #include "common/core/result.h"
+#include "lab/plan/plan.h"
 #include "lab/run/scenario.h"
 
 /// Scenarios as text: messages LabScenario of proto/config.proto. Allocates, reads files.
@@ -16,7 +18,7 @@ namespace palp::lab {
 [[nodiscard]] Result<Scenario> make_scenario(const std::string& name,
                                              const config::Document& document);
 
-/// Names and meanings of those that come with the lab, a line each.
-[[nodiscard]] std::string describe_scenarios();
+/// Those that come with the lab.
+[[nodiscard]] std::vector<NamedChoice> described_scenarios();
 
 }  // namespace palp::lab

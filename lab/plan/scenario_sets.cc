@@ -338,14 +338,10 @@ Result<Plan> make_set(const std::string& name, const PlanAsk& ask) {
   return fail(sentence);
 }
 
-std::string describe_sets() {
-  std::string lines;
-  for (const Set& set : kSets) {
-    std::string name{set.name};
-    name.resize(16, ' ');
-    lines.append(name).append(set.means).append("\n");
-  }
-  return lines;
+std::vector<NamedChoice> described_sets() {
+  std::vector<NamedChoice> sets;
+  for (const Set& set : kSets) sets.push_back({std::string{set.name}, std::string{set.means}});
+  return sets;
 }
 
 Plan make_map(const PlanAsk& ask) {

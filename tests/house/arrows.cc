@@ -74,6 +74,7 @@ const std::vector<Arrow>& arrows() {
       {"netem/relay/*",
        {"netem/model", "netem/syntax", "common/link/transport.h", "common/io/*", "common/config"}},
       {"netem/main.cc", {"netem/*", "common/io/*", "common/config"}},
+      {"netem/presets_command.*", {"netem/syntax", "common/config"}},
       // What the two programs of a session do alike: it puts parts together, as their main.cc does.
       {"site_program/*",
        {"common/config",

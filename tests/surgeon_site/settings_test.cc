@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/config/document.h"
+#include "common/coupling/any_coupling.h"
 #include "tests/common/settings/knob_walk.h"
 #include "tests/common/settings/settings_text.h"
 
@@ -123,6 +124,17 @@ TEST(SurgeonSettingsTest, TheAgreementIsOnTheLawAndThePeriodAlone) {
   EXPECT_EQ(settings_with({"seed=2", "loop.priority=0", "hand.grip=firm"}).agreement, agreement);
   EXPECT_NE(settings_with({"coupling.direct.spring_n_per_m=100"}).agreement, agreement);
   EXPECT_NE(settings_with({"loop.period_us=500"}).agreement, agreement);
+}
+
+TEST(SurgeonSettingsTest, HelpListsTheCouplingsAndScriptsThereAre) {
+  const config::Document document = config::surgeon_document();
+  for (const std::string_view name : coupling::kCouplingNames) {
+    EXPECT_THAT(document.describe("coupling.name"), HasSubstr(std::string{name}));
+  }
+  const std::string masters = document.describe("hand.master");
+  for (const char* const name : {"standard", "demo", "breath", "long"}) {
+    EXPECT_THAT(masters, HasSubstr(std::string{"script:"} + name));
+  }
 }
 
 }  // namespace

@@ -93,6 +93,43 @@ TEST_F(BadInputTest, MissingFile) {
   expect_refusal("palp-lab run no-such-file", kBadInput, "no-such-file");
 }
 
+TEST_F(BadInputTest, AReportThatCannotBeWrittenIsToldBeforeTheSession) {
+  const std::string nowhere = " --report /nowhere/at/all.json";
+  for (const std::string program : {"palp-patient --listen 127.0.0.1:0 --insecure",
+                                    "palp-surgeon --peer 127.0.0.1:9 --insecure",
+                                    "palp-surgeon check --seconds 9",
+                                    "palp-netem relay --listen 127.0.0.1:0 --forward 127.0.0.1:9",
+                                    "palp-lab run long"}) {
+    expect_refusal(program + nowhere, kNotReached, "--report: cannot write /nowhere/at/all.json");
+  }
+}
+
+TEST_F(BadInputTest, KeysOfTwoAuthoritiesAreToldWithTheRemedyAndNotRetried) {
+  const std::string ours = folder_ + "/ours";
+  const std::string theirs = folder_ + "/theirs";
+  ASSERT_TRUE(make_certificates(ours) && make_certificates(theirs));
+  Process patient{"palp-patient",
+                  {"--listen", "127.0.0.1:0", "--identity", ours + "/patient"},
+                  folder_ + "/log"};
+  const std::string address = patient.address();
+  ASSERT_NE(address, "") << patient.output();
+  EXPECT_EQ(run("palp-surgeon --peer " + address + " --identity '" + theirs + "/surgeon'"),
+            kNotReached);
+  EXPECT_THAT(text("err"), HasSubstr("keys come from two different authorities"));
+  EXPECT_THAT(text("err"), HasSubstr("palp-surgeon certificates"));
+}
+
+TEST_F(BadInputTest, EveryProgramComplainsInTheSameForm) {
+  for (const std::string program : {"palp-surgeon --peer nowhere --insecure",
+                                    "palp-patient --listen nowhere --insecure",
+                                    "palp-netem presets moon",
+                                    "palp-lab run moon",
+                                    "palp-review check moon"}) {
+    EXPECT_NE(run(program), 0);
+    EXPECT_EQ(text("err").find(program.substr(0, program.find(' ')) + ": "), 0U) << text("err");
+  }
+}
+
 TEST_F(BadInputTest, ARunWhoseOperatorIsRefusedIsNotDone) {
   const std::string scenario = folder_ + "/refused.textproto";
   std::ofstream{scenario} << "surgeon { coupling { name: 'direct' } } up { delay_ms: 50 }\n"

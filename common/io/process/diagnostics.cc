@@ -1,5 +1,6 @@
 #include "common/io/process/diagnostics.h"
 
+#include <cstdlib>
 #include <string>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -17,11 +18,19 @@ void say(spdlog::level::level_enum level, std::string_view sentence) {
   spdlog::default_logger_raw()->log(level, spdlog::string_view_t{line.data(), line.size()});
 }
 
+/// https://no-color.org: a terminal gets colours unless this is set to anything.
+spdlog::color_mode colours() {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): before any thread
+  const char* const unwanted = std::getenv("NO_COLOR");
+  const bool given = unwanted != nullptr && *unwanted != '\0';
+  return given ? spdlog::color_mode::never : spdlog::color_mode::automatic;
+}
+
 }  // namespace
 
 void start_diagnostics(std::string_view program) {
   spdlog::drop_all();
-  const auto logger = spdlog::stderr_color_mt(std::string{program});
+  const auto logger = spdlog::stderr_color_mt(std::string{program}, colours());
   logger->set_pattern("%H:%M:%S.%e %n %^%l%$: %v");
   logger->set_level(spdlog::level::info);
   logger->flush_on(spdlog::level::info);

@@ -85,8 +85,9 @@ void Associations::collect(Attempt& attempt, TimePoint now) {
     letters_.push_back({attempt.peer, std::move(one)});
   }
   if (attempt.handshake.state() == State::Failed && !std::exchange(attempt.told, true)) {
-    failure_ = "the handshake with " + attempt.peer.to_string() +
-               " failed: " + attempt.handshake.failure();
+    const DtlsFailure& failure = attempt.handshake.failure();
+    failure_ = {"the handshake with " + attempt.peer.to_string() + " failed: " + failure.sentence,
+                failure.hopeless};
   }
   std::optional<DtlsResult> result = attempt.handshake.take_result();
   if (!result) return;
@@ -163,6 +164,6 @@ std::vector<Letter> Associations::take_letters() { return std::exchange(letters_
 
 std::vector<std::uint64_t> Associations::take_made() { return std::exchange(newly_made_, {}); }
 
-std::optional<std::string> Associations::take_failure() { return std::exchange(failure_, {}); }
+std::optional<DtlsFailure> Associations::take_failure() { return std::exchange(failure_, {}); }
 
 }  // namespace palp::io

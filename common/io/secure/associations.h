@@ -79,7 +79,7 @@ class Associations {
   /// Ids of those made since the last call.
   [[nodiscard]] std::vector<std::uint64_t> take_made();
   /// One sentence about a handshake with somebody whose address is proven.
-  [[nodiscard]] std::optional<std::string> take_failure();
+  [[nodiscard]] std::optional<DtlsFailure> take_failure();
 
  private:
   struct Attempt {
@@ -102,7 +102,7 @@ class Associations {
   std::optional<TimePoint> called_at_;
   std::vector<Letter> letters_;
   std::vector<std::uint64_t> newly_made_;
-  std::optional<std::string> failure_;
+  std::optional<DtlsFailure> failure_;
 };
 
 }  // namespace palp::io

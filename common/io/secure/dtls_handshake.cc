@@ -92,21 +92,6 @@ std::string hexadecimal(std::span<const unsigned char> bytes) {
   return text;
 }
 
-/// Why a certificate did not pass (credentials.cc).
-std::string refusal_of(long verdict) {
-  switch (verdict) {
-    case X509_V_ERR_APPLICATION_VERIFICATION:
-      return "the peer's certificate is made out to another role";
-    case X509_V_ERR_INVALID_PURPOSE:
-      return "the peer's certificate is not one of a site";
-    case X509_V_ERR_HOSTNAME_MISMATCH:
-      return "the peer's certificate bears a name that peers.txt does not list";
-    default:
-      return std::string{"the peer's certificate is refused: "} +
-             X509_verify_cert_error_string(verdict);
-  }
-}
-
 }  // namespace
 
 bool looks_like_dtls(std::span<const std::byte> datagram) noexcept {
@@ -244,7 +229,7 @@ void DtlsHandshake::tick() {
   ERR_clear_error();
   if (DTLSv1_handle_timeout(parts_->ssl.get()) < 0) {
     state_ = State::Failed;
-    failure_ = parts_->certificates ? "no answer" : "no answer, or another pre-shared key";
+    failure_ = {parts_->certificates ? "no answer" : "no answer, or another pre-shared key", false};
     ERR_clear_error();
   }
 }
@@ -261,8 +246,9 @@ void DtlsHandshake::go_on() {
   if (why == SSL_ERROR_WANT_READ || why == SSL_ERROR_WANT_WRITE) return;
   state_ = State::Failed;
   const long verdict = SSL_get_verify_result(ssl);
-  const std::string complaint = openssl_complaint();
-  failure_ = verdict == X509_V_OK ? complaint : refusal_of(verdict);
+  failure_ = verdict == X509_V_OK ? failure_of_handshake(ERR_peek_last_error())
+                                  : failure_of_certificate(verdict);
+  ERR_clear_error();
 }
 
 /// What OpenSSL does not insist on, and the keys.
@@ -272,7 +258,7 @@ void DtlsHandshake::finish() {
   result.peer_name = "a pre-shared key";
   state_ = State::Failed;
   if (SSL_get_extms_support(ssl) != 1) {  // RFC 7627: else exported keys may not be unique
-    failure_ = "the peer offers no extended master secret";
+    failure_ = {"the peer offers no extended master secret", false};
     return;
   }
   if (parts_->certificates) {
@@ -281,7 +267,7 @@ void DtlsHandshake::finish() {
     unsigned size = 0;
     if (peer == nullptr || SSL_get_verify_result(ssl) != X509_V_OK ||
         X509_digest(peer.get(), EVP_sha256(), digest.data(), &size) != 1) {
-      failure_ = "the peer has shown no certificate";
+      failure_ = {"the peer has shown no certificate", false};
       return;
     }
     result.peer_name = site_name(peer.get());
@@ -298,7 +284,7 @@ void DtlsHandshake::finish() {
                                  kVersion.data(),
                                  kVersion.size(),
                                  1) != 1) {
-    failure_ = "no keys could be exported: " + openssl_complaint();
+    failure_ = {"no keys could be exported: " + openssl_complaint(), false};
     return;
   }
   result.keys = SessionKeys::from_exported(exported, role_);

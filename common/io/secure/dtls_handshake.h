@@ -12,6 +12,7 @@
 #include "common/core/time.h"
 #include "common/io/net/endpoint.h"
 #include "common/io/secure/credentials.h"
+#include "common/io/secure/dtls_failure.h"
 #include "common/link/traffic_keys.h"
 
 namespace palp::io {
@@ -54,8 +55,8 @@ class DtlsHandshake {
   /// Every few milliseconds while running.
   void tick();
   [[nodiscard]] State state() const noexcept { return state_; }
-  /// One sentence, once Failed.
-  [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
+  /// Once Failed.
+  [[nodiscard]] const DtlsFailure& failure() const noexcept { return failure_; }
   /// Once Done; only once.
   [[nodiscard]] std::optional<DtlsResult> take_result();
   /// What is to be sent to the peer, in order.
@@ -71,7 +72,7 @@ class DtlsHandshake {
   std::unique_ptr<Parts> parts_;
   link::Role role_;
   State state_{State::Running};
-  std::string failure_;
+  DtlsFailure failure_;
   std::optional<DtlsResult> result_;
 };
 

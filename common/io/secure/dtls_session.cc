@@ -301,13 +301,19 @@ void DtlsSession::hear_path(const Associations::Opened& opened,
 }
 
 void DtlsSession::tell_failure(TimePoint now, SessionEndpointOutput& out) {
-  std::optional<std::string> failure = associations_.take_failure();
+  std::optional<DtlsFailure> failure = associations_.take_failure();
   if (!failure || out.event) return;
-  if (told_ == *failure && told_at_ && now - *told_at_ < kFailurePause) return;
+  // A surgeon calls one patient only. In a session it has keys, and a patient waits for others.
+  const bool first = config_.session.role == Role::Surgeon && present_ == 0 && proof_.empty();
+  if (failure->hopeless && first) {
+    out.event = link::Refused{std::move(failure->sentence), true};
+    return;
+  }
+  if (told_ == failure->sentence && told_at_ && now - *told_at_ < kFailurePause) return;
   if (told_at_ && now - *told_at_ < seconds{1}) return;  // whoever it is: not more often
-  told_ = *failure;
+  told_ = failure->sentence;
   told_at_ = now;
-  out.event = link::Refused{std::move(*failure), false};
+  out.event = link::Refused{std::move(failure->sentence), false};
 }
 
 std::unique_ptr<SessionEndpoint> make_session_endpoint(const DtlsSessionConfig& config,

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+/// What OpenSSL says of a handshake that failed, in the words of whoever set up the two sites.
+namespace palp::io {
+
+struct DtlsFailure {
+  std::string sentence;  ///< what is wrong and what helps; no full stop
+  /// Found by this site's own look at the peer's certificate: the next attempt ends alike. What the
+  /// peer only says about us is never that, since anybody can say it in its name.
+  bool hopeless{};
+};
+
+/// `verdict`: an X509_V_ERR_..., but not X509_V_OK, about the peer's certificate.
+[[nodiscard]] DtlsFailure failure_of_certificate(long verdict);
+/// `error`: of OpenSSL's queue; 0: none.
+[[nodiscard]] DtlsFailure failure_of_handshake(unsigned long error);
+
+}  // namespace palp::io
