@@ -15,16 +15,20 @@
 #include "common/core/printable.h"
 #include "common/core/random.h"
 #include "common/io/net/endpoint.h"
+#include "common/io/process/diagnostics.h"
+#include "common/io/process/hardening.h"
 #include "netem/model/simulation.h"
 #include "netem/presets_command.h"
 #include "netem/relay/control_token.h"
-#include "netem/relay/datagram_socket.h"
+#include "common/io/net/datagram_socket.h"
 #include "netem/relay/relay_program.h"
 #include "netem/syntax/impairment_text.h"
 #include "netem/syntax/presets.h"
 
 namespace palp::netem {
 namespace {
+
+using io::monotonic_now;
 
 using config::ExitCode;
 using config::ExitStatus;
@@ -337,6 +341,8 @@ void declare_simulate(config::CommandLine& line, SimulateFlags& flags) {
 }
 
 int run(int argc, char** argv) {
+  // A recording holds what two sites say to each other.
+  if (const auto refused = io::harden_process()) io::warn(*refused);
   Flags flags;
   config::CommandLine line{"palp-netem", "An impaired path for datagrams."};
   declare_relay(line.verb("relay", "forward datagrams between two UDP ports"), flags);

@@ -16,11 +16,18 @@
 #include "netem/model/channel.h"
 #include "netem/model/path_plan.h"
 #include "netem/relay/client_choice.h"
-#include "netem/relay/datagram_socket.h"
+#include "common/io/net/datagram_socket.h"
 #include "netem/relay/relay_recording.h"
 #include "netem/relay/release_timing.h"
 
 namespace palp::netem {
+
+using io::DatagramSocket;
+using io::kDatagramBatch;
+using io::monotonic_now;
+using io::OutgoingDatagram;
+using io::ReceivedDatagram;
+using io::wall_now;
 
 struct RelayConfig {
   io::Endpoint listen;   ///< the surgeon's side

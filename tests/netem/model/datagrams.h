@@ -7,10 +7,15 @@
 #include <vector>
 
 #include "common/io/net/endpoint.h"
-#include "netem/relay/datagram_socket.h"
+#include "common/io/net/datagram_socket.h"
 
 /// What tests of the relay say and hear through sockets of their own.
 namespace palp::netem {
+
+using io::DatagramSocket;
+using io::monotonic_now;
+using io::OutgoingDatagram;
+using io::ReceivedDatagram;
 
 /// Of every wait.
 inline constexpr Duration kDeadline = std::chrono::seconds{10};

@@ -1,4 +1,4 @@
-#include "netem/relay/datagram_socket.h"
+#include "common/io/net/datagram_socket.h"
 
 #include <algorithm>
 #include <array>
@@ -15,13 +15,13 @@
 #include "common/io/net/send_probe.h"
 #include "common/link/transport.h"
 
-namespace palp::netem {
+namespace palp::io {
 namespace {
 
-constexpr unsigned kBatch = kDatagramBatch;
-constexpr int kReceiveBuffer = 4 << 20;  ///< [bytes], 20 ms at 200,000 datagrams/s with overhead
+constexpr unsigned kMessagesMax = kDatagramBatch;
+constexpr int kKernelBuffer = 4 << 20;  ///< [bytes], 20 ms at 200,000 datagrams/s with overhead
 /// An older stamp means that the wall clock was stepped.
-constexpr Duration kStampAgeMax = std::chrono::milliseconds{100};
+constexpr Duration kStampOldest = std::chrono::milliseconds{100};
 
 Duration read_clock(clockid_t clock) noexcept {
   timespec now{};
@@ -40,7 +40,7 @@ void read_controls(msghdr& header, Duration monotonic, Duration wall, ReceivedDa
       std::memcpy(&stamp, CMSG_DATA(part), sizeof stamp);
       const Duration age =
           wall - (std::chrono::seconds{stamp.tv_sec} + std::chrono::nanoseconds{stamp.tv_nsec});
-      const bool stepped = age < Duration{} || age > kStampAgeMax;
+      const bool stepped = age < Duration{} || age > kStampOldest;
       if (!stepped) datagram.arrived_at = TimePoint{monotonic - age};
     } else if (part->cmsg_level == IPPROTO_IP && part->cmsg_type == IP_TOS) {
       std::memcpy(&datagram.tos, CMSG_DATA(part), sizeof datagram.tos);
@@ -62,7 +62,7 @@ Sent* unguarded(const Sent* sent) noexcept {
   throw std::system_error(errno, std::generic_category(), what);
 }
 
-int open_socket(const io::Endpoint& of) {
+int open_socket(const Endpoint& of) {
   const int descriptor = ::socket(of.family(), SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (descriptor < 0) cannot("cannot open a UDP socket");
   const int on = 1;
@@ -71,7 +71,7 @@ int open_socket(const io::Endpoint& of) {
   ::setsockopt(descriptor, IPPROTO_IP, IP_RECVTOS, &on, sizeof on);
   ::setsockopt(descriptor, IPPROTO_IPV6, IPV6_RECVTCLASS, &on, sizeof on);
   // The privileged call goes beyond the system's limit, the plain one up to it: either will do.
-  const int size = kReceiveBuffer;
+  const int size = kKernelBuffer;
   if (::setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0) {
     ::setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &size, sizeof size);
   }
@@ -79,7 +79,7 @@ int open_socket(const io::Endpoint& of) {
 }
 
 /// A socket of IPv6 speaks IPv4 as well, to addresses made for that.
-bool speaks_ipv6(const io::Endpoint& to) noexcept {
+bool speaks_ipv6(const Endpoint& to) noexcept {
   if (to.family() != AF_INET6) return false;
   return !IN6_IS_ADDR_V4MAPPED(&reinterpret_cast<const sockaddr_in6*>(to.address())->sin6_addr);
 }
@@ -94,8 +94,8 @@ struct DatagramSocket::Batch {
   /// Each buffer a byte longer than the longest datagram, so that what is too long is seen to be.
   explicit Batch(std::size_t datagram_max)
       : buffer_size{datagram_max + 1},
-        buffers{std::make_unique<std::byte[]>(kBatch * buffer_size)} {
-    for (unsigned i = 0; i < kBatch; ++i) {
+        buffers{std::make_unique<std::byte[]>(kMessagesMax * buffer_size)} {
+    for (unsigned i = 0; i < kMessagesMax; ++i) {
       parts[i] = {buffers.get() + i * buffer_size, buffer_size};
       msghdr& header = headers[i].msg_hdr;
       header.msg_iov = &parts[i];
@@ -108,15 +108,15 @@ struct DatagramSocket::Batch {
   }
   std::size_t buffer_size;  ///< [bytes]
   std::unique_ptr<std::byte[]> buffers;
-  std::array<mmsghdr, kBatch> headers{};
-  std::array<iovec, kBatch> parts{};
-  std::array<sockaddr_storage, kBatch> senders{};
-  alignas(cmsghdr) std::array<std::array<char, 64>, kBatch> controls{};
-  std::array<ReceivedDatagram, kBatch> datagrams{};
+  std::array<mmsghdr, kMessagesMax> headers{};
+  std::array<iovec, kMessagesMax> parts{};
+  std::array<sockaddr_storage, kMessagesMax> senders{};
+  alignas(cmsghdr) std::array<std::array<char, 64>, kMessagesMax> controls{};
+  std::array<ReceivedDatagram, kMessagesMax> datagrams{};
   std::size_t last{};  ///< of `senders`
-  std::array<mmsghdr, kBatch> out_headers{};
-  std::array<iovec, kBatch> out_parts{};
-  alignas(cmsghdr) std::array<std::array<char, CMSG_SPACE(sizeof(int))>, kBatch> out_controls{};
+  std::array<mmsghdr, kMessagesMax> out_headers{};
+  std::array<iovec, kMessagesMax> out_parts{};
+  alignas(cmsghdr) std::array<std::array<char, CMSG_SPACE(sizeof(int))>, kMessagesMax> out_controls{};
 };
 
 DatagramSocket::DatagramSocket(int descriptor, std::size_t datagram_max)
@@ -140,7 +140,7 @@ DatagramSocket::~DatagramSocket() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-DatagramSocket DatagramSocket::bound(const io::Endpoint& local, std::size_t datagram_max) {
+DatagramSocket DatagramSocket::bound(const Endpoint& local, std::size_t datagram_max) {
   DatagramSocket socket{open_socket(local), datagram_max};
   if (::bind(socket.descriptor_, local.address(), local.size()) != 0) {
     cannot("cannot listen on " + local.to_string());
@@ -148,26 +148,26 @@ DatagramSocket DatagramSocket::bound(const io::Endpoint& local, std::size_t data
   return socket;
 }
 
-DatagramSocket DatagramSocket::connected(const io::Endpoint& peer, std::size_t datagram_max) {
+DatagramSocket DatagramSocket::connected(const Endpoint& peer, std::size_t datagram_max) {
   DatagramSocket socket{open_socket(peer), datagram_max};
   socket.connect(peer);
   return socket;
 }
 
-void DatagramSocket::reconnect(const io::Endpoint& peer) {
+void DatagramSocket::reconnect(const Endpoint& peer) {
   const int former = std::exchange(descriptor_, open_socket(peer));
   ::close(former);
   connect(peer);
 }
 
-void DatagramSocket::connect(const io::Endpoint& peer) {
+void DatagramSocket::connect(const Endpoint& peer) {
   if (::connect(descriptor_, peer.address(), peer.size()) != 0) {
     cannot("cannot forward to " + peer.to_string());
   }
   peer_ipv6_ = speaks_ipv6(peer);
 }
 
-io::Endpoint DatagramSocket::local() const {
+Endpoint DatagramSocket::local() const {
   sockaddr_storage address{};
   socklen_t size = sizeof address;
   // The sockets API takes every family through this one type.
@@ -183,7 +183,7 @@ std::span<const ReceivedDatagram> DatagramSocket::receive() noexcept {
     header.msg_hdr.msg_namelen = sizeof(sockaddr_storage);
     header.msg_hdr.msg_controllen = batch.controls[0].size();
   }
-  const int got = ::recvmmsg(descriptor_, batch.headers.data(), kBatch, MSG_DONTWAIT, nullptr);
+  const int got = ::recvmmsg(descriptor_, batch.headers.data(), kMessagesMax, MSG_DONTWAIT, nullptr);
   if (got < 0) {
     if (errno != EAGAIN && errno != EINTR) ++errors_;
     return {};
@@ -200,14 +200,14 @@ std::span<const ReceivedDatagram> DatagramSocket::receive() noexcept {
   return std::span{batch.datagrams}.first(count);
 }
 
-io::Endpoint DatagramSocket::sender_of_last() const noexcept { return sender_of(batch_->last); }
+Endpoint DatagramSocket::sender_of_last() const noexcept { return sender_of(batch_->last); }
 
-io::Endpoint DatagramSocket::sender_of(std::size_t index) const noexcept {
+Endpoint DatagramSocket::sender_of(std::size_t index) const noexcept {
   return {&batch_->senders[index], batch_->headers[index].msg_hdr.msg_namelen};
 }
 
 std::size_t DatagramSocket::send(std::span<const OutgoingDatagram> datagrams,
-                                 const io::Endpoint* to) noexcept {
+                                 const Endpoint* to) noexcept {
   Batch& batch = *batch_;
   const std::size_t count = std::min(datagrams.size(), kDatagramBatch);
   const bool ipv6 = to != nullptr ? speaks_ipv6(*to) : peer_ipv6_;
@@ -254,7 +254,7 @@ std::size_t DatagramSocket::send(std::span<const OutgoingDatagram> datagrams,
   return sent;
 }
 
-void DatagramSocket::warm(const io::Endpoint* to) noexcept {
+void DatagramSocket::warm(const Endpoint* to) noexcept {
   std::byte nothing{};
   iovec part{&nothing, sizeof nothing};
   msghdr header{};
@@ -262,13 +262,13 @@ void DatagramSocket::warm(const io::Endpoint* to) noexcept {
   header.msg_namelen = to != nullptr ? to->size() : 0;
   header.msg_iov = &part;
   header.msg_iovlen = 1;
-  if (::sendmsg(descriptor_, &header, MSG_DONTWAIT | MSG_NOSIGNAL | io::kSendProbe) < 0) ++errors_;
+  if (::sendmsg(descriptor_, &header, MSG_DONTWAIT | MSG_NOSIGNAL | kSendProbe) < 0) ++errors_;
 }
 
 bool DatagramSocket::send(std::span<const std::byte> datagram,
-                          const std::optional<io::Endpoint>& to) noexcept {
+                          const std::optional<Endpoint>& to) noexcept {
   const OutgoingDatagram one{.bytes = datagram};
   return send({&one, 1}, to ? &*to : nullptr) == 1;
 }
 
-}  // namespace palp::netem
+}  // namespace palp::io
