@@ -7,7 +7,8 @@ set(PALP_PROGRAMS
     palp-lab
     palp-review
     palp-netem
-    palp-fem)
+    palp-fem
+    palp-relay)
 install(TARGETS ${PALP_PROGRAMS} RUNTIME)
 
 set(data ${CMAKE_INSTALL_DATADIR}/palp)

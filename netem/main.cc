@@ -1,11 +1,9 @@
 // palp-netem: impaired paths for datagrams between two UDP ports.
-#include <csignal>
 #include <cstdio>
 #include <limits>
 #include <optional>
 #include <string>
 
-#include <sys/signalfd.h>
 #include <unistd.h>
 
 #include "common/config/command_line.h"
@@ -14,13 +12,14 @@
 #include "common/config/report.h"
 #include "common/core/printable.h"
 #include "common/core/random.h"
+#include "common/io/net/datagram_socket.h"
 #include "common/io/net/endpoint.h"
 #include "common/io/process/diagnostics.h"
 #include "common/io/process/hardening.h"
+#include "common/io/process/stop_signals.h"
 #include "netem/model/simulation.h"
 #include "netem/presets_command.h"
 #include "netem/relay/control_token.h"
-#include "common/io/net/datagram_socket.h"
 #include "netem/relay/relay_program.h"
 #include "netem/syntax/impairment_text.h"
 #include "netem/syntax/presets.h"
@@ -169,19 +168,6 @@ Result<Plans> asked_plans(const Flags& flags) {
   return Plans{{.impairment = *up}, {.impairment = *down}, {}, {}};
 }
 
-/// A descriptor that becomes readable at SIGINT or SIGTERM.
-int stop_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  // A shell starts background jobs with SIGINT ignored; blocked signals with a handler are kept.
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
-  ::sigprocmask(SIG_BLOCK, &signals, nullptr);
-  return ::signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
-}
-
 ExitStatus serve(const Flags& flags) {
   RelayProgramConfig config;
   const auto listen = io::resolve(*flags.listen);
@@ -210,7 +196,7 @@ ExitStatus serve(const Flags& flags) {
   config.duration = from_seconds(flags.duration_s > 0 ? flags.duration_s : kDurationMax);
   config.status_every =
       from_seconds(flags.status_s.value_or(::isatty(STDOUT_FILENO) != 0 ? 1.0 : 0.0));
-  config.stop_descriptor = stop_signals();
+  config.stop_descriptor = io::stop_signals();
   if (const auto served = run_relay(config); !served) {
     return config::refusal("palp-netem", served.error());
   }

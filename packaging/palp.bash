@@ -29,4 +29,5 @@ _palp() {
   mapfile -t COMPREPLY < <(compgen -W "${candidates-}" -- "$current")
   __ltrim_colon_completions "$current" 2>/dev/null
 }
-complete -o default -F _palp palp-surgeon palp-patient palp-lab palp-review palp-netem palp-fem
+complete -o default -F _palp palp-surgeon palp-patient palp-lab palp-review palp-netem palp-fem \
+  palp-relay

@@ -68,9 +68,16 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   const auto bad = [](const Error& error) { return tl::unexpected{exit_status_of(error)}; };
   auto settings = make_settings(document);
   if (!settings) return bad(settings.error());
-  const auto address =
-      site_program::site_address("--listen", settings->listen, settings->protection, 0);
-  if (!address) return tl::unexpected{address.error()};
+  const auto meeting =
+      site_program::meeting_place("--listen", settings->listen, settings->protection);
+  if (!meeting) return tl::unexpected{meeting.error()};
+  HostAndPort local;  // where a relay is asked from: any
+  if (!*meeting || !settings->listen.empty()) {
+    const auto address =
+        site_program::site_address("--listen", settings->listen, settings->protection, 0);
+    if (!address) return tl::unexpected{address.error()};
+    local = *address;
+  }
   auto phantom = make_phantom(settings->phantom);
   if (!phantom) return bad(phantom.error());
   auto wrap = site_program::impaired_reception(
@@ -87,7 +94,8 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
                     .coupling = settings->coupling.name,
                     .git = std::string{site_program::git_commit()},
                     .devices = {.hand = {}, .stage = devices.stage, .sensor = devices.sensor}};
-  runner.address = *address;
+  runner.address = local;
+  runner.meeting = *meeting;
   runner.protection = settings->protection;
   runner.wrap_transport = std::move(*wrap);
   runner.loop = settings->loop;

@@ -22,6 +22,10 @@ Runner::Runner(const RunnerConfig& config) : loop_{config.loop} {
   io::SessionServerConfig server;
   server.session = config.session;
   server.address = config.address;
+  if (config.meeting) {
+    server.relay = config.meeting->relay;
+    server.room = config.meeting->room;
+  }
   server.wrap_transport = config.wrap_transport;
   server.priority = io_priority(loop_.priority);
   if (!config.protection.identity.empty()) {

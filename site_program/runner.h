@@ -11,6 +11,7 @@
 #include "common/io/secure/session_server.h"
 #include "common/link/link.h"
 #include "common/settings/site_settings.h"
+#include "site_program/site_address.h"
 #include "site_program/site_report.h"
 #include "site_program/status_line.h"
 
@@ -19,6 +20,7 @@ namespace palp::site_program {
 struct RunnerConfig {
   link::SessionConfig session;
   HostAndPort address;
+  std::optional<MeetingPlace> meeting;  ///< then the surgeon has no other address
   settings::ProtectionSettings protection;
   io::TransportWrap wrap_transport;
   settings::LoopSettings loop;

@@ -1,5 +1,7 @@
 #include "site_program/site_address.h"
 
+#include "common/io/secure/room_key.h"
+
 namespace palp::site_program {
 
 tl::expected<HostAndPort, ExitStatus> site_address(const std::string& flag,
@@ -33,6 +35,28 @@ tl::expected<HostAndPort, ExitStatus> site_address(const std::string& flag,
                   "on the way could move the stage")};
   }
   return *place;
+}
+
+tl::expected<std::optional<MeetingPlace>, ExitStatus> meeting_place(
+    const std::string& own,
+    const std::string& text,
+    const settings::ProtectionSettings& protection) {
+  const auto refused = [](const std::string& sentence) {
+    return tl::unexpected{bad_input(sentence)};
+  };
+  if (protection.through.empty() && protection.room.empty()) return std::nullopt;
+  if (protection.through.empty()) return refused("--room is that of a relay; --through is missing");
+  if (protection.room.empty()) return refused("--through needs --room, the same at both sites");
+  if (protection.insecure) {
+    return refused("--insecure is refused with --through: a relay reads what is not sealed");
+  }
+  if (own == "--peer" && !text.empty()) return refused("--peer and --through exclude each other");
+  const auto relay = site_address("--through", protection.through, protection, 1);
+  if (!relay) return tl::unexpected{relay.error()};
+  if (const auto key = io::RoomKey::from_name(protection.room); !key) {
+    return refused("--room: " + key.error().text);
+  }
+  return MeetingPlace{*relay, protection.room};
 }
 
 }  // namespace palp::site_program

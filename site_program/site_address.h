@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "common/config/exit_code.h"
@@ -18,5 +19,18 @@ namespace palp::site_program {
     const std::string& text,
     const settings::ProtectionSettings& protection,
     std::uint16_t port_min);
+
+/// Where two sites meet instead of one calling the other.
+struct MeetingPlace {
+  HostAndPort relay;
+  std::string room;  ///< a name that gives a RoomKey
+};
+
+/// What --through and --room say; nullopt: they say nothing. `own` is the site's flag for an
+/// address and `text` its value: the surgeon cannot call both. May ask the resolver.
+[[nodiscard]] tl::expected<std::optional<MeetingPlace>, ExitStatus> meeting_place(
+    const std::string& own,
+    const std::string& text,
+    const settings::ProtectionSettings& protection);
 
 }  // namespace palp::site_program

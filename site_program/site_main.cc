@@ -25,6 +25,8 @@ void declare_session_flags(config::CommandLine& line) {
   line.knob("--impair", "impairment.spec");
   line.knob("--seed", "seed");
   line.knob("--identity", "link.identity");
+  line.knob("--through", "link.through");
+  line.knob("--room", "link.room");
   line.knob("--insecure", "link.insecure");
 }
 

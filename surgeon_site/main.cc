@@ -88,6 +88,9 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   const auto bad = [](const Error& error) { return tl::unexpected{exit_status_of(error)}; };
   auto settings = make_settings(document);
   if (!settings) return bad(settings.error());
+  const auto meeting = site_program::meeting_place("--peer", settings->peer, settings->protection);
+  if (!meeting) return tl::unexpected{meeting.error()};
+  if (*meeting) settings->peer = settings->protection.through;
   const auto address =
       site_program::site_address("--peer", settings->peer, settings->protection, 1);
   if (!address) return tl::unexpected{address.error()};
@@ -105,6 +108,7 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
                     .git = std::string{site_program::git_commit()},
                     .devices = {.hand = facts_of(settings->hand), .stage = {}, .sensor = {}}};
   runner.address = *address;
+  runner.meeting = *meeting;
   runner.protection = settings->protection;
   runner.wrap_transport = std::move(*wrap);
   runner.loop = settings->loop;

@@ -87,7 +87,9 @@ ImpairmentSettings make_impairment(const proto::config::Impairment& message) {
 ProtectionSettings make_protection(const proto::config::Link& message) {
   return {.insecure = message.insecure(),
           .identity = message.identity(),
-          .rekey_after = from_seconds(message.rekey_after_s())};
+          .rekey_after = from_seconds(message.rekey_after_s()),
+          .through = message.through(),
+          .room = message.room()};
 }
 
 RecordSettings make_record(const proto::config::Record& message) {

@@ -51,6 +51,8 @@ struct ProtectionSettings {
   bool insecure{};         ///< plain datagrams are accepted
   std::string identity{};  ///< folder of certificate and key; empty: none
   Duration rekey_after{std::chrono::hours{1}};
+  std::string through{};  ///< HOST:PORT of a relay; empty: the surgeon calls the patient
+  std::string room{};     ///< its name there
 };
 
 /// The sentence lists the couplings there are.

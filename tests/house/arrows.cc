@@ -11,7 +11,7 @@ namespace palp::house {
 namespace {
 
 /// Rooms, the longer name first where one lies in another.
-constexpr std::array<std::string_view, 32> kRooms{"common/core",
+constexpr std::array<std::string_view, 33> kRooms{"common/core",
                                                   "common/message",
                                                   "common/coupling",
                                                   "common/link",
@@ -29,6 +29,7 @@ constexpr std::array<std::string_view, 32> kRooms{"common/core",
                                                   "netem/syntax",
                                                   "netem/relay",
                                                   "netem",
+                                                  "relay",
                                                   "fem",
                                                   "depth",
                                                   "surgeon_site/devices",
@@ -75,6 +76,8 @@ const std::vector<Arrow>& arrows() {
        {"netem/model", "netem/syntax", "common/link/transport.h", "common/io/*", "common/config"}},
       {"netem/main.cc", {"netem/*", "common/io/*", "common/config"}},
       {"netem/presets_command.*", {"netem/syntax", "common/config"}},
+      // A relay between sites: it has no keys, and knows nothing of couplings or impairments.
+      {"relay/*", {"common/link", "common/io/*", "common/config"}},
       // What the two programs of a session do alike: it puts parts together, as their main.cc does.
       {"site_program/*",
        {"common/config",
@@ -209,6 +212,8 @@ const std::vector<Fence>& fences() {
        {"common/link/aead_protection.cc",
         "common/io/secure/credentials.cc",
         "common/io/secure/dtls_*.cc",
+        "common/io/secure/address_cookie.cc",
+        "common/io/secure/room_key.cc",
         "common/io/secure/certificates.cc",
         "common/io/secure/openssl_*.h",
         "common/io/secure/site_certificate.*"}},

@@ -116,7 +116,8 @@ struct DatagramSocket::Batch {
   std::size_t last{};  ///< of `senders`
   std::array<mmsghdr, kMessagesMax> out_headers{};
   std::array<iovec, kMessagesMax> out_parts{};
-  alignas(cmsghdr) std::array<std::array<char, CMSG_SPACE(sizeof(int))>, kMessagesMax> out_controls{};
+  alignas(
+      cmsghdr) std::array<std::array<char, CMSG_SPACE(sizeof(int))>, kMessagesMax> out_controls{};
 };
 
 DatagramSocket::DatagramSocket(int descriptor, std::size_t datagram_max)
@@ -183,7 +184,8 @@ std::span<const ReceivedDatagram> DatagramSocket::receive() noexcept {
     header.msg_hdr.msg_namelen = sizeof(sockaddr_storage);
     header.msg_hdr.msg_controllen = batch.controls[0].size();
   }
-  const int got = ::recvmmsg(descriptor_, batch.headers.data(), kMessagesMax, MSG_DONTWAIT, nullptr);
+  const int got =
+      ::recvmmsg(descriptor_, batch.headers.data(), kMessagesMax, MSG_DONTWAIT, nullptr);
   if (got < 0) {
     if (errno != EAGAIN && errno != EINTR) ++errors_;
     return {};

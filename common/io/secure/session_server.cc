@@ -22,6 +22,7 @@
 #include "common/io/realtime/realtime.h"
 #include "common/io/realtime/steady_clock.h"
 #include "common/io/secure/dtls_session.h"
+#include "common/io/secure/relay_member.h"
 
 namespace palp::io {
 namespace {
@@ -37,23 +38,12 @@ constexpr int kEarlyMax = 4096;
 constexpr std::size_t kNewsMax = 64;
 constexpr int kClassSelector3 = 24 << 2;  ///< TOS byte of DSCP CS3, RFC 2474
 
-udp::endpoint as_asio(const Endpoint& endpoint) {
-  udp::endpoint result;
-  result.resize(endpoint.size());
-  std::memcpy(result.data(), endpoint.address(), endpoint.size());
-  return result;
-}
-
 Endpoint from_asio(const udp::endpoint& endpoint) { return {endpoint.data(), endpoint.size()}; }
 
 Endpoint found(const HostAndPort& place) {
   const Result<Endpoint> endpoint = resolve(place);
   if (!endpoint) throw std::runtime_error{endpoint.error().text};
   return *endpoint;
-}
-
-std::string name_of_peer(link::Role role) {
-  return role == link::Role::Surgeon ? "the patient site" : "the surgeon site";
 }
 
 }  // namespace
@@ -95,6 +85,8 @@ class SessionServer::Io {
   [[nodiscard]] Result<std::unique_ptr<link::Transport>> way_to(const Endpoint& peer,
                                                                 const Endpoint& former);
   void offer_waiting();
+  void keep_seat();
+  void send(std::span<const std::byte> datagram, const Endpoint& to);
   void leave();
   [[nodiscard]] std::string refusal_opening();
   void tell(SessionNews::Kind kind, const Endpoint& peer, std::string sentence, bool final = false);
@@ -112,6 +104,7 @@ class SessionServer::Io {
   Endpoint callee_;                       ///< surgeon: whom to call; patient: none
   Endpoint connected_;                    ///< rt has or will get a socket to there
   SourceWatch source_;                    ///< of that socket
+  std::optional<RelayMember> relay_;      ///< where both sites meet, if they do
   link::Established present_;             ///< rt has or will get this session; id 0: none
   std::deque<link::LinkUpdate> waiting_;  ///< for room on the desk
   std::deque<Early> early_;               ///< taken by a data socket before it was connected
@@ -122,8 +115,11 @@ class SessionServer::Io {
 };
 
 SessionServer::Io::Io(const SessionServerConfig& config, LinkUpdateDesk& desk)
-    : config_{config}, desk_{desk} {
-  const Endpoint place = found(config.address);
+    : config_{config},
+      desk_{desk},
+      relay_{RelayMember::at(config.relay, config.room, config.session.role)} {
+  const bool anywhere = relay_ && config.address.host.empty();
+  const Endpoint place = anywhere ? relay_->relay().caller() : found(config.address);
   Endpoint wish = place;
   if (config.session.role == link::Role::Surgeon) {
     if (place.port() == 0) {
@@ -136,12 +132,9 @@ SessionServer::Io::Io(const SessionServerConfig& config, LinkUpdateDesk& desk)
   // Bound without leave to share: an owner of this port is noticed, and none can come after us.
   boost::system::error_code refusal;
   listening_.open(wish.family() == AF_INET6 ? udp::v6() : udp::v4(), refusal);
-  if (!refusal) {
-    listening_.bind(as_asio(wish), refusal);
-  }
-  if (refusal) {
+  if (refusal || ::bind(listening_.native_handle(), wish.address(), wish.size()) != 0) {
     throw std::runtime_error{"cannot listen on " + config.address.to_string() + ": " +
-                             system_text(refusal.value())};
+                             system_text(refusal ? refusal.value() : errno)};
   }
   listening_.non_blocking(true);
   mark_datagrams(listening_.native_handle(), wish.family(), kClassSelector3);
@@ -188,14 +181,13 @@ void SessionServer::Io::run_round() {
     hear(early.front().bytes, early.front().from);
   }
   follow_machine();
+  keep_seat();
   offer_waiting();
   noise_.put(session_endpoint_->counters());
   strangers_ = 0;
   wait_for_strangers();
   round_.expires_at(round_.expiry() + kRound);
-  if (round_.expiry() < asio::steady_timer::clock_type::now()) {
-    round_.expires_after(kRound);
-  }
+  if (round_.expiry() < asio::steady_timer::clock_type::now()) round_.expires_after(kRound);
   round_.async_wait([this](const boost::system::error_code& refusal) {
     if (!refusal) run_round();
   });
@@ -219,15 +211,17 @@ void SessionServer::Io::hear_strangers() {
       return;
     }
     ++strangers_;
-    if (refusal) {
-      return;  // the next round tries again
-    }
+    if (refusal) return;  // the next round tries again
     hear(std::span{buffer_}.first(size), from_asio(from));
   }
 }
 
 void SessionServer::Io::hear(std::span<const std::byte> datagram, const Endpoint& from) {
   const TimePoint now = clock_.now();
+  if (relay_ && !datagram.empty() && datagram[0] == RelayMessage::kFirstByte) {
+    if (const auto answer = relay_->hear(datagram, from, now)) send(*answer, from);
+    return;
+  }
   SessionEndpointOutput output = session_endpoint_->hear(datagram, from, now);
   if (output.detours) (void)desk_.inbox().detours.try_emplace(datagram, from, now);
   carry_out(std::move(output), from);
@@ -246,17 +240,35 @@ void SessionServer::Io::carry_out(SessionEndpointOutput output, const Endpoint& 
   }
   if (output.protection != nullptr) carry_on(nullptr, std::move(output.protection));
   if (output.moved_to) move(*output.moved_to, output.moved_from);
-  for (const Letter& letter : output.letters) {
-    boost::system::error_code refusal;  // nothing to do about it: what matters is repeated
-    listening_.send_to(asio::buffer(letter.bytes), as_asio(letter.to), 0, refusal);
-  }
+  for (const Letter& letter : output.letters) send(letter.bytes, letter.to);
   offer_waiting();
 }
 
+void SessionServer::Io::send(std::span<const std::byte> datagram, const Endpoint& to) {
+  // Nothing to do about a refusal: what matters is repeated.
+  (void)::sendto(listening_.native_handle(),
+                 datagram.data(),
+                 datagram.size(),
+                 MSG_DONTWAIT | MSG_NOSIGNAL,
+                 to.address(),
+                 to.size());
+}
+
+/// A session that works is not disturbed with what the relay says.
+void SessionServer::Io::keep_seat() {
+  if (!relay_) return;
+  const bool in_session = present_.session_id != 0;
+  const bool silent = in_session && desk_.link().state != LinkState::Live;
+  if (const auto message = relay_->tick(clock_.now(), silent)) send(*message, relay_->relay());
+  const auto news = relay_->take_news();
+  if (!news || in_session) return;
+  tell(news->good ? SessionNews::Kind::Moved : SessionNews::Kind::Refused,
+       relay_->relay(),
+       (news->good ? "" : "no session: ") + news->sentence);
+}
+
 void SessionServer::Io::offer_waiting() {
-  while (!waiting_.empty() && desk_.offer(std::move(waiting_.front()))) {
-    waiting_.pop_front();
-  }
+  while (!waiting_.empty() && desk_.offer(std::move(waiting_.front()))) waiting_.pop_front();
 }
 
 void SessionServer::Io::meet(const link::Established& session,
@@ -280,12 +292,9 @@ void SessionServer::Io::meet(const link::Established& session,
   }
   present_ = session;
   waiting_.push_back(std::move(next));
-  const std::string proof = session_endpoint_->proof();
   tell(SessionNews::Kind::Established,
        peer,
-       "session with " + name_of_peer(config_.session.role) + " at " + peer.to_string() +
-           (session.peer_git.empty() ? "" : ", its build " + session.peer_git) +
-           (proof.empty() ? "" : ", proven by " + proof));
+       session_sentence(config_.session.role, peer, session, session_endpoint_->proof()));
 }
 
 /// A surgeon in a session calls for new keys only; the session has those it has.
@@ -333,9 +342,7 @@ Result<std::unique_ptr<link::Transport>> SessionServer::Io::way_to(const Endpoin
   Result<std::unique_ptr<UdpSocket>> socket =
       UdpSocket::connect(local_, peer, desk_.inbox(), config_.socket);
   share_port(listening_.native_handle(), false);
-  if (!socket) {
-    return fail(socket.error().text);
-  }
+  if (!socket) return fail(socket.error().text);
   (*socket)->follow(former);
   source_.begin((*socket)->local(), peer);
   session_endpoint_->set_own_address((*socket)->local());
@@ -362,11 +369,7 @@ void SessionServer::Io::tell(SessionNews::Kind kind,
                              const Endpoint& peer,
                              std::string sentence,
                              bool final) {
-  (void)news_.try_enqueue(SessionNews{.kind = kind,
-                                      .final = final,
-                                      .at = clock_.now(),
-                                      .peer = peer,
-                                      .sentence = std::move(sentence)});
+  (void)news_.try_enqueue({kind, final, clock_.now(), peer, std::move(sentence)});
 }
 
 SessionServer::SessionServer(const SessionServerConfig& config, LinkUpdateDesk& desk)

@@ -11,6 +11,7 @@
 #include "common/io/net/link_update_desk.h"
 #include "common/io/net/udp_socket.h"
 #include "common/io/secure/credentials.h"
+#include "common/io/secure/session_news.h"
 #include "common/link/session.h"
 #include "common/link/transport.h"
 
@@ -23,21 +24,13 @@ using TransportWrap =
 struct SessionServerConfig {
   link::SessionConfig session;
   HostAndPort address;  ///< patient: where to listen, port 0: any; surgeon: the patient site
+  std::optional<HostAndPort> relay;  ///< where both meet instead; the patient's address may be none
+  std::string room;                  ///< there: a name for RoomKey
   UdpSocketConfig socket;
   TransportWrap wrap_transport;      ///< empty: the link gets the socket itself
   int priority{};                    ///< SCHED_FIFO of the io thread, below rt's; 0: leave as it is
   const Credentials* credentials{};  ///< outlives the server; null: plain, for benches
   Duration rekey_after{std::chrono::hours{1}};  ///< age of keys that the surgeon replaces
-};
-
-/// What people are told of sessions.
-struct SessionNews {
-  enum class Kind : std::uint8_t { Established, Refused, Closed, Moved };
-  Kind kind{};
-  bool final{};  ///< refused, and there will never be a session with these settings
-  TimePoint at{};
-  Endpoint peer;
-  std::string sentence;
 };
 
 /// Finds the peer and makes sessions, on a thread of its own (io): owns the listening socket,

@@ -57,7 +57,9 @@ inline void add(FieldList& list, const coupling::CouplingConfig& config) {
 inline void add(FieldList& list, const settings::ProtectionSettings& protection) {
   list.add("insecure", protection.insecure)
       .add("identity", protection.identity)
-      .add("rekey_after", protection.rekey_after);
+      .add("rekey_after", protection.rekey_after)
+      .add("through", protection.through)
+      .add("room", protection.room);
 }
 
 inline void add(FieldList& list, const link::LinkConfig& config) {

@@ -1,0 +1,9 @@
+#pragma once
+
+namespace palp::io {
+
+/// A descriptor that becomes readable at SIGINT or SIGTERM, for programs that wait in the kernel.
+/// Once, before other threads. Negative: none could be made.
+[[nodiscard]] int stop_signals() noexcept;
+
+}  // namespace palp::io
