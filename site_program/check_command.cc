@@ -18,6 +18,7 @@ CheckCommand::CheckCommand(config::CommandLine& line, link::Role role) : role_{r
   verb.number("--seconds", seconds_, {.min = 0.1, .max = 3600, .unit = "s"}, "of an idle loop");
   verb.report(report_, "palp.check/1");
   verb.text("--identity", identity_, "FOLDER", "also whether this site's certificate is in order");
+  verb.text("--through", relay_, "HOST:PORT", "also the way to the relay where both sites meet");
   if (role != link::Role::Surgeon) return;
   verb.text("--peer", peer_, "HOST:PORT", "also the way to the patient site, which runs there");
 }
@@ -25,6 +26,13 @@ CheckCommand::CheckCommand(config::CommandLine& line, link::Role role) : role_{r
 /// Of what the command line names besides the machine.
 Result<std::vector<io::MachineFinding>> CheckCommand::beyond_the_machine() const {
   std::vector<io::MachineFinding> findings;
+  if (!relay_.empty()) {
+    const auto relay = parse_host_and_port(relay_, 1);
+    if (!relay) return fail("--through: " + relay.error().text);
+    const auto facts = io::read_relay_path(*relay);
+    if (!facts) return fail_to_reach(facts.error().text);
+    findings.push_back(io::judge_path(*facts, io::PathGoal::Relay));
+  }
   if (identity_.empty()) {
     if (!peer_.empty()) return fail("--peer needs --identity: strangers are not answered");
     return findings;

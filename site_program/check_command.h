@@ -27,6 +27,7 @@ class CheckCommand {
   link::Role role_;
   double seconds_{5};  ///< [s]
   std::string peer_;
+  std::string relay_;
   std::string identity_;
   std::string report_;
 };

@@ -66,5 +66,35 @@ TEST(SiteAddressTest, AHostThatCannotBeFoundCannotBeReached) {
   EXPECT_EQ(address.error().code, config::ExitCode::CannotOpen);
 }
 
+settings::ProtectionSettings meeting(const std::string& through, const std::string& room) {
+  settings::ProtectionSettings protection;
+  protection.identity = "keys";
+  protection.through = through;
+  protection.room = room;
+  return protection;
+}
+
+TEST(MeetingPlaceTest, NeedsBothFlagsAndALongName) {
+  const auto none = meeting_place("--peer", "", meeting("", ""));
+  ASSERT_TRUE(none);
+  EXPECT_EQ(*none, std::nullopt);
+  const auto found = meeting_place("--peer", "", meeting("127.0.0.1:9100", "K7Q2-a-long-name"));
+  ASSERT_TRUE(found && *found);
+  EXPECT_EQ((*found)->relay.port, 9100);
+  const auto refused = [](const settings::ProtectionSettings& protection, const std::string& peer) {
+    const auto place = meeting_place("--peer", peer, protection);
+    return place ? std::string{} : place.error().reason;
+  };
+  EXPECT_THAT(refused(meeting("127.0.0.1:9100", ""), ""), testing::HasSubstr("needs --room"));
+  EXPECT_THAT(refused(meeting("", "K7Q2-a-long-name"), ""), testing::HasSubstr("--through"));
+  EXPECT_THAT(refused(meeting("127.0.0.1:9100", "short"), ""), testing::HasSubstr("16 to 64"));
+  EXPECT_THAT(refused(meeting("127.0.0.1:9100", "K7Q2-a-long-name"), "127.0.0.1:9"),
+              testing::HasSubstr("exclude each other"));
+  auto plain = meeting("127.0.0.1:9100", "K7Q2-a-long-name");
+  plain.identity.clear();
+  plain.insecure = true;
+  EXPECT_THAT(refused(plain, ""), testing::HasSubstr("--insecure is refused"));
+}
+
 }  // namespace
 }  // namespace palp::site_program

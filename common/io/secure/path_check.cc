@@ -4,6 +4,8 @@
 #include <array>
 #include <cerrno>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -13,6 +15,7 @@
 #include "common/io/process/system_text.h"
 #include "common/io/realtime/steady_clock.h"
 #include "common/io/secure/dtls_handshake.h"
+#include "common/io/secure/relay_message.h"
 #include "common/link/link.h"
 
 namespace palp::io {
@@ -37,15 +40,28 @@ std::optional<std::size_t> question_of(std::span<const std::byte> datagram) {
   return std::to_integer<std::size_t>(datagram[kNumberAt]);
 }
 
-/// Questions under way to one peer.
+std::optional<std::size_t> relay_question_of(std::span<const std::byte> datagram) {
+  const auto message = RelayMessage::parse(datagram);
+  if (!message || message->kind != RelayMessage::Kind::Cookie) return std::nullopt;
+  return std::to_integer<std::size_t>(message->proof[0]);
+}
+
+/// What is asked, and how answers are told apart.
+struct Asked {
+  std::vector<DtlsDatagram> datagrams;
+  std::size_t number_at{};  ///< [bytes] into each of them
+  std::optional<std::size_t> (*question_of)(std::span<const std::byte> datagram){};
+};
+
+/// Questions under way to one place.
 class Questions {
  public:
-  Questions(int socket, const Credentials& credentials)
-      : socket_{socket}, hello_{DtlsHandshake{credentials}.take_datagrams()} {}
+  Questions(int socket, Asked asked)
+      : socket_{socket}, hello_{std::move(asked.datagrams)}, asked_{std::move(asked)} {}
 
   void ask(TimePoint now) {
     for (DtlsDatagram& one : hello_) {
-      one[kNumberAt] = static_cast<std::byte>(asked_at_.size());
+      one[asked_.number_at] = static_cast<std::byte>(asked_at_.size());
       (void)::send(socket_, one.data(), one.size(), MSG_DONTWAIT);
     }
     asked_at_.emplace_back(now);
@@ -58,7 +74,7 @@ class Questions {
     std::array<std::byte, 2048> bytes{};
     const ssize_t got = ::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
     if (got <= 0) return;
-    const auto number = question_of(std::span{bytes}.first(static_cast<std::size_t>(got)));
+    const auto number = asked_.question_of(std::span{bytes}.first(static_cast<std::size_t>(got)));
     if (!number || *number >= asked_at_.size() || !asked_at_[*number]) return;
     round_trips_.push_back(clock.now() - *asked_at_[*number]);
     asked_at_[*number].reset();
@@ -69,22 +85,19 @@ class Questions {
  private:
   int socket_;
   std::vector<DtlsDatagram> hello_;
+  Asked asked_;
   std::vector<std::optional<TimePoint>> asked_at_;  ///< by number; nullopt: answered
   std::vector<Duration> round_trips_;
 };
 
-}  // namespace
-
-Result<PathFacts> read_path(const HostAndPort& peer,
-                            const Credentials& credentials,
-                            const PathCheckConfig& config) {
+Result<PathFacts> ask_all(const HostAndPort& peer, Asked asked, const PathCheckConfig& config) {
   const Result<Endpoint> place = resolve(peer);
   if (!place) return fail(place.error().text);
   const Descriptor socket{::socket(place->family(), SOCK_DGRAM | SOCK_CLOEXEC, 0)};
   if (!socket.valid() || ::connect(socket.number(), place->address(), place->size()) != 0) {
     return fail("cannot call " + peer.to_string() + ": " + system_text(errno));
   }
-  Questions questions{socket.number(), credentials};
+  Questions questions{socket.number(), std::move(asked)};
   const SteadyClock clock;
   TimePoint until{};
   while (questions.asked() < config.questions) {
@@ -101,19 +114,38 @@ Result<PathFacts> read_path(const HostAndPort& peer,
   return PathFacts{.asked = questions.asked(), .round_trips = questions.round_trips()};
 }
 
-MachineFinding judge_path(const PathFacts& facts) {
+}  // namespace
+
+Result<PathFacts> read_path(const HostAndPort& peer,
+                            const Credentials& credentials,
+                            const PathCheckConfig& config) {
+  return ask_all(
+      peer, {DtlsHandshake{credentials}.take_datagrams(), kNumberAt, question_of}, config);
+}
+
+Result<PathFacts> read_relay_path(const HostAndPort& relay, const PathCheckConfig& config) {
+  const RelayMessage::Bytes ask = RelayMessage{}.bytes();
+  constexpr std::size_t kProofAt = RelayMessage::kSize - sizeof(RoomProof);
+  return ask_all(
+      relay, {{DtlsDatagram{ask.begin(), ask.end()}}, kProofAt, relay_question_of}, config);
+}
+
+MachineFinding judge_path(const PathFacts& facts, PathGoal goal) {
+  const bool relay = goal == PathGoal::Relay;
+  const std::string what = relay ? "way to the relay" : "way to the peer";
   if (facts.round_trips.empty()) {
-    return {"way to the peer",
+    return {what,
             "none of " + std::to_string(facts.asked) + " questions was answered",
             false,
-            "start the patient site, and let UDP through to its port"};
+            (relay ? "start palp-relay" : "start the patient site") +
+                std::string{", and let UDP through to its port"}};
   }
   std::vector<Duration> sorted = facts.round_trips;
   std::sort(sorted.begin(), sorted.end());
   const auto lost = static_cast<double>(facts.asked) - static_cast<double>(sorted.size());
   const bool good =
       sorted.front() <= kRoundTripMax && lost <= kLostMax * static_cast<double>(facts.asked);
-  return {"way to the peer",
+  return {what,
           number_text("round trip ", seconds(sorted.front()) * 1e3, 1, " ms at best") +
               number_text(", ", seconds(sorted[sorted.size() / 2]) * 1e3, 1, " in the middle") +
               number_text(", ", lost, 0, " of ") + std::to_string(facts.asked) + " lost",

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "common/core/result.h"
@@ -30,7 +31,12 @@ struct PathCheckConfig {
                                           const Credentials& credentials,
                                           const PathCheckConfig& config = {});
 
+/// The same of a relay: it answers everybody, and keeps nothing.
+[[nodiscard]] Result<PathFacts> read_relay_path(const HostAndPort& relay,
+                                                const PathCheckConfig& config = {});
+
 /// What that means for a session.
-[[nodiscard]] MachineFinding judge_path(const PathFacts& facts);
+enum class PathGoal : std::uint8_t { Peer, Relay };
+[[nodiscard]] MachineFinding judge_path(const PathFacts& facts, PathGoal goal = PathGoal::Peer);
 
 }  // namespace palp::io
