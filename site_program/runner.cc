@@ -56,6 +56,7 @@ void Runner::start(link::Link& link, std::function<void(TimePoint now)> tick) {
         tick(now);
       },
       [&link] { link.warm_up(); });
+  service_.ready();
 }
 
 std::vector<std::string> Runner::shortcomings() const {
@@ -73,6 +74,7 @@ std::vector<std::string> Runner::shortcomings() const {
 std::optional<std::string> Runner::tell_news(StatusLine& line) {
   using Kind = io::SessionNews::Kind;
   std::optional<std::string> hopeless;
+  service_.progress(rt_->progress().ticks);
   while (const auto news = server_->news()) {
     if (news->kind == Kind::Established) ++sessions_;
     if (news->final) {
@@ -88,6 +90,7 @@ std::optional<std::string> Runner::tell_news(StatusLine& line) {
 }
 
 void Runner::stop(const std::string& why) {
+  service_.stopping();
   server_->close(why);
   if (rt_) rt_->stop();
 }

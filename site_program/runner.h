@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/io/net/link_update_desk.h"
+#include "common/io/process/service_notice.h"
 #include "common/io/realtime/periodic_thread.h"
 #include "common/io/secure/session_server.h"
 #include "common/link/link.h"
@@ -44,7 +45,8 @@ class Runner {
   /// What of real time was asked for and not granted, and what is wrong with the identity, in
   /// sentences.
   [[nodiscard]] std::vector<std::string> shortcomings() const;
-  /// Tells people of sessions. @returns the sentence if there will never be one.
+  /// Tells people of sessions, and a service manager that the loop goes on. @returns the sentence
+  /// if there will never be one.
   std::optional<std::string> tell_news(StatusLine& line);
   /// Why there was no session when one was tried last; empty: none was refused.
   [[nodiscard]] const std::string& refusal() const noexcept { return refusal_; }
@@ -62,6 +64,7 @@ class Runner {
   io::LinkUpdateDesk desk_;
   std::unique_ptr<io::SessionServer> server_;
   std::unique_ptr<io::PeriodicThread> rt_;
+  io::ServiceNotice service_;
   std::uint64_t sessions_{};
   std::string refusal_;
 };
