@@ -196,7 +196,7 @@ ExitStatus serve(const Flags& flags) {
   config.duration = from_seconds(flags.duration_s > 0 ? flags.duration_s : kDurationMax);
   config.status_every =
       from_seconds(flags.status_s.value_or(::isatty(STDOUT_FILENO) != 0 ? 1.0 : 0.0));
-  config.stop_descriptor = io::stop_signals();
+  config.stop_descriptor = io::open_stop_signals();
   if (const auto served = run_relay(config); !served) {
     return config::refusal("palp-netem", served.error());
   }

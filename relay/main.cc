@@ -44,7 +44,7 @@ void serve_once(io::DatagramSocket& socket, Rooms& rooms) {
 ExitStatus serve(const Flags& flags) {
   const auto listen = io::resolve(*flags.listen);
   if (!listen) return {ExitCode::BadInput, "palp-relay: --listen: " + listen.error().text};
-  const io::Descriptor stop{io::stop_signals()};
+  const io::Descriptor stop{io::open_stop_signals()};
   io::DatagramSocket socket = io::DatagramSocket::bound(*listen);
   Rooms rooms;
   std::printf("listening on %s\n", socket.local().to_string().c_str());

@@ -6,7 +6,7 @@
 
 namespace palp::io {
 
-int stop_signals() noexcept {
+int open_stop_signals() noexcept {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);

@@ -4,6 +4,6 @@ namespace palp::io {
 
 /// A descriptor that becomes readable at SIGINT or SIGTERM, for programs that wait in the kernel.
 /// Once, before other threads. Negative: none could be made.
-[[nodiscard]] int stop_signals() noexcept;
+[[nodiscard]] int open_stop_signals() noexcept;
 
 }  // namespace palp::io
