@@ -255,6 +255,11 @@ void declare_running(config::CommandLine& verb, BatchArguments& arguments, const
   verb.whole("--cores", arguments.cores, {.min = 1, .max = 1024}, "threads; as many as there are");
 }
 
+void declare_spread(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {
+  declare_running(verb, arguments, schema);
+  declare_submission(verb, arguments.submission);
+}
+
 }  // namespace
 
 void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
@@ -272,18 +277,18 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   auto& monte = line.verb("montecarlo", "a set of scenarios: errors, energies, stability");
   set_flags(monte, true);
   monte.text("--coupling", arguments.coupling, "NAME", "the law; mmt");
-  declare_running(monte, arguments, kMontecarlo);
+  declare_spread(monte, arguments, kMontecarlo);
   auto& liar = line.verb("adversary", "random cases with a patient site that lies");
   set_flags(liar, false);
   liar.text("--coupling", arguments.coupling, "NAME", "the law; mmt");
-  declare_running(liar, arguments, kAdversary);
+  declare_spread(liar, arguments, kAdversary);
   auto& side_by_side = line.verb("compare", "a set with every coupling");
   set_flags(side_by_side, true);
   declare_running(side_by_side, arguments, kCompare);
   auto& stability = line.verb("map", "stability of eq. (1): spring, round trip, grip");
   stability.text("--coupling", arguments.coupling, "NAME", "direct");
   tissue_flag(stability);
-  declare_running(stability, arguments, kMap);
+  declare_spread(stability, arguments, kMap);
   auto& axes = line.verb("sweep", "all combinations of settings: PATH=VALUE,VALUE,...");
   axes.text("--scenario", arguments.scenario, "NAME", "what they change; standard");
   axes.text("--coupling", arguments.coupling, "NAME", "instead of the scenario's");
@@ -293,7 +298,7 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   axes.arguments(
       "AXIS", arguments.list, "PATH=VALUE,VALUE,...; coupling.*, loop.* at both sites; rtt_ms");
   axes.required();
-  declare_running(axes, arguments, kSweep);
+  declare_spread(axes, arguments, kSweep);
   auto& joined = line.verb("merge", "cases files of all shards become one report");
   joined.text("--set", arguments.set, "NAME", "refuse cases of another");
   joined.text("--coupling", arguments.coupling, "NAME", "refuse cases of another");

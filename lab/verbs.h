@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/config/command_line.h"
+#include "lab/submission.h"
 
 /// The verbs of palp-lab that run many cases.
 namespace palp::lab {
@@ -37,6 +38,7 @@ struct BatchArguments {
   std::uint64_t count{1000};
   std::uint64_t repeats{1};
   std::uint64_t cores{};
+  Submission submission;  ///< of montecarlo, adversary, map and sweep
 };
 
 /// Declares the verbs; `arguments` outlives the command line.
