@@ -51,7 +51,8 @@ TEST(SettingsTextTest, NamesPlaceAndFieldsOfAnUnknownField) {
   PatientConfig patient;
   EXPECT_EQ(error_of("link {\n  hold_ms: 3\n}", patient),
             "a.conf:2:10: no field \"hold_ms\" in Link, which has: hold_after_ms, lost_after_ms, "
-            "round_trip_max_ms, closed_after_s, stale_after_ms, insecure, identity, rekey_after_s");
+            "round_trip_max_ms, closed_after_s, stale_after_ms, insecure, identity, rekey_after_s, "
+            "through, room");
 }
 
 TEST(SettingsTextTest, RefusesWhatIsNotAFiniteNumber) {
