@@ -12,11 +12,11 @@
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
 #include "common/core/time.h"
+#include "common/io/net/datagram_socket.h"
 #include "common/io/net/endpoint.h"
 #include "netem/model/channel.h"
 #include "netem/model/path_plan.h"
 #include "netem/relay/client_choice.h"
-#include "common/io/net/datagram_socket.h"
 #include "netem/relay/relay_recording.h"
 #include "netem/relay/release_timing.h"
 

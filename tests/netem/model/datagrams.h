@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "common/io/net/endpoint.h"
 #include "common/io/net/datagram_socket.h"
+#include "common/io/net/endpoint.h"
 
 /// What tests of the relay say and hear through sockets of their own.
 namespace palp::netem {
