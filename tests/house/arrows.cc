@@ -11,7 +11,7 @@ namespace palp::house {
 namespace {
 
 /// Rooms, the longer name first where one lies in another.
-constexpr std::array<std::string_view, 32> kRooms{"common/core",
+constexpr std::array<std::string_view, 33> kRooms{"common/core",
                                                   "common/message",
                                                   "common/coupling",
                                                   "common/link",
@@ -20,6 +20,7 @@ constexpr std::array<std::string_view, 32> kRooms{"common/core",
                                                   "common/record",
                                                   "common/io/process",
                                                   "common/io/realtime",
+                                                  "common/io/device",
                                                   "common/io/net",
                                                   "common/io/secure",
                                                   "common/io",
@@ -64,6 +65,7 @@ const std::vector<Arrow>& arrows() {
       {"common/record/*", {"common/message", "common/link"}},
       {"common/io/process/*", {}},
       {"common/io/realtime/*", {"common/io/process"}},
+      {"common/io/device/*", {"common/io/process", "common/io/realtime"}},
       {"common/io/net/*",
        {"common/io/process", "common/io/realtime", "common/message", "common/link"}},
       {"common/io/secure/*", {"common/io/*", "common/message", "common/link"}},
@@ -124,7 +126,13 @@ const std::vector<Arrow>& arrows() {
         "common/io/*",
         "netem/*"}},
       {"patient_site/devices/*",
-       {"patient_site/stage.h", "patient_site/force_sensor.h", "common/io/*"}},
+       {"patient_site/stage.h",
+        "patient_site/force_sensor.h",
+        "patient_site/plane_motion.h",
+        "common/io/*"}},
+      // Reads the text of a device's registers, and of where it is built in.
+      {"patient_site/settings_devices.*",
+       {"patient_site/devices", "common/io/device", "common/config", "common/settings"}},
       {"patient_site/settings.*",
        {"depth",
         "common/message",
@@ -196,6 +204,7 @@ const std::vector<std::string_view>& protobuf_files() {
 
 const std::vector<Fence>& fences() {
   static const std::vector<Fence> table{
+      {"modbus/", {"common/io/device/modbus_port.cc"}},
       {"boost/", {"common/io/net/*.cc", "common/io/secure/*.cc"}},
       {"google/protobuf/", protobuf_files()},
       {"zstd", {"common/record/mcap_*.cc"}},
