@@ -159,6 +159,11 @@ Result<DevicePlans> sound(DevicePlans plans, const std::string& name) {
   if (plans.cell && !plans.cell->profile.force) {
     return fail(name + ": " + plans.cell->profile.name + " is no force sensor");
   }
+  if (!plans.normal) return fail(name + ": there is no axis along the normal");
+  if (!plans.cell && !plans.normal->profile.force) {
+    return fail(name + ": there is no cell, and " + plans.normal->profile.name +
+                " does not feel its load");
+  }
   std::vector<std::string> lines;
   for (const auto* one : {&plans.normal, &plans.x, &plans.y, &plans.cell}) {
     if (!*one || (*one)->address.line.empty()) continue;
@@ -202,6 +207,7 @@ Result<DevicePlans> make_device_plans(std::string_view text, const std::string& 
     return fail(name, checked.error());
   }
   DevicePlans plans;
+  plans.phantom = message.phantom();
   struct Place {
     const char* name;
     bool there;
@@ -224,44 +230,6 @@ Result<DevicePlans> read_device_plans(const std::string& path) {
   const auto text = config::read_whole_file(path);
   if (!text) return tl::unexpected{text.error()};
   return make_device_plans(*text, path);
-}
-
-StageFacts stage_facts_of(const DevicePlans& plans) noexcept {
-  StageFacts facts;
-  const DeviceInstallation& normal = plans.normal->installation;
-  facts.axes = plans.x ? 3 : 1;
-  facts.travel_min = normal.travel_min;
-  facts.travel_max = normal.travel_max;
-  facts.speed = normal.speed_max;
-  facts.acceleration = normal.acceleration_max;
-  facts.rate = 1 / seconds(plans.normal->profile.period);
-  facts.lag = plans.normal->lag;
-  facts.travel_side = 0;
-  facts.drags = plans.x.has_value();
-  if (!plans.x) return facts;
-  facts.travel_side = 10;
-  for (const auto* axis : {&plans.x, &plans.y}) {
-    const DeviceInstallation& side = (*axis)->installation;
-    facts.travel_side =
-        std::min({facts.travel_side, std::abs(side.travel_min), std::abs(side.travel_max)});
-    facts.speed = std::min(facts.speed, side.speed_max);
-    facts.acceleration = std::min(facts.acceleration, side.acceleration_max);
-  }
-  return facts;
-}
-
-ForceSensorFacts sensor_facts_of(const DevicePlan& plan) noexcept {
-  ForceSensorFacts facts;
-  facts.pole = plan.pole;
-  facts.step = plan.installation.force_unit > 0 ? plan.installation.force_unit
-               : plan.profile.force             ? plan.profile.force->unit
-                                                : 0;
-  if (plan.profile.force && plan.profile.force->kind == WordKind::F32) facts.step = 0;
-  facts.range = plan.installation.force_range;
-  facts.noise = plan.noise;
-  facts.rate = 1 / seconds(plan.profile.period);
-  facts.lag = plan.lag;
-  return facts;
 }
 
 }  // namespace palp::patient

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "patient_site/devices/device_plans.h"
+#include "patient_site/devices/device_rig.h"
 #include "patient_site/settings_devices.h"
 #include "tests/patient_site/devices/fake_registers.h"
 
@@ -76,6 +78,27 @@ TEST(RegisterStageTest, AStageWithAnAxisThatIsNotThereIsFaulted) {
   ASSERT_TRUE(wait_for([&] { return axis.status().reason == DeviceReason::Port; }));
   EXPECT_TRUE(stage.read(clock.now()).faulted);
   EXPECT_FALSE(force.sample(clock.now()).has_value());
+}
+
+TEST(DeviceRigTest, TellsByNameWhoIsNotThere) {
+  const auto plans =
+      make_device_plans("normal { profile: \"orca\" address: \"serial:/dev/null/none\" }", "rig");
+  ASSERT_TRUE(plans) << plans.error().text;
+  DeviceRig rig{*plans, 0};
+  std::vector<DeviceNews> news;
+  ASSERT_TRUE(wait_for([&] {
+    news = rig.news();
+    return !news.empty();
+  }));
+  EXPECT_FALSE(news[0].fit);
+  EXPECT_EQ(news[0].sentence, "normal axis (Iris ORCA): absent, cannot be opened");
+  EXPECT_TRUE(rig.stage().read(io::SteadyClock{}.now()).faulted);
+  EXPECT_FALSE(rig.sensor().sample(io::SteadyClock{}.now()).has_value());
+  EXPECT_EQ(rig.stage().stage_facts().axes, 1U);
+  EXPECT_FALSE(rig.ready());
+  EXPECT_FALSE(rig.hopeless(std::chrono::seconds{1}));
+  EXPECT_EQ(rig.hopeless(std::chrono::seconds{6}), news[0].sentence);
+  rig.restart();
 }
 
 }  // namespace
