@@ -82,6 +82,8 @@ Result<std::optional<DevicePlans>> plan_devices(Settings& settings) {
     return fail(settings.devices + ": " + *flaw);
   }
   if (!plans->phantom.empty()) settings.phantom = plans->phantom;
+  const DevicePlan& sensor = plans->cell ? *plans->cell : *plans->normal;
+  settings.node.sensor_stale = sensor.profile.silence;
   return std::optional{std::move(*plans)};
 }
 

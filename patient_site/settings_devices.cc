@@ -134,6 +134,7 @@ Result<DevicePlan> make_plan(const ModbusDevice& message, const std::string& whe
   address->baud = message.baud() > 0 ? message.baud() : profile->baud;
   address->parity = profile->parity;
   address->reply_delay = profile->reply_delay;
+  if (message.silence_ms() > 0) profile->silence = from_milliseconds(message.silence_ms());
   const DeviceInstallation built_in = make_installation(message);
   if (const auto flaw = flaw_of(*profile, built_in)) return wrong(Error{*flaw});
   DevicePlan plan;

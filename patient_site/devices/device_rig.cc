@@ -65,7 +65,7 @@ std::vector<DeviceNews> DeviceRig::news() {
     const DeviceReading& reading = threads_[i]->status();
     const Known before = std::exchange(known_[i], {reading.state, reading.reason});
     if (before.state != reading.state || before.reason != reading.reason) {
-      all.push_back({sentence_of(*threads_[i]), reading.state == DeviceState::Ready});
+      all.push_back({sentence_of(*threads_[i]), reading.reason == DeviceReason::None});
     }
   }
   return all;

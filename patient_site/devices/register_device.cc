@@ -132,7 +132,8 @@ void RegisterDevice::note_transfer(PortFault fault, TimePoint now) {
     return;
   }
   const bool gone = fault == PortFault::Lost || fault == PortFault::NotOpen;
-  if (!gone && failed_in_a_row_ <= kRetriesMax && now - heard_at_ <= profile_.silence) return;
+  const bool wrong_answers = fault != PortFault::NoReply && failed_in_a_row_ > kRetriesMax;
+  if (!gone && !wrong_answers && now - heard_at_ <= profile_.silence) return;
   port_.close();
   now_.state = DeviceState::Absent;
   now_.reason = DeviceReason::Port;

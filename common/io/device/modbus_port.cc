@@ -90,6 +90,13 @@ void ModbusPort::close() { context_.reset(); }
 
 bool ModbusPort::prepare(std::size_t words) {
   if (!context_) return false;
+  if (std::exchange(answer_due_, false)) {
+    modbus_close(context_->handle);
+    if (modbus_connect(context_->handle) != 0) {
+      context_.reset();
+      return false;
+    }
+  }
   const auto bytes = static_cast<std::uint32_t>(kFrameBytes + 2 * words);
   const timeval patience = to_timeval(reply_time_max(address_, bytes));
   const auto whole = static_cast<std::uint32_t>(patience.tv_sec);
@@ -122,8 +129,10 @@ PortFault ModbusPort::outcome(int count, std::size_t expected) {
     close();
     return PortFault::Lost;
   }
-  // What comes late would be taken for the answer to the next request.
+  // What comes late would be taken for the answer to the next request. A line is emptied; on a
+  // connection it may come later still, so that one is given up.
   modbus_flush(context_->handle);
+  answer_due_ = address_.line.empty();
   if (error == ETIMEDOUT) return PortFault::NoReply;
   return error == EMBBADSLAVE ? PortFault::WrongStation : PortFault::BrokenFrame;
 }

@@ -56,6 +56,7 @@ class ModbusPort final : public RegisterPort {
 
   ModbusAddress address_;
   std::unique_ptr<Context> context_;
+  bool answer_due_{};  ///< on a connection: the next request needs a new one
 };
 
 }  // namespace palp::io
