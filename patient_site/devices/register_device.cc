@@ -259,6 +259,7 @@ void RegisterDevice::steer(const DeviceCommand& command, TimePoint now) noexcept
   const double target =
       std::clamp(valid ? command.target : 0.0, installation_.travel_min, installation_.travel_max);
   now_.at_limit = valid && target != command.target;
+  const double before = motion_.command;
   if (valid) {
     motion_ = step_axis(motion_,
                         target,
@@ -270,6 +271,11 @@ void RegisterDevice::steer(const DeviceCommand& command, TimePoint now) noexcept
     motion_.velocity = step_towards(motion_.velocity, 0, installation_.acceleration_max * span);
     motion_.command += motion_.velocity * span;
   }
+  // Where it stands outside its travel, it may stay there and come back.
+  const double within = std::clamp(motion_.command,
+                                   std::min(installation_.travel_min, before),
+                                   std::max(installation_.travel_max, before));
+  if (within != motion_.command) motion_ = {.command = within, .velocity = 0};
 }
 
 double RegisterDevice::raw_position(double position) const noexcept {

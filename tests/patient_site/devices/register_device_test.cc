@@ -121,6 +121,19 @@ TEST(RegisterDeviceTest, AnExpiredCommandStopsIt) {
   EXPECT_GT(there, -0.05);
 }
 
+TEST(RegisterDeviceTest, WhoIsLeftAloneStopsWithinItsTravel) {
+  for (int moving = 1; moving < 200; ++moving) {
+    Axis axis;
+    axis.port.words[0x9001] = 5000;
+    axis.cycles(20);
+    axis.move(0.1);
+    axis.cycles(moving);
+    axis.alive = false;
+    axis.cycles(20);
+    ASSERT_LE(axis.reading.position, 0.1 + 1e-5) << moving;
+  }
+}
+
 TEST(RegisterDeviceTest, ComesBackWithoutAJump) {
   Axis axis;
   axis.port.words[0x9001] = 5000;
@@ -174,6 +187,11 @@ TEST(RegisterDeviceTest, AFewLostAnswersAreNoFaultAndSilenceIs) {
   EXPECT_EQ(axis.cycles(10).state, DeviceState::Absent);
   EXPECT_EQ(axis.why(), "broken frame");
   EXPECT_GE(axis.reading.failures, 3U);
+  Axis silent;
+  silent.cycles(20);
+  silent.port.fault = PortFault::NoReply;
+  EXPECT_EQ(silent.cycles(12).state, DeviceState::Absent);
+  EXPECT_EQ(silent.why(), "no reply");
 }
 
 TEST(RegisterDeviceTest, ARefusalIsAFaultAtOnce) {

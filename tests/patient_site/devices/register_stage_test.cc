@@ -68,6 +68,14 @@ TEST(RegisterStageTest, GoesToItsTargetAndFeelsWithThreadsOfItsOwn) {
   EXPECT_EQ(axis.name(), "normal");
 }
 
+TEST(RegisterStageTest, AnOldReadingIsAFaultWhateverItsThreadSays) {
+  DeviceThread axis{"normal", quick_orca(), installation(), orca_registers(), 0};
+  RegisterStage stage{{&axis, nullptr, nullptr}, StageFacts{}};
+  const io::SteadyClock clock;
+  ASSERT_TRUE(wait_for([&] { return !stage.read(clock.now()).faulted; }));
+  EXPECT_TRUE(stage.read(clock.now() + std::chrono::minutes{1}).faulted);
+}
+
 TEST(RegisterStageTest, AStageWithAnAxisThatIsNotThereIsFaulted) {
   auto port = orca_registers();
   port->openable = false;
