@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kFrameBytes = 24;  // of request and reply together, beside the words
 constexpr Duration kGatewayTime = std::chrono::milliseconds{40};  // and a network's
-constexpr Duration kLineTime = std::chrono::milliseconds{8};      // a driver's buffers, a busy host
+constexpr Duration kLineTime = std::chrono::milliseconds{30};     // an adapter's timer, a busy host
 
 timeval to_timeval(Duration span) noexcept {
   const auto micro = std::chrono::duration_cast<std::chrono::microseconds>(span).count();
@@ -97,6 +97,8 @@ bool ModbusPort::prepare(std::size_t words) {
       return false;
     }
   }
+  // Frames of a line have no number: what is there now answers an earlier request.
+  if (!address_.line.empty()) modbus_flush(context_->handle);
   const auto bytes = static_cast<std::uint32_t>(kFrameBytes + 2 * words);
   const timeval patience = to_timeval(reply_time_max(address_, bytes));
   const auto whole = static_cast<std::uint32_t>(patience.tv_sec);

@@ -53,6 +53,9 @@ class Line {
     if (master_ >= 0) ::close(master_);
     master_ = -1;
   }
+  void say(const Bytes& bytes) const {
+    EXPECT_EQ(::write(master_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  }
   /// What was asked while `call` ran; answered with `reply`.
   Bytes hear(std::size_t length, const Bytes& reply, const std::function<void()>& call) const {
     Bytes heard;
@@ -201,6 +204,19 @@ INSTANTIATE_TEST_SUITE_P(
                     Spoiled{"01 03 04 00 00 0B FE 7C 84", PortFault::BrokenFrame},
                     Spoiled{"01 83 02 C0 F1", PortFault::Refused},
                     Spoiled{"02 03 04 00 00 0B FE 4F 83", PortFault::WrongStation}));
+
+TEST(ModbusPortTest, ALateAnswerIsNotTakenForTheNext) {
+  const Line line;
+  ModbusPort port{line.address()};
+  ASSERT_EQ(port.open(), PortFault::None);
+  std::array<std::uint16_t, 2> words{};
+  line.hear(8, {}, [&] { EXPECT_EQ(port.read(0x9000, words, false), PortFault::NoReply); });
+  line.say(bytes_of("01 03 04 00 00 00 00 FA 33"));
+  line.hear(8, bytes_of("01 03 04 00 00 0B FE 7C 83"), [&] {
+    EXPECT_EQ(port.read(0x9000, words, false), PortFault::None);
+  });
+  EXPECT_EQ(words[1], 3070);
+}
 
 TEST(ModbusPortTest, ALineThatGoesAwayIsLost) {
   Line line;
