@@ -16,6 +16,7 @@
 #include "common/io/realtime/steady_clock.h"
 #include "common/link/codec_wire.h"
 #include "patient_site/devices/device_rig.h"
+#include "patient_site/devices_command.h"
 #include "patient_site/display.h"
 #include "patient_site/estimator_worker.h"
 #include "patient_site/patient_node.h"
@@ -294,10 +295,12 @@ int run(int argc, char** argv) {
   declare_flags(line, document, report_file);
   line.verbs_optional();
   const site_program::CheckCommand check{line, link::Role::Patient};
+  const DevicesCommand devices{line};
   const auto session = [&](site_program::SiteReport& report) {
     return site_program::run_session<Program>(make_plan(document), report);
   };
-  const std::vector<site_program::SideVerb> verbs{{"check", [&] { return check.run(); }}};
+  const std::vector<site_program::SideVerb> verbs{{"check", [&] { return check.run(); }},
+                                                  {"devices", [&] { return devices.run(); }}};
   return site_program::run({"patient", line, report_file, verbs, session}, argc, argv);
 }
 

@@ -130,6 +130,8 @@ const std::vector<Arrow>& arrows() {
         "patient_site/force_sensor.h",
         "patient_site/plane_motion.h",
         "common/io/*"}},
+      {"patient_site/devices_command.*",
+       {"patient_site/devices", "common/config", "common/io/device", "site_program"}},
       // Reads the text of a device's registers, and of where it is built in.
       {"patient_site/settings_devices.*",
        {"patient_site/devices", "common/io/device", "common/config", "common/settings"}},
