@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/core/check.h"
 #include "common/io/device/modbus_port.h"
 
 namespace palp::patient {
@@ -23,6 +24,7 @@ std::string sentence_of(DeviceThread& device) {
 
 DeviceRig::DeviceRig(const DevicePlans& plans, int priority) {
   DeviceThread* const normal = add("normal axis", plans.normal, priority);
+  PALP_CHECK(normal != nullptr, "a stage has an axis along the normal");
   DeviceThread* const x = add("x axis", plans.x, priority);
   DeviceThread* const y = add("y axis", plans.y, priority);
   DeviceThread* const cell = add("force sensor", plans.cell, priority);

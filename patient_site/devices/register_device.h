@@ -51,7 +51,8 @@ class RegisterDevice {
   void steer(const DeviceCommand& command, TimePoint now) noexcept;
   void send_move(TimePoint now);
   [[nodiscard]] io::PortFault send(const RegisterWrite& write);
-  std::size_t words_of(const RegisterWrite& write, std::span<std::uint16_t> words) const noexcept;
+  [[nodiscard]] std::size_t words_of(const RegisterWrite& write,
+                                     std::span<std::uint16_t> words) const noexcept;
   [[nodiscard]] double raw_position(double position) const noexcept;
   void note_transfer(io::PortFault fault, TimePoint now);
   void fail(DeviceReason reason, std::uint32_t detail);

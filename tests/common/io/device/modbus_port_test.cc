@@ -90,14 +90,14 @@ struct Vector {
 /// Data sheets' frames, and some computed from them, with their checksums. One list.
 // NOLINTNEXTLINE(readability-function-size): a table
 std::vector<Vector> vectors() {
-  const auto reads = [](std::uint16_t address, std::vector<std::uint16_t> expected) {
+  const auto reads = [](std::uint16_t address, const std::vector<std::uint16_t>& expected) {
     return [address, expected](ModbusPort& port) {
       std::vector<std::uint16_t> words(expected.size());
       EXPECT_EQ(port.read(address, words, false), PortFault::None);
       EXPECT_EQ(words, expected);
     };
   };
-  const auto writes = [](std::uint16_t address, std::vector<std::uint16_t> words) {
+  const auto writes = [](std::uint16_t address, const std::vector<std::uint16_t>& words) {
     return [address, words](ModbusPort& port) {
       EXPECT_EQ(port.write(address, words), PortFault::None);
     };
