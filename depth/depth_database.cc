@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <iterator>
 #include <limits>
 
 #include "common/core/conventions.h"
+#include "common/core/whole_file.h"
 #include "depth/embedded_database.h"
 
 namespace palp::depth {
@@ -234,10 +234,10 @@ Result<DepthDatabase> default_database() {
 }
 
 Result<DepthDatabase> load_database(const std::string& path) {
-  std::ifstream in{path, std::ios::binary};
-  if (!in) return fail("cannot open the depth database " + path);
-  const std::string bytes{std::istreambuf_iterator<char>{in}, {}};
-  const auto table = fem::parse_table(bytes);
+  constexpr std::size_t kSizeMax = 256U << 20U;  // [bytes], a hundred times the shipped one
+  const auto bytes = read_whole_file(path, kSizeMax);
+  if (!bytes) return fail("depth database", bytes.error());
+  const auto table = fem::parse_table(*bytes);
   if (!table) return fail(path + ": " + table.error().text);
   return DepthDatabase::make(*table);
 }

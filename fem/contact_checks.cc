@@ -12,7 +12,7 @@
 namespace palp::fem {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kRadius = 5e-3;  // [m], of every indenter here
 
 /// So large that its sides take less than a ten-thousandth of the force.
@@ -78,7 +78,7 @@ void add_half_spaces(Checks& to, Extent extent) {
       to.push_back(close(name_of("cone (Sneddon)", poisson, shallow),
                          "force N",
                          pressed(cone, shallow, accuracy),
-                         2 * modulus * shallow * shallow / (kPi * cone.indenter.slope),
+                         2 * modulus * shallow * shallow / (pi * cone.indenter.slope),
                          3e-3));
     }
   }

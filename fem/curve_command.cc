@@ -29,10 +29,6 @@ std::vector<std::string> split(const std::string& text, char mark) {
   return parts;
 }
 
-ExitStatus bad_input(const std::string& sentence) {
-  return {ExitCode::BadInput, "palp-fem: " + sentence};
-}
-
 }  // namespace
 
 void declare_curve(config::CommandLine& line, CurveFlags& flags) {
@@ -139,9 +135,9 @@ std::string csv_text(const std::vector<CurveRow>& rows) {
 
 ExitStatus run_curve(const CurveFlags& flags) {
   const auto request = curve_request(flags);
-  if (!request) return bad_input(request.error().text);
+  if (!request) return {ExitCode::BadInput, "palp-fem: " + request.error().text};
   const auto curve = solve_curve(*request);
-  if (!curve) return bad_input(curve.error().text);
+  if (!curve) return {ExitCode::BadInput, "palp-fem: " + curve.error().text};
   const std::string text = csv_text(curve->rows);
   if (!flags.vtu.empty()) {
     const auto written =

@@ -19,6 +19,7 @@
 #include "common/config/settings_text.h"
 #include "common/core/conventions.h"
 #include "common/core/printable.h"
+#include "common/core/whole_file.h"
 #include "fem/database_builder.h"
 #include "fem/depth_table.h"
 #include "fem/interpolation_check.h"
@@ -65,8 +66,8 @@ Result<Shard> parse_shard(const std::string& text) {
 }
 
 Result<DepthTable> load(const std::string& path) {
-  const auto bytes = config::read_whole_file(path);
-  if (!bytes) return fail_to_reach(bytes.error().text);
+  const auto bytes = read_whole_file(path);
+  if (!bytes) return tl::unexpected<Error>(bytes.error());
   auto table = parse_table(*bytes);
   if (!table) return fail(path + ": " + table.error().text);
   return table;

@@ -11,7 +11,7 @@
 namespace palp::fem {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kYoungsModulus = 1000;  // [Pa], of every body here
 
 std::string with_poisson(const std::string& law, double poisson) {
@@ -24,7 +24,7 @@ Vector2 no_displacement(const Node& /*place*/) { return {}; }
 
 /// A square beside the axis, its lines bent: no element is a rectangle.
 Node bent_square(double s, double t) {
-  const double wave = 0.05 * std::sin(kPi * s) * std::sin(kPi * t);
+  const double wave = 0.05 * std::sin(pi * s) * std::sin(pi * t);
   return {1 + s + wave, t + 1.3 * wave};
 }
 
@@ -113,7 +113,7 @@ void add_made_up_field(Checks& to, Extent extent) {
       MappedBody body{count,
                       count,
                       [](double s, double t) {
-                        const double wave = 0.06 * std::sin(kPi * s) * std::sin(kPi * t);
+                        const double wave = 0.06 * std::sin(pi * s) * std::sin(pi * t);
                         return Node{s + wave, t - wave};
                       },
                       material};
@@ -159,7 +159,7 @@ void add_thick_cylinder(Checks& to) {
 Placement shell(double inner, double outer) {
   return [=](double s, double t) {
     const double radius = inner * std::pow(outer / inner, t);
-    const double angle = 0.5 * kPi * s;
+    const double angle = 0.5 * pi * s;
     return Node{s == 0 ? 0 : radius * std::sin(angle), s == 1 ? 0 : radius * std::cos(angle)};
   };
 }
@@ -222,7 +222,7 @@ void add_ball_in_matrix(Checks& to) {
         24,
         [](double s, double t) {
           const double radius = t < 0.5 ? 0.05 + 1.9 * t : std::pow(3.0, 2 * t - 1);
-          const double angle = 0.5 * kPi * s;
+          const double angle = 0.5 * pi * s;
           return Node{s == 0 ? 0 : radius * std::sin(angle), s == 1 ? 0 : radius * std::cos(angle)};
         },
         {kYoungsModulus, poisson}};
@@ -272,7 +272,7 @@ void add_pushed_ball(Checks& to) {
     const auto found = body.solve(Strain::Small);
     double force = 0;
     for (const int node : body.nodes_of(Side::TLow)) force += 2 * found.reaction[z_of(node)];
-    const double wanted = 24 * kPi * body.material().shear() * (1 - poisson) / (5 - 6 * poisson);
+    const double wanted = 24 * pi * body.material().shear() * (1 - poisson) / (5 - 6 * poisson);
     to.push_back(close(with_poisson("rigid ball pushed through a matrix", poisson),
                        "force N",
                        force,

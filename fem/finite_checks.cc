@@ -9,9 +9,9 @@
 namespace palp::fem {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kYoungsModulus = 3;  // [Pa]: a shear modulus of 1 at the incompressible limit
-constexpr double kPoisson = 0.49999;
+using std::numbers::pi;
+constexpr double kSoftModulus = 3;  // [Pa]: a shear modulus of 1 at the incompressible limit
+constexpr double kFinitePoisson = 0.49999;
 
 /// Cauchy stress of an incompressible state: the isochoric part; a pressure is free.
 struct Stress {
@@ -60,10 +60,10 @@ void add_pulled_cylinder(Checks& to) {
   MappedBody body{4,
                   4,
                   [](double s, double t) {
-                    const double wave = 0.05 * std::sin(kPi * s) * std::sin(kPi * t);
+                    const double wave = 0.05 * std::sin(pi * s) * std::sin(pi * t);
                     return Node{s + wave, t + 1.3 * wave};
                   },
-                  {kYoungsModulus, kPoisson}};
+                  {kSoftModulus, kFinitePoisson}};
   const auto still = [](const Node& /*place*/) { return Vector2{}; };
   body.support_r(Side::SLow, still);
   body.support_z(Side::TLow, still);
@@ -75,7 +75,7 @@ void add_pulled_cylinder(Checks& to) {
   to.push_back(close("cylinder pulled to 1.3, finite strain",
                      "force N",
                      found.solved ? force : 0,
-                     kPi * shear * (1.3 - 1 / (1.3 * 1.3)),
+                     pi * shear * (1.3 - 1 / (1.3 * 1.3)),
                      1e-4));
 }
 
@@ -86,7 +86,7 @@ void add_tangent(Checks& to) {
                         [](double s, double t) {
                           return Node{1 + s + 0.2 * t, t - 0.1 * s};
                         },
-                        {kYoungsModulus, 0.49}};
+                        {kSoftModulus, 0.49}};
   const ElementGeometry geometry = make_geometry(body.mesh(), body.mesh().elements[0]);
   ElementVector u{};
   for (std::size_t i = 0; i < 18; ++i) u[i] = 0.05 * std::sin(1.7 * static_cast<double>(i * i + 1));
@@ -129,10 +129,10 @@ void add_inflated_cavity(Checks& to, Extent extent) {
         2 * count,
         [](double s, double t) {
           const double radius = std::pow(kOuter, t);
-          const double angle = 0.5 * kPi * s;
+          const double angle = 0.5 * pi * s;
           return Node{s == 0 ? 0 : radius * std::sin(angle), s == 1 ? 0 : radius * std::cos(angle)};
         },
-        {kYoungsModulus, kPoisson}};
+        {kSoftModulus, kFinitePoisson}};
     const auto still = [](const Node& /*place*/) { return Vector2{}; };
     body.support_r(Side::SLow, still);
     body.support_z(Side::SHigh, still);
@@ -149,7 +149,7 @@ void add_inflated_cavity(Checks& to, Extent extent) {
         "cavity inflated to " + std::to_string(stretch).substr(0, 3) + ", finite strain";
     to.push_back(close(law,
                        "pressure Pa",
-                       found.solved ? push / (2 * kPi * stretch * stretch) : 0,
+                       found.solved ? push / (2 * pi * stretch * stretch) : 0,
                        inflation_pressure(stretch, kOuter, body.material().shear()),
                        2e-3));
   }
@@ -157,7 +157,7 @@ void add_inflated_cavity(Checks& to, Extent extent) {
 
 /// Newton's method near its end: the residual's logarithm doubles.
 void add_newton_rate(Checks& to) {
-  MappedBody body{6, 8, [](double s, double t) { return Node{s, t}; }, {kYoungsModulus, 0.4}};
+  MappedBody body{6, 8, [](double s, double t) { return Node{s, t}; }, {kSoftModulus, 0.4}};
   const auto still = [](const Node& /*place*/) { return Vector2{}; };
   body.support_r(Side::SLow, still);
   body.support(Side::TLow, still);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kStepMax = 0.05;      // [radii]: 0.25 mm for the paper's tip
 constexpr double kStepMin = 1e-4;      // [radii]
-constexpr int kPassesMax = 12;         // of one step; 5 are usual
+constexpr int kStepPassesMax = 12;     // of one step; 5 are usual
 constexpr int kContactPassesMax = 25;  // on the dense surface; about 10 are usual
 constexpr double kTolerance = 1e-5;    // of the residual, relative to the contact's force
 constexpr int kPatience = 5;           // passes that cost as much as new factors
@@ -98,7 +98,7 @@ bool FiniteContact::measure(State& state) const {
 bool FiniteContact::solve(State& state) {
   residuals_.clear();
   cut_ = false;
-  for (int pass = 0; pass < kPassesMax; ++pass) {
+  for (int pass = 0; pass < kStepPassesMax; ++pass) {
     const Eigen::VectorXd surface = surface_of(state.displacement);
     const SphereContact::Load load = contact_.measure(surface, state.indentation);
     const Eigen::VectorXd balance = balance_of(state);

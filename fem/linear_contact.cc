@@ -13,7 +13,7 @@
 namespace palp::fem {
 namespace {
 
-constexpr int kPassesMax = 60;  // of the active set; a handful is usual
+constexpr int kActiveSetPassesMax = 60;  // of the active set; a handful is usual
 
 }  // namespace
 
@@ -115,7 +115,7 @@ Result<CurveRow> LinearContact::press(double indentation) {
   for (std::size_t i = 0; i < active_.size(); ++i) {
     active_[i] = i < 2 || contact_[i].profile < 0.5 * indentation;
   }
-  for (int pass = 0; pass < kPassesMax; ++pass) {
+  for (int pass = 0; pass < kActiveSetPassesMax; ++pass) {
     if (!solve_active(indentation)) break;
     if (update_active(indentation)) continue;
     return CurveRow{.indentation = indentation,

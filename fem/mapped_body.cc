@@ -14,8 +14,8 @@
 namespace palp::fem {
 namespace {
 
-constexpr int kPassesMax = 30;        // of Newton's method
-constexpr double kTolerance = 1e-13;  // of the residual, relative to the largest reaction
+constexpr int kMappingPassesMax = 30;  // of Newton's method
+constexpr double kTolerance = 1e-13;   // of the residual, relative to the largest reaction
 
 }  // namespace
 
@@ -137,7 +137,7 @@ MappedBody::Solution MappedBody::solve(Strain strain) const {
   Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::NaturalOrdering<int>> factor;
   factor.analyzePattern(tangent);
   Eigen::VectorXd force;
-  for (int pass = 0; pass < kPassesMax; ++pass) {
+  for (int pass = 0; pass < kMappingPassesMax; ++pass) {
     if (!(assembler.assemble(strain, out.displacement, tangent, force).volume_ratio_min > 0)) break;
     out.reaction = force - load_;
     Eigen::VectorXd right = Eigen::VectorXd::Zero(assembler.equations());

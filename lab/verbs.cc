@@ -6,6 +6,7 @@
 #include "common/config/json.h"
 #include "common/config/report.h"
 #include "common/config/settings_text.h"
+#include "common/core/whole_file.h"
 #include "common/coupling/any_coupling.h"
 #include "lab/report/batch_report.h"
 #include "lab/report/metric_plot.h"
@@ -225,7 +226,7 @@ ExitStatus merge(const BatchArguments& arguments) {
   if (auto known = check_metric(arguments); !known) return refusal(known.error());
   Run all;
   for (const std::string& path : arguments.list) {
-    const auto text = config::read_whole_file(path, kCasesSizeMax);
+    const auto text = read_whole_file(path, kCasesSizeMax);
     if (!text) return {ExitCode::CannotOpen, "palp-lab: " + text.error().text};
     auto rows = read_cases_csv(*text, path, all.plan);
     if (!rows) return refusal(rows.error());

@@ -15,6 +15,8 @@
 #include "common/core/printable.h"
 #include "common/core/random.h"
 #include "common/io/net/endpoint.h"
+#include "common/io/process/diagnostics.h"
+#include "common/io/process/hardening.h"
 #include "netem/model/simulation.h"
 #include "netem/relay/control_token.h"
 #include "netem/relay/datagram_socket.h"
@@ -370,6 +372,8 @@ void declare_simulate(config::CommandLine& line, SimulateFlags& flags) {
 }
 
 int run(int argc, char** argv) {
+  // A recording holds what two sites say to each other.
+  if (const auto refused = io::harden_process()) io::warn(*refused);
   Flags flags;
   config::CommandLine line{"palp-netem", "An impaired path for datagrams."};
   declare_relay(line.verb("relay", "forward datagrams between two UDP ports"), flags);

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "common/core/byte_order_mark.h"
 #include "common/core/check.h"
 #include "common/core/conventions.h"
+#include "common/core/whole_file.h"
 
 namespace palp::patient {
 namespace {
@@ -378,15 +378,9 @@ Result<std::vector<PlacedCurve>> parse_tissue_curves(std::string_view text,
 
 Result<std::vector<PlacedCurve>> load_tissue_curves(const std::string& path,
                                                     const Place& otherwise) {
-  std::ifstream file{path, std::ios::binary};
-  if (!file) return fail_to_reach(path + ": the file cannot be opened");
-  std::string text(kTextSizeMax + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad() || (file.gcount() == 0 && !file.eof())) {
-    return fail_to_reach(path + ": the file cannot be read");
-  }
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  return parse_tissue_curves(text, path, otherwise);
+  const Result<std::string> text = read_whole_file(path, kTextSizeMax);
+  if (!text) return tl::unexpected<Error>(text.error());
+  return parse_tissue_curves(*text, path, otherwise);
 }
 
 }  // namespace palp::patient

@@ -1,5 +1,6 @@
 #include "site_program/certificates_command.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "common/io/secure/certificates.h"
@@ -20,6 +21,10 @@ CertificatesCommand::CertificatesCommand(config::CommandLine& line) {
 ExitStatus CertificatesCommand::run() const {
   constexpr std::size_t kNameMax = 40;
   if (name_.size() > kNameMax) return bad_input("--name is longer than 40 characters");
+  const auto unfit = [](char c) { return c < ' ' || c > '~' || c == '#'; };
+  if (name_.empty() || std::ranges::any_of(name_, unfit)) {
+    return bad_input("--name takes printable ASCII without '#'");
+  }
   if (bench_ && !revoked_.empty()) return bad_input("--bench and --revoke exclude each other");
   const io::CertificatesConfig config{
       .folder = folder_, .days = static_cast<int>(days_), .name = name_};

@@ -11,7 +11,7 @@
 namespace palp::surgeon {
 namespace {
 
-double milliseconds(Duration span) noexcept { return seconds(span) * 1e3; }
+double in_milliseconds(Duration span) noexcept { return seconds(span) * 1e3; }
 
 std::string progress_text(const ScriptProgress& script) {
   constexpr int kWidth = 10;
@@ -45,8 +45,8 @@ std::optional<std::string> delay_advice(const SurgeonStatus& status,
                                         bool engagement_forced) {
   const LinkHealth& link = status.link;
   if (link.state != LinkState::Live || link.round_trip <= round_trip_max) return std::nullopt;
-  return number_text("the round trip is ", milliseconds(link.round_trip), 1, " ms: ") +
-         number_text("above ", milliseconds(round_trip_max), 0, " ms ") +
+  return number_text("the round trip is ", in_milliseconds(link.round_trip), 1, " ms: ") +
+         number_text("above ", in_milliseconds(round_trip_max), 0, " ms ") +
          "coupling direct is not stable, tissue feels too soft or too stiff and a light hand is "
          "shaken; it " +
          (engagement_forced ? "engages here because --force-engage was given"

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -12,6 +11,7 @@
 
 #include "common/core/byte_order_mark.h"
 #include "common/core/conventions.h"
+#include "common/core/whole_file.h"
 
 namespace palp::surgeon {
 namespace {
@@ -312,18 +312,12 @@ Result<ReplayRow> read_row(const std::vector<std::string_view>& cells, std::size
   return ReplayRow{values[0], metres(values[1]), {metres(values[2]), metres(values[3])}};
 }
 
+/// The text of a script or a recorded hand.
 Result<std::string> read_file(const std::string& path) {
   constexpr std::size_t kSizeMax = 256U << 20U;  // [bytes]: hours of motion at 1 kHz
-  std::ifstream file{path, std::ios::binary};
-  if (!file) return fail_to_reach("cannot open " + quoted(path));
-  std::string text;
-  std::array<char, 65536> block{};
-  while (file.read(block.data(), block.size()) || file.gcount() > 0) {
-    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
-    if (text.size() > kSizeMax) return fail(quoted(path) + " is longer than 256 MiB");
-  }
-  if (file.bad() || !file.eof()) return fail_to_reach("cannot read " + quoted(path));
-  return std::string{without_byte_order_mark(text)};
+  const Result<std::string> text = read_whole_file(path, kSizeMax);
+  if (!text) return tl::unexpected<Error>(text.error());
+  return std::string{without_byte_order_mark(*text)};
 }
 
 }  // namespace

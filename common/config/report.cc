@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -20,11 +21,16 @@ tl::unexpected<Error> cannot_write(const std::string& path, int error) {
   return fail("cannot write " + printable(path) + ": " + std::generic_category().message(error));
 }
 
+constexpr int kSilenceMaxMs = 2000;  // [ms], of who reads a pipe
+
 /// Zero, or the error number.
 int write_all(int file, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(file, text.data(), text.size());
-    if (written < 0 && errno != EINTR) {
+    if (written < 0 && errno == EAGAIN) {
+      pollfd ready{file, POLLOUT, 0};
+      if (::poll(&ready, 1, kSilenceMaxMs) == 0) return ETIMEDOUT;
+    } else if (written < 0 && errno != EINTR) {
       return errno;
     }
     text.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
@@ -34,7 +40,9 @@ int write_all(int file, std::string_view text) {
 
 /// Writes `text` into `path`, made or emptied first. Zero, or the error number.
 int fill_file(const std::string& path, std::string_view text, bool sync) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  // Opening a pipe that nobody reads would wait for a reader.
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+  const int file = ::open(path.c_str(), kFlags, 0666);
   if (file < 0) {
     return errno;
   }

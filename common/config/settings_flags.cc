@@ -1,6 +1,7 @@
 #include "common/config/settings_flags.h"
 
 #include "common/config/settings_text.h"
+#include "common/core/whole_file.h"
 
 namespace palp::config {
 namespace {

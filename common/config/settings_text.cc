@@ -1,20 +1,14 @@
 #include "common/config/settings_text.h"
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <memory>
 #include <optional>
-#include <system_error>
 #include <vector>
 
-#include <fcntl.h>
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/message.h>
 #include <google/protobuf/text_format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "common/config/knob.h"
 #include "common/config/number.h"
@@ -167,32 +161,6 @@ class Fnv1a {
 };
 
 }  // namespace
-
-Result<std::string> read_whole_file(const std::string& path, std::size_t size_max) {
-  const auto cannot_read = [&path](const std::string& why) {
-    return fail("cannot read " + printable(path) + ": " + why);
-  };
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) {
-    return cannot_read(std::generic_category().message(errno));
-  }
-  std::string text;
-  std::array<char, 4096> buffer{};
-  ssize_t count = 0;
-  while (text.size() <= size_max && ((count = ::read(file, buffer.data(), buffer.size())) > 0 ||
-                                     (count < 0 && errno == EINTR))) {
-    text.append(buffer.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
-  }
-  const int error = errno;
-  (void)::close(file);
-  if (count < 0) {
-    return cannot_read(std::generic_category().message(error));
-  }
-  if (text.size() > size_max) {
-    return cannot_read("it is longer than " + std::to_string(size_max) + " bytes");
-  }
-  return text;
-}
 
 Result<void> merge_text(std::string_view text, std::string_view name, Message& settings) {
   const std::unique_ptr<Message> parsed{settings.New()};

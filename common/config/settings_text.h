@@ -16,13 +16,6 @@ class Message;
 /// here. Nothing of this is for a control thread.
 namespace palp::config {
 
-inline constexpr std::size_t kSettingsSizeMax = std::size_t{1}
-                                                << 20;  ///< [bytes], people write a few thousand
-
-/// The content of a file; one that is larger is refused. The error is a CannotOpen.
-[[nodiscard]] Result<std::string> read_whole_file(const std::string& path,
-                                                  std::size_t size_max = kSettingsSizeMax);
-
 /// Lays the fields that `text` (protobuf text format) names over `settings`. On an error `settings`
 /// is unchanged and the sentence begins "NAME:LINE:COLUMN: ". Ranges and choices are checked here,
 /// where the line is known; relations between fields only in check_settings().

@@ -7,10 +7,10 @@ namespace palp::coupling {
 namespace {
 
 constexpr double kLow = 0.5;
-constexpr double kContact = 0.1;     // [N], two steps of the transducer
-constexpr double kNoise = 0.025;     // [N], a mean force below it is none
-constexpr double kMeanGain = 0.2;    // per sample: 5 of them
-constexpr double kDragShare = 0.15;  // of the slew, on top of what the spring takes of it
+constexpr double kTouchForce = 0.1;     // [N], two steps of the transducer
+constexpr double kNoForce = 0.025;      // [N], a mean force below it is none
+constexpr double kForceMeanGain = 0.2;  // per sample: 5 of them
+constexpr double kDragShare = 0.15;     // of the slew, on top of what the spring takes of it
 // [s], round trips: up to the first the law knows of no path; from the second on it is a long one.
 constexpr double kNear = 0.06;
 constexpr double kFar = 0.16;
@@ -48,7 +48,7 @@ void TdpaSurgeon::hear(std::span<const Incoming> arrived) noexcept {
   if (const Incoming* last = newest(arrived)) {
     tip_force_ = std::max(0.0, last->sample.force);
     tip_position_ = last->sample.position;
-    mean_force_ += kMeanGain * (tip_force_ - mean_force_);
+    mean_force_ += kForceMeanGain * (tip_force_ - mean_force_);
     heard_ = true;
   }
 }
@@ -66,7 +66,7 @@ void TdpaSurgeon::account(double work, double way) noexcept {
 double TdpaSurgeon::wanted_force(double position, double trip) noexcept {
   const double time = config_.calm * std::max(0.0, trip - kNear);
   calm_force_ += (tip_force_ - calm_force_) * config_.period / (config_.period + time);
-  const double touch = std::clamp((mean_force_ - kNoise) / (kContact - kNoise), 0.0, 1.0);
+  const double touch = std::clamp((mean_force_ - kNoForce) / (kTouchForce - kNoForce), 0.0, 1.0);
   const double share = std::min(1.0, trip * trip / (kLocal * kLocal));
   return std::max(0.0,
                   calm_force_ + touch * share * config_.spring_local * (position - tip_position_));
@@ -109,7 +109,7 @@ void TdpaSurgeon::share_energy(double trip) noexcept {
 /// with speed would be felt as softness.
 double TdpaSurgeon::damping(double speed) const noexcept {
   if (speed >= 0) return config_.damping;
-  const double contact = std::clamp(tip_force_ / kContact, 0.0, 1.0);
+  const double contact = std::clamp(tip_force_ / kTouchForce, 0.0, 1.0);
   return config_.damping_back + contact * (config_.damping_out - config_.damping_back);
 }
 

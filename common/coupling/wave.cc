@@ -6,9 +6,9 @@
 namespace palp::coupling {
 namespace {
 
-constexpr double kMeanGain = 0.1;     // per tick: 10 ms
-constexpr double kEchoUnfelt = 0.05;  // [s], a round trip after which an echo joins its call ...
-constexpr double kEchoFelt = 0.1;     // [s], ... and one after which it is felt by itself
+constexpr double kWaveMeanGain = 0.1;  // per tick: 10 ms
+constexpr double kEchoUnfelt = 0.05;   // [s], a round trip after which an echo joins its call ...
+constexpr double kEchoFelt = 0.1;      // [s], ... and one after which it is felt by itself
 
 void send(WavePayload& sent, double wave, double period) noexcept {
   sent.wave_integral += wave * period;
@@ -93,7 +93,7 @@ PatientOutput WavePatient::step(const PatientInput& in, const Lapse& lapse) noex
   const double force = std::max(0.0, in.contact_force);
   const double wave = play_out_.step(in.now, in.arrived, {force / root_, lapse.held()});
   if (const Incoming* last = newest(in.arrived)) hand_ = last->sample.position;
-  force_mean_ += kMeanGain * (in.contact_force - force_mean_);
+  force_mean_ += kWaveMeanGain * (in.contact_force - force_mean_);
   if (in.state != SiteState::Engaged) {
     target_ = in.position;
     return {target_, {in.position, in.velocity, in.contact_force, sent_}};

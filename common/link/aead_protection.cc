@@ -9,12 +9,15 @@
 #include "common/message/limits.h"
 
 namespace palp::link {
-namespace {
 
-struct FreeContext {
+// Members of a named type have one of their own: it is no anonymous namespace's.
+struct FreeCipherContext {
   void operator()(EVP_CIPHER_CTX* context) const noexcept { EVP_CIPHER_CTX_free(context); }
 };
-using Context = std::unique_ptr<EVP_CIPHER_CTX, FreeContext>;
+using CipherContext = std::unique_ptr<EVP_CIPHER_CTX, FreeCipherContext>;
+
+namespace {
+
 using Nonce = std::array<std::uint8_t, AeadKey::kSaltSize>;
 
 constexpr bool kEncrypt = true;
@@ -28,8 +31,8 @@ std::uint8_t* octets(std::span<std::byte> bytes) noexcept {
   return reinterpret_cast<std::uint8_t*>(bytes.data());
 }
 
-Context make_context(const AeadKey& key, bool encrypts) {
-  Context context{EVP_CIPHER_CTX_new()};
+CipherContext make_context(const AeadKey& key, bool encrypts) {
+  CipherContext context{EVP_CIPHER_CTX_new()};
   const Nonce any{};  // the first one allocates
   if (context == nullptr || EVP_CipherInit_ex2(context.get(),
                                                EVP_aes_256_gcm(),
@@ -77,8 +80,8 @@ struct AeadProtection::Generation {
   std::uint8_t id;
   Secret<AeadKey::kSaltSize> send_salt;
   Secret<AeadKey::kSaltSize> receive_salt;
-  Context sealing;
-  Context opening;
+  CipherContext sealing;
+  CipherContext opening;
   std::uint64_t sealed{};  ///< packets
 };
 

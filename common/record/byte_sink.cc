@@ -76,6 +76,8 @@ void FileSink::look() noexcept {
   } else if (::stat(path_.c_str(), &named) != 0 || named.st_dev != own.st_dev ||
              named.st_ino != own.st_ino) {
     fault_ = Fault::Moved;
+  } else if (own.st_size >= 0 && static_cast<std::uint64_t>(own.st_size) < size_) {
+    fault_ = Fault::Truncated;
   }
 }
 
@@ -96,6 +98,8 @@ std::string FileSink::fault() const {
              " could not be written any further: " + std::strerror(error_);
     case Fault::Removed:
       return "session file " + path_ + " was removed while it was written";
+    case Fault::Truncated:
+      return "session file " + path_ + " was cut short while it was written";
     case Fault::Moved:
       return "session file " + path_ + " was moved or replaced while it was written";
   }

@@ -34,11 +34,12 @@ class FileSink final : public ByteSink {
   FileSink& operator=(const FileSink&) = delete;
   ~FileSink() override;
   /// A piece that did not go out whole is cut off again. After a fault nothing is taken, unless the
-  /// file was only moved.
+  /// file was only moved or cut.
   bool write(std::span<const std::byte> bytes) noexcept override;
   [[nodiscard]] bool on_disk() const noexcept override { return true; }
 
-  /// Looks whether the name still leads to this file: who removed or moved it made a fault.
+  /// Looks whether the name still leads to this file, and to all of it: who removed, moved or cut
+  /// it made a fault.
   void look() noexcept;
   /// Waits until the disk has all of it. What the disk refuses then is a fault too.
   void finish() noexcept;
@@ -50,7 +51,7 @@ class FileSink final : public ByteSink {
   [[nodiscard]] std::optional<std::uint64_t> room() const noexcept;
 
  private:
-  enum class Fault { None, Refused, Removed, Moved };
+  enum class Fault { None, Refused, Removed, Moved, Truncated };
   FileSink(int descriptor, std::string path) noexcept
       : descriptor_{descriptor}, path_{std::move(path)} {}
   void refuse(int error) noexcept;

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "common/config/settings_text.h"
+#include "common/core/number_text.h"
+#include "common/core/whole_file.h"
 #include "lab/plan/scenario_texts.h"
 #include "netem/syntax/impairment_text.h"
 #include "patient_site/settings.h"
@@ -32,6 +34,21 @@ Fault make_fault(const proto::config::LabFault& message) {
           .apart = from_seconds(message.apart_s())};
 }
 
+/// A clock may jump back; a pause, a kill and a failing device last some time.
+Result<void> check_fault(const Fault& fault, Duration length) {
+  const bool jumps =
+      fault.kind == FaultKind::StepSurgeonClock || fault.kind == FaultKind::StepPatientClock;
+  if (fault.kind == FaultKind::None) return {};
+  if (fault.amount < Duration{0} && !jumps) {
+    return fail("fault.amount_s is below 0, which only the jump of a clock may be");
+  }
+  if (fault.at_script_time >= length) {
+    return fail(
+        number_text("fault.at_s lies behind the end of the run at ", seconds(length), 3, " s"));
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<config::Document> load_scenario(const std::string& name_or_path) {
@@ -44,7 +61,7 @@ Result<config::Document> load_scenario(const std::string& name_or_path) {
   if (known != texts.end()) {
     text = known->text;
   } else {
-    auto file = config::read_whole_file(name_or_path);
+    auto file = read_whole_file(name_or_path);
     if (!file) {
       return fail("'" + name_or_path + "' is neither a scenario of the lab nor a readable file; " +
                   "palp-lab scenarios lists them");
@@ -79,6 +96,12 @@ Result<Scenario> make_scenario(const std::string& name, const config::Document& 
 
   patient->node.gate = patient::within_tables(
       patient->node.gate, patient->simulation.surface_offset, phantom->depth_max());
+  const Fault fault = make_fault(message.fault());
+  const Duration length =
+      message.duration_s() > 0 ? from_seconds(message.duration_s()) : script->length();
+  if (auto possible = check_fault(fault, length); !possible) {
+    return tl::unexpected(possible.error());
+  }
   return Scenario{.name = name,
                   .text = document.text(),
                   .seed = message.seed(),
@@ -95,7 +118,7 @@ Result<Scenario> make_scenario(const std::string& name, const config::Document& 
                   .down = std::move(*down),
                   .duration = from_seconds(message.duration_s()),
                   .bare = false,
-                  .fault = make_fault(message.fault())};
+                  .fault = fault};
 }
 
 std::string describe_scenarios() {

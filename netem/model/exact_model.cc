@@ -5,8 +5,6 @@
 namespace palp::netem {
 namespace {
 
-constexpr std::uint8_t kEcnMask = 3;  ///< RFC 3168: 0: cannot be marked, 3: is marked
-
 /// 0 .. count - 1, evenly.
 std::uint64_t pick(std::uint64_t bits, std::uint64_t count) noexcept {
   return ((bits >> 32U) * count) >> 32U;

@@ -10,7 +10,6 @@ namespace palp::netem {
 namespace {
 
 constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
-constexpr std::uint8_t kEcnMask = 3;
 
 std::uint32_t as_share(double share) { return static_cast<std::uint32_t>(std::rint(share * kAll)); }
 

@@ -13,6 +13,9 @@ enum class Direction : std::uint8_t { Up, Down };  ///< Up: surgeon to patient
 
 inline constexpr std::size_t kCopiesMax = 17;  ///< the original, one duplicate and a flood
 
+/// ECN's two bits of the type of service (RFC 3168): 0: cannot be marked, 3: is marked.
+inline constexpr std::uint8_t kEcnMask = 3;
+
 /// One line of the arrival log.
 struct Arrival {
   TimePoint at{};                          ///< one before the last one's counts as the last one's

@@ -18,7 +18,7 @@
 namespace palp::netem {
 namespace {
 
-constexpr std::size_t kFileMax = 4096;  ///< [bytes]
+constexpr std::size_t kTokenFileMax = 4096;  ///< [bytes]
 
 Result<std::string> make_token(const std::string& path) {
   std::array<char, 33> digits{};
@@ -53,7 +53,7 @@ Result<std::string> read_or_make_token(const std::string& path) {
     return fail(quoted + " can be read or written by others, expected mode 0600");
   }
   if (about.st_uid != ::geteuid()) return fail(quoted + " is another user's");
-  std::string text(kFileMax, '\0');
+  std::string text(kTokenFileMax, '\0');
   text.resize(static_cast<std::size_t>(
       std::max<ssize_t>(0, ::read(file.number(), text.data(), text.size()))));
   text.resize(std::min(text.find_first_of("\r\n"), text.size()));

@@ -81,10 +81,21 @@ RelayControl::RelayControl(io::Descriptor descriptor,
     : descriptor_{std::move(descriptor)},
       address_{std::move(address)},
       path_{std::move(path)},
-      token_{std::move(token)} {}
+      token_{std::move(token)} {
+  struct stat there {};
+  if (!path_.empty() && ::lstat(path_.c_str(), &there) == 0) {
+    device_ = there.st_dev;
+    inode_ = there.st_ino;
+  }
+}
 
 RelayControl::~RelayControl() {
-  if (descriptor_.valid() && !path_.empty()) ::unlink(path_.c_str());
+  if (!descriptor_.valid() || path_.empty()) return;
+  // Somebody may have put a socket of his own in the place of this one.
+  struct stat there {};
+  if (::lstat(path_.c_str(), &there) == 0 && there.st_dev == device_ && there.st_ino == inode_) {
+    ::unlink(path_.c_str());
+  }
 }
 
 Result<RelayControl> RelayControl::listen(const std::string& address, std::string token) {

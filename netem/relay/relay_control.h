@@ -56,7 +56,9 @@ class RelayControl {
 
   io::Descriptor descriptor_;
   std::string address_;
-  std::string path_;   ///< of the socket in the file system
+  std::string path_;        ///< of the socket in the file system
+  std::uint64_t device_{};  ///< where that socket lies, as its inode
+  std::uint64_t inode_{};
   std::string token_;  ///< of a port
   std::vector<Caller> callers_;
   std::uint64_t lines_{};

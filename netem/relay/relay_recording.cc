@@ -20,7 +20,7 @@ constexpr std::size_t kDatagramsMax = 8'192;
 constexpr std::size_t kFlushAt = std::size_t{1} << 16U;  ///< [bytes]
 
 /// More datagrams than can be on their way each wait for nothing: a release was missed.
-constexpr std::size_t kWaitingMax = 262'144;
+constexpr std::size_t kDisorderMax = 262'144;
 
 }  // namespace
 
@@ -104,7 +104,7 @@ struct RecordingWriter::Files {
       if (gathered.empty()) return;
       order.decided(gathered);
       gathered.clear();
-      if (order.waiting() > kWaitingMax) given_up += order.give_up(1);
+      if (order.waiting() > kDisorderMax) given_up += order.give_up(1);
     }
 
     Out file;

@@ -184,7 +184,7 @@ TEST(ForceTableTest, SaysWhichPlaceIsWrong) {
 TEST(ForceTableTest, ANamedFileThatIsNotThereIsOneSentence) {
   const auto table = load_tissue_curves("no/such/file.csv", {});
   ASSERT_FALSE(table);
-  EXPECT_EQ(table.error().text, "no/such/file.csv: the file cannot be opened");
+  EXPECT_EQ(table.error().text, "cannot read no/such/file.csv: No such file or directory");
 }
 
 }  // namespace

@@ -194,7 +194,8 @@ TEST(ScriptReaderTest, LoadsByNameAndByFile) {
               AllOf(HasSubstr(path), HasSubstr("line 2")));
   std::ofstream{path} << "t_s,position_mm\n0,-10\n2,-10\n";
   EXPECT_EQ(load_script("replay:" + path, setting)->length(), 2s);
-  EXPECT_THAT(load_script("script:/nowhere/x", setting).error().text, HasSubstr("cannot open"));
+  EXPECT_THAT(load_script("script:/nowhere/x", setting).error().text,
+              HasSubstr("cannot read /nowhere/x"));
   EXPECT_THAT(load_script("script:/", setting).error().text, HasSubstr("cannot"));
   EXPECT_THAT(load_script("robot", setting).error().text, HasSubstr("unknown master 'robot'"));
 }

@@ -3,8 +3,6 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include <fcntl.h>
@@ -12,6 +10,7 @@
 #include <openssl/rand.h>
 #include <unistd.h>
 
+#include "common/core/whole_file.h"
 #include "common/io/process/descriptor.h"
 #include "common/io/process/system_text.h"
 #include "common/io/secure/credentials.h"
@@ -160,8 +159,7 @@ void add_peer(const path& file, const std::string& name) {
     const auto names = read_peer_names(file);
     if (!names) throw std::runtime_error{names.error().text};
     if (names->contains(name)) return;
-    std::ifstream in{file};
-    text.assign(std::istreambuf_iterator<char>{in}, {});
+    text = read_whole_file(file.string()).value_or("");
     if (!text.empty() && text.back() != '\n') text += '\n';
   }
   constexpr mode_t kForAll = 0644;

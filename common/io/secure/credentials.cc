@@ -5,7 +5,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include <openssl/pem.h>
 #include <openssl/x509err.h>
 
+#include "common/core/whole_file.h"
 #include "common/io/process/system_text.h"
 #include "common/io/secure/openssl_context.h"
 #include "common/io/secure/openssl_handles.h"
@@ -129,9 +129,9 @@ Error not_taken(const std::filesystem::path& file, const std::string& wanted) {
 
 Result<std::string> use_pre_shared_key(Credentials::Context& context,
                                        const std::filesystem::path& file) {
-  std::ifstream stream{file};
-  if (!stream) return tl::unexpected{not_taken(file, "key")};
-  std::string text{std::istreambuf_iterator<char>{stream}, {}};
+  auto content = read_whole_file(file.string());
+  if (!content) return tl::unexpected{not_taken(file, "key")};
+  std::string& text = *content;
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) {
     text.pop_back();
   }
@@ -268,6 +268,9 @@ std::vector<std::string> cautions_of(const Credentials::Context& context,
   if (!context.peer_names) {
     cautions.push_back("identity " + folder.string() + " has no " + kPeersFile + ": any " +
                        role_name(context.peer) + " site of the authority may answer");
+  } else if (context.peer_names->empty()) {
+    cautions.push_back("identity " + folder.string() + ": " + kPeersFile +
+                       " names nobody, so every site is refused");
   }
   return cautions;
 }

@@ -14,15 +14,14 @@ using link::AeadProtection;
 using link::PacketType;
 using link::Role;
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 /// The old keys open that long after the new ones are in use.
-constexpr Duration kChangeover = seconds{2};
+constexpr Duration kChangeover = std::chrono::seconds{2};
 /// A peer that has not answered for so long may have lost its keys.
 constexpr Duration kUnanswered = milliseconds{1500};
 constexpr Duration kGreetingPause = milliseconds{200};
-constexpr Duration kGreetingLife = seconds{15};
-constexpr Duration kFailurePause = seconds{10};
+constexpr Duration kGreetingLife = std::chrono::seconds{15};
+constexpr Duration kFailurePause = std::chrono::seconds{10};
 
 }  // namespace
 
@@ -304,7 +303,8 @@ void DtlsSession::tell_failure(TimePoint now, SessionEndpointOutput& out) {
   std::optional<std::string> failure = associations_.take_failure();
   if (!failure || out.event) return;
   if (told_ == *failure && told_at_ && now - *told_at_ < kFailurePause) return;
-  if (told_at_ && now - *told_at_ < seconds{1}) return;  // whoever it is: not more often
+  if (told_at_ && now - *told_at_ < std::chrono::seconds{1})
+    return;  // whoever it is: not more often
   told_ = *failure;
   told_at_ = now;
   out.event = link::Refused{std::move(*failure), false};

@@ -10,7 +10,6 @@ namespace palp::io {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 /// How far a sender may lie behind somebody who copies its telegrams.
 constexpr std::uint64_t kBehindMax = 256;  // [numbers]
@@ -22,7 +21,7 @@ constexpr std::size_t kQuestionSize =
 /// An address that delivers nothing for so long is not moved to.
 constexpr Duration kAlive = milliseconds{100};
 /// An answer tells of the way as it was a short while ago.
-constexpr Duration kAnswerLife = seconds{2};
+constexpr Duration kAnswerLife = std::chrono::seconds{2};
 constexpr int kSurveys = 3;
 
 PathMessage::Nonce draw_nonce() {

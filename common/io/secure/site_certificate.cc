@@ -1,12 +1,13 @@
 #include "common/io/secure/site_certificate.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
+#include <sstream>
+#include <string_view>
 
 #include <openssl/x509v3.h>
 
-#include "common/io/process/system_text.h"
+#include "common/core/byte_order_mark.h"
+#include "common/core/whole_file.h"
 #include "common/io/secure/openssl_handles.h"
 
 namespace palp::io {
@@ -68,13 +69,15 @@ CertificateFlaw flaw_of(X509* certificate, Role role) {
 }
 
 Result<std::set<std::string>> read_peer_names(const std::filesystem::path& file) {
-  std::ifstream in{file};
-  if (!in) {
-    Error error{"identity " + file.string() + ": cannot be read: " + system_text(errno)};
-    error.unreachable = true;
-    return tl::unexpected{error};
+  const auto text = read_whole_file(file.string());
+  if (!text) return fail("identity", text.error());
+  const std::string_view lines = without_byte_order_mark(*text);
+  if (lines.find('\0') != std::string_view::npos || lines.starts_with("\xff\xfe") ||
+      lines.starts_with("\xfe\xff")) {
+    return fail("identity " + file.string() + ": is no list of names in ASCII, one a line");
   }
   std::set<std::string> names;
+  std::istringstream in{std::string{lines}};
   for (std::string line; std::getline(in, line);) {
     const std::string name = trimmed(line.substr(0, line.find('#')));
     if (!name.empty()) names.insert(name);

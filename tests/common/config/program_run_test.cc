@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "common/config/settings_text.h"
+#include "common/core/whole_file.h"
 
 namespace palp::config {
 namespace {

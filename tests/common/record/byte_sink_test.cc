@@ -115,6 +115,17 @@ TEST_F(FileTest, AReplacedFileIsNoticedAlsoAtTheLastMoment) {
   std::filesystem::remove(elsewhere);
 }
 
+TEST_F(FileTest, AFileThatIsCutShortIsNoticed) {
+  auto sink = FileSink::create(path_);
+  ASSERT_TRUE(sink);
+  ASSERT_TRUE(sink->write(std::as_bytes(std::span{kText})));
+  sink->look();
+  EXPECT_TRUE(sink->fault().empty());
+  std::filesystem::resize_file(path_, 1);
+  sink->look();
+  EXPECT_NE(sink->fault().find("cut short"), std::string::npos);
+}
+
 TEST_F(FileTest, TheRoomIsThatOfItsDisk) {
   const auto sink = FileSink::create(path_);
   ASSERT_TRUE(sink);

@@ -1,5 +1,6 @@
 #include "lab/run/run.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "judge/depth_summary.h"
@@ -227,6 +228,20 @@ TEST(RunTest, AScenarioSaysWhatGoesWrong) {
   for (const std::string_view name : kFaultNames) {
     EXPECT_EQ(to_string(scenario("metro", {"fault.kind=" + std::string{name}}).fault.kind), name);
   }
+}
+
+TEST(RunTest, AFaultThatCannotHappenIsRefused) {
+  const auto refusal = [](const std::vector<std::string>& settings) {
+    auto document = load_scenario("metro").value();
+    for (const std::string& one : settings) EXPECT_TRUE(document.set(one)) << one;
+    const auto made = make_scenario("metro", document);
+    return made ? std::string{} : made.error().text;
+  };
+  EXPECT_THAT(refusal({"fault.kind=pause-surgeon", "fault.at_s=80000"}),
+              testing::HasSubstr("behind the end"));
+  EXPECT_THAT(refusal({"fault.kind=pause-patient", "fault.amount_s=-1"}),
+              testing::HasSubstr("below 0"));
+  EXPECT_EQ(refusal({"fault.kind=clock-patient", "fault.amount_s=-1"}), "");
 }
 
 TEST(RunTest, APedalLiftedInAPressEngagesAgain) {

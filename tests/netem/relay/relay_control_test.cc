@@ -144,6 +144,18 @@ TEST(RelayControlTest, TakesThePlaceOfASocketThatNobodyAnswersOn) {
   EXPECT_TRUE(second.error().unreachable);
 }
 
+TEST(RelayControlTest, LeavesWhatTookThePlaceOfItsSocketAlone) {
+  const std::string path = ::testing::TempDir() + "palp-taken-" + std::to_string(::getpid());
+  {
+    const auto control = RelayControl::listen("unix:" + path);
+    ASSERT_TRUE(control) << control.error().text;
+    ::unlink(path.c_str());
+    std::ofstream{path} << "mine";
+  }
+  EXPECT_EQ(::access(path.c_str(), F_OK), 0);
+  ::unlink(path.c_str());
+}
+
 TEST(RelayControlTest, LeavesAFileThatIsNoSocketAlone) {
   const std::string path = ::testing::TempDir() + "palp-file-" + std::to_string(::getpid());
   std::ofstream{path} << "mine";

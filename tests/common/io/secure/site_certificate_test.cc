@@ -24,9 +24,14 @@ TEST(SiteCertificateTest, APeersListIsReadWithoutRemarksAndBlanks) {
   EXPECT_THAT(*read_peer_names(file), ElementsAre("b", "theatre 3 patient site"));
   std::ofstream{file} << "";
   EXPECT_TRUE(read_peer_names(file)->empty());
+  std::ofstream{file} << std::string{
+      "\xff\xfe"
+      "b\0\n\0",
+      6};
+  EXPECT_THAT(read_peer_names(file).error().text, HasSubstr("no list of names"));
   const auto missing = read_peer_names(keys.path() / "none");
   ASSERT_FALSE(missing);
-  EXPECT_THAT(missing.error().text, HasSubstr("cannot be read"));
+  EXPECT_THAT(missing.error().text, HasSubstr("cannot read"));
 }
 
 TEST(SiteCertificateTest, SitesThatAreMadeTogetherListEachOtherAndKeepWhoIsListed) {
