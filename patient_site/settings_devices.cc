@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/config/settings_text.h"
+#include "common/core/whole_file.h"
 #include "common/settings/units.h"
 #include "patient_site/devices/profile_texts.h"
 #include "patient_site/devices/register_device.h"
@@ -183,7 +184,7 @@ Result<DeviceProfile> find_profile(const std::string& name) {
   constexpr std::string_view kFile = "file:";
   std::string text{profile_text(name)};
   if (name.starts_with(kFile)) {
-    auto read = config::read_whole_file(name.substr(kFile.size()));
+    auto read = read_whole_file(name.substr(kFile.size()));
     if (!read) return tl::unexpected{read.error()};
     text = std::move(*read);
   } else if (text.empty()) {
@@ -228,7 +229,7 @@ Result<DevicePlans> make_device_plans(std::string_view text, const std::string& 
 }
 
 Result<DevicePlans> read_device_plans(const std::string& path) {
-  const auto text = config::read_whole_file(path);
+  const auto text = read_whole_file(path);
   if (!text) return tl::unexpected{text.error()};
   return make_device_plans(*text, path);
 }
