@@ -1,4 +1,5 @@
 // palp-patient: the patient's site in real time.
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -14,11 +15,14 @@
 #include "common/io/realtime/background_loop.h"
 #include "common/io/realtime/steady_clock.h"
 #include "common/link/codec_wire.h"
+#include "patient_site/devices/device_rig.h"
+#include "patient_site/devices_command.h"
 #include "patient_site/display.h"
 #include "patient_site/estimator_worker.h"
 #include "patient_site/patient_node.h"
 #include "patient_site/phantom.h"
 #include "patient_site/settings.h"
+#include "patient_site/settings_devices.h"
 #include "patient_site/simulated_phantom.h"
 #include "patient_site/tissue_record.h"
 #include "site_program/build_info.h"
@@ -41,7 +45,9 @@ using site_program::exit_status_of;
 using site_program::ExitStatus;
 
 constexpr Duration kDisplayPeriod = std::chrono::milliseconds{100};
+constexpr Duration kDevicePause = std::chrono::milliseconds{20};
 constexpr Duration kEstimatorPause = std::chrono::milliseconds{1};  // of the 5 ms to an answer
+constexpr Duration kDevicePatience = std::chrono::seconds{90};      // a drive that homes
 constexpr std::size_t kContactSamples = 8192;  ///< 8 s: what a slow fit may take and far more
 
 void declare_flags(config::CommandLine& line, config::Document& document, std::string& report) {
@@ -51,6 +57,7 @@ void declare_flags(config::CommandLine& line, config::Document& document, std::s
   line.knob("--coupling", "coupling.name");
   line.knob("--stage", "stage");
   line.knob("--force", "force");
+  line.knob("--devices", "devices");
   line.knob("--phantom", "simulated_phantom.phantom");
   line.knob("--surface-offset-mm", "simulated_phantom.surface_offset_mm");
   site_program::declare_session_flags(line);
@@ -59,10 +66,27 @@ void declare_flags(config::CommandLine& line, config::Document& document, std::s
 /// What the parts are made of, all checked.
 struct Plan {
   Settings settings;
-  Phantom phantom;
+  Phantom phantom;  ///< of simulated devices, or as known of real ones
+  std::optional<DevicePlans> devices;
+  PatientDevices facts;
   site_program::RunnerConfig runner;
   record::SessionInfo info;
 };
+
+/// What stands behind --devices, where the stage is not simulated.
+Result<std::optional<DevicePlans>> plan_devices(Settings& settings) {
+  if (settings.stage == "sim") return std::nullopt;
+  auto plans = read_device_plans(settings.devices);
+  if (!plans) return tl::unexpected{plans.error()};
+  if (const auto flaw = flaw_of(DeviceFacts{
+          .hand = {}, .stage = facts_of(*plans).stage, .sensor = facts_of(*plans).sensor})) {
+    return fail(settings.devices + ": " + *flaw);
+  }
+  if (!plans->phantom.empty()) settings.phantom = plans->phantom;
+  const DevicePlan& sensor = plans->cell ? *plans->cell : *plans->normal;
+  settings.node.sensor_stale = sensor.profile.silence;
+  return std::optional{std::move(*plans)};
+}
 
 tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   const auto bad = [](const Error& error) { return tl::unexpected{exit_status_of(error)}; };
@@ -78,22 +102,27 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
     if (!address) return tl::unexpected{address.error()};
     local = *address;
   }
+  auto devices = plan_devices(*settings);
+  if (!devices) return bad(devices.error());
   auto phantom = make_phantom(settings->phantom);
   if (!phantom) return bad(phantom.error());
   auto wrap = site_program::impaired_reception(
       settings->impairment, netem::Direction::Up, settings->seed, io::SteadyClock{}.now());
   if (!wrap) return bad(wrap.error());
   const SimulatedPhantomConfig& simulation = settings->simulation;
-  settings->node.gate = within_tables(settings->node.gate,
-                                      simulation.surface_offset - simulation.breathing_amplitude,
-                                      phantom->depth_max());
-  const PatientDevices devices = facts_of(simulation);
+  const bool tissue_known = !*devices || !(*devices)->phantom.empty();
+  if (!*devices) {
+    settings->node.gate = within_tables(settings->node.gate,
+                                        simulation.surface_offset - simulation.breathing_amplitude,
+                                        phantom->depth_max());
+  }
+  const PatientDevices facts = *devices ? facts_of(**devices) : facts_of(simulation);
   site_program::RunnerConfig runner;
   runner.session = {.role = link::Role::Patient,
                     .settings_hash = settings->agreement,
                     .coupling = settings->coupling.name,
                     .git = std::string{site_program::git_commit()},
-                    .devices = {.hand = {}, .stage = devices.stage, .sensor = devices.sensor}};
+                    .devices = {.hand = {}, .stage = facts.stage, .sensor = facts.sensor}};
   runner.address = local;
   runner.meeting = *meeting;
   runner.protection = settings->protection;
@@ -103,10 +132,20 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
       site_program::session_info(link::Role::Patient, "palp-patient", settings->seed, document);
   info.metadata.emplace_back("coupling", settings->coupling.name);
   info.metadata.emplace_back("estimator", settings->estimator_kind);
-  info.metadata.emplace_back("stage", describe(devices.stage));
-  info.metadata.emplace_back("force_sensor", describe(devices.sensor));
-  describe_tissue(*phantom, simulation.surface_offset, info);
-  return Plan{std::move(*settings), std::move(*phantom), std::move(runner), std::move(info)};
+  info.metadata.emplace_back("stage", describe(facts.stage));
+  info.metadata.emplace_back("force_sensor", describe(facts.sensor));
+  if (tissue_known) describe_tissue(*phantom, simulation.surface_offset, info);
+  return Plan{std::move(*settings),
+              std::move(*phantom),
+              std::move(*devices),
+              facts,
+              std::move(runner),
+              std::move(info)};
+}
+
+/// Started, not ready; null where there are none.
+std::unique_ptr<DeviceRig> start_devices(const std::optional<DevicePlans>& plans, int priority) {
+  return plans ? std::make_unique<DeviceRig>(*plans, std::max(0, priority - 1)) : nullptr;
 }
 
 /// A patient site in real time, its parts in the order in which they need each other.
@@ -116,20 +155,24 @@ class Program {
   explicit Program(Plan plan)
       : settings_{std::move(plan.settings)},
         phantom_{std::move(plan.phantom)},
-        device_{phantom_, settings_.simulation},
-        law_{coupling::make_patient_coupling(settings_.coupling, facts_of(settings_.simulation))
-                 .value()},
+        simulated_{phantom_, settings_.simulation},
+        rig_{start_devices(plan.devices, settings_.loop.priority)},
+        law_{coupling::make_patient_coupling(settings_.coupling, plan.facts).value()},
         link_{settings_.link, std::make_unique<link::WireCodec>()},
         runner_{plan.runner},
         recording_{settings_.record, std::move(plan.info), 2},
-        worker_{depth::with_sensor(settings_.estimator, device_.sensor_facts()),
+        worker_{depth::with_sensor(settings_.estimator, plan.facts.sensor),
                 {contact_, depth_, recording_.recorder(1)}},
         node_{settings_.node,
-              {device_, device_, law_, link_, recording_.recorder(0), contact_, depth_}},
+              {rig_ ? rig_->stage() : simulated_,
+               rig_ ? rig_->sensor() : simulated_,
+               law_,
+               link_,
+               recording_.recorder(0),
+               contact_,
+               depth_}},
         began_at_{clock_.now()},
-        estimator_{"palp-estimator", kEstimatorPause, [this](TimePoint) { listen(); }} {
-    runner_.start(link_, [this](TimePoint now) { node_.tick(now); });
-  }
+        estimator_{"palp-estimator", kEstimatorPause, [this](TimePoint) { listen(); }} {}
   ~Program() { runner_.halt(); }
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
@@ -140,13 +183,18 @@ class Program {
   void stop(site_program::SiteReport& report);
 
  private:
+  /// nullopt: they are ready.
+  [[nodiscard]] std::optional<ExitStatus> await_devices(io::Terminal& terminal);
+  void tell_of_devices();
   void look(TimePoint now);
   void listen();  ///< Thread: estimator
   [[nodiscard]] ExitStatus end(std::string outcome);
 
   const Settings settings_;
   const Phantom phantom_;
-  SimulatedPhantom device_;
+  SimulatedPhantom simulated_;
+  std::unique_ptr<DeviceRig> rig_;  ///< null: the simulated one
+  std::uint32_t resets_{};
   coupling::PatientCoupling law_;
   link::Link link_;
   site_program::Runner runner_;
@@ -163,13 +211,35 @@ class Program {
   io::BackgroundLoop estimator_;
 };
 
+std::optional<ExitStatus> Program::await_devices(io::Terminal& terminal) {
+  while (rig_ && !rig_->ready()) {
+    tell_of_devices();
+    if (auto why = rig_->hopeless(clock_.now() - began_at_)) {
+      return site_program::cannot_start(std::move(*why));
+    }
+    if (terminal.wait_for_stop(kDevicePause)) return end("no session");
+  }
+  return std::nullopt;
+}
+
+void Program::tell_of_devices() {
+  if (!rig_) return;
+  for (const DeviceNews& news : rig_->news()) {
+    news.fit ? line_.info(news.sentence) : line_.warn(news.sentence);
+  }
+}
+
 ExitStatus Program::run(io::Terminal& terminal) {
+  if (auto ended = await_devices(terminal)) return *ended;
+  runner_.start(link_, [this](TimePoint now) { node_.tick(now); });
   std::printf("listening on %s\n", runner_.local().c_str());
   std::fflush(stdout);
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
   while (true) {
     const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
     node_.commands().put({.emergency_stop = false, .resets = terminal.resets()});
+    // A reset frees the devices first; the site hears of the next, once they are ready.
+    if (rig_ && std::exchange(resets_, terminal.resets()) != resets_) rig_->restart();
     const TimePoint now = clock_.now();
     look(now);
     if (stop) return end(runner_.sessions() > 0 ? "completed" : "no session");
@@ -184,6 +254,7 @@ void Program::look(TimePoint now) {
   round_trips_.add(status.link);
   runner_.tell_news(line_);
   recording_.tell_news(line_);
+  tell_of_devices();
   line_.show(recording_.alarm() + status_line(status), now);
 }
 
@@ -232,10 +303,12 @@ int run(int argc, char** argv) {
   declare_flags(line, document, report_file);
   line.verbs_optional();
   const site_program::CheckCommand check{line, link::Role::Patient};
+  const DevicesCommand devices{line};
   const auto session = [&](site_program::SiteReport& report) {
     return site_program::run_session<Program>(make_plan(document), report);
   };
-  const std::vector<site_program::SideVerb> verbs{{"check", [&] { return check.run(); }}};
+  const std::vector<site_program::SideVerb> verbs{{"check", [&] { return check.run(); }},
+                                                  {"devices", [&] { return devices.run(); }}};
   return site_program::run({"patient", line, report_file, verbs, session}, argc, argv);
 }
 

@@ -16,8 +16,22 @@ using settings::from_milli;
 constexpr double kTableMargin = 0.1e-3;  // [m]
 
 Result<void> check_device(const std::string& name, const char* what) {
-  if (name == "sim") return {};
-  return fail("unknown " + std::string{what} + " '" + name + "'; there are: sim");
+  if (name == "sim" || name == "modbus") return {};
+  return fail("unknown " + std::string{what} + " '" + name + "'; there are: sim, modbus");
+}
+
+/// A simulated sensor feels nothing of a real stage, nor the other way round.
+Result<void> check_devices(const proto::config::PatientConfig& message) {
+  if (auto known = check_device(message.stage(), "stage"); !known) return known;
+  if (auto known = check_device(message.force(), "force sensor"); !known) return known;
+  if (message.stage() != message.force()) {
+    return fail("stage '" + message.stage() + "' and force sensor '" + message.force() +
+                "' do not go together: both are sim, or neither");
+  }
+  if (message.stage() != "sim" && message.devices().empty()) {
+    return fail("stage '" + message.stage() + "' needs --devices FILE");
+  }
+  return {};
 }
 
 MotionGateConfig make_gate(const proto::config::MotionGate& message) {
@@ -104,12 +118,7 @@ Result<depth::DepthEstimatorConfig> make_estimator(const proto::config::Estimato
 Result<Settings> make_settings(const proto::config::PatientConfig& message) {
   const auto coupling = settings::make_coupling(message.coupling());
   if (!coupling) return fail(coupling.error().text);
-  if (const auto known = check_device(message.stage(), "stage"); !known) {
-    return fail(known.error().text);
-  }
-  if (const auto known = check_device(message.force(), "force sensor"); !known) {
-    return fail(known.error().text);
-  }
+  if (const auto known = check_devices(message); !known) return fail(known.error().text);
   Settings made;
   made.loop = settings::make_loop(message.loop());
   const auto estimator = make_estimator(message.estimator(), made.loop.period);
@@ -123,6 +132,7 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
   made.node.gate = make_gate(message.motion_gate());
   made.stage = message.stage();
   made.force = message.force();
+  made.devices = message.devices();
   made.phantom = message.simulated_phantom().phantom();
   made.simulation = make_simulation(message.simulated_phantom(), message.seed());
   made.node.watch.force_limit = made.node.gate.force_limit;

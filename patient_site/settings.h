@@ -29,6 +29,7 @@ struct Settings {
   PatientConfig node;
   std::string stage{"sim"};
   std::string force{"sim"};
+  std::string devices;  ///< file; empty: none needed
   std::string phantom{"paper-10mm"};
   SimulatedPhantomConfig simulation;
   std::string estimator_kind{"bayes"};

@@ -96,7 +96,7 @@ void Runner::stop(const std::string& why) {
 }
 
 void Runner::account(SiteReport& report) {
-  report.loop = rt_->stop();
+  if (rt_) report.loop = rt_->stop();
   report.noise = server_->noise();
   report.sessions = sessions_;
 }

@@ -55,7 +55,7 @@ class Runner {
   void stop(const std::string& why);
   /// The end of the ticks, where stop() was not reached.
   void halt() noexcept { rt_.reset(); }
-  /// After stop(): loop and sessions.
+  /// After stop(): loop, where it was started, and sessions.
   void account(SiteReport& report);
 
  private:

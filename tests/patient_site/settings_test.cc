@@ -72,6 +72,7 @@ std::string text_of(const Settings& settings) {
   add(list, settings.node.gate);
   list.add("stage", settings.stage)
       .add("force", settings.force)
+      .add("devices", settings.devices)
       .add("phantom", settings.phantom)
       .add("estimator_kind", settings.estimator_kind)
       .add("estimator.filter_cut_off", settings.estimator.strokes.filter_cut_off)
@@ -120,11 +121,16 @@ TEST(PatientSettingsTest, UnknownDevicesAreErrorsThatListTheKnownOnes) {
   config::Document document = config::patient_document();
   ASSERT_TRUE(document.set("stage=robot"));
   EXPECT_THAT(make_settings(document).error().text,
-              HasSubstr("unknown stage 'robot'; there are: sim"));
+              HasSubstr("unknown stage 'robot'; there are: sim, modbus"));
   document = config::patient_document();
   ASSERT_TRUE(document.set("force=kistler"));
   EXPECT_THAT(make_settings(document).error().text,
-              HasSubstr("unknown force sensor 'kistler'; there are: sim"));
+              HasSubstr("unknown force sensor 'kistler'; there are: sim, modbus"));
+  document = config::patient_document();
+  ASSERT_TRUE(document.set("stage=modbus"));
+  EXPECT_THAT(make_settings(document).error().text, HasSubstr("do not go together"));
+  ASSERT_TRUE(document.set("force=modbus"));
+  EXPECT_THAT(make_settings(document).error().text, HasSubstr("needs --devices FILE"));
 }
 
 TEST(PatientSettingsTest, TheEstimatorHasTheLoopsPeriod) {

@@ -1,0 +1,46 @@
+#include "patient_site/devices/device_plans.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palp::patient {
+
+StageFacts stage_facts_of(const DevicePlans& plans) noexcept {
+  StageFacts facts;
+  const DeviceInstallation& normal = plans.normal->installation;
+  facts.axes = plans.x ? 3 : 1;
+  facts.travel_min = normal.travel_min;
+  facts.travel_max = normal.travel_max;
+  facts.speed = normal.speed_max;
+  facts.acceleration = normal.acceleration_max;
+  facts.rate = 1 / seconds(plans.normal->profile.period);
+  facts.lag = plans.normal->lag;
+  facts.travel_side = 0;
+  facts.drags = plans.x.has_value();
+  if (!plans.x) return facts;
+  facts.travel_side = 10;
+  for (const auto* axis : {&plans.x, &plans.y}) {
+    const DeviceInstallation& side = (*axis)->installation;
+    facts.travel_side =
+        std::min({facts.travel_side, std::abs(side.travel_min), std::abs(side.travel_max)});
+    facts.speed = std::min(facts.speed, side.speed_max);
+    facts.acceleration = std::min(facts.acceleration, side.acceleration_max);
+  }
+  return facts;
+}
+
+ForceSensorFacts sensor_facts_of(const DevicePlan& plan) noexcept {
+  ForceSensorFacts facts;
+  facts.pole = plan.pole;
+  facts.step = plan.installation.force_unit > 0 ? plan.installation.force_unit
+               : plan.profile.force             ? plan.profile.force->unit
+                                                : 0;
+  if (plan.profile.force && plan.profile.force->kind == WordKind::F32) facts.step = 0;
+  facts.range = plan.installation.force_range;
+  facts.noise = plan.noise;
+  facts.rate = 1 / seconds(plan.profile.period);
+  facts.lag = plan.lag;
+  return facts;
+}
+
+}  // namespace palp::patient

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/core/device_facts.h"
+#include "common/io/device/modbus_port.h"
+#include "patient_site/devices/device_profile.h"
+
+namespace palp::patient {
+
+/// One device, ready to be made.
+struct DevicePlan {
+  DeviceProfile profile;
+  DeviceInstallation installation;
+  io::ModbusAddress address;
+  double lag{};    ///< [s]
+  double pole{};   ///< [Hz]
+  double noise{};  ///< [N], rms
+};
+
+/// What stands behind `--devices FILE`.
+struct DevicePlans {
+  std::optional<DevicePlan> normal;
+  std::optional<DevicePlan> x;
+  std::optional<DevicePlan> y;
+  std::optional<DevicePlan> cell;  ///< absent: the normal axis feels its load
+  std::string phantom;             ///< the tissue under them, where it is known; for whoever judges
+};
+
+/// Of a stage put together from these; `normal` is there.
+[[nodiscard]] StageFacts stage_facts_of(const DevicePlans& plans) noexcept;
+/// Of what feels the force: the cell, or the normal axis.
+[[nodiscard]] ForceSensorFacts sensor_facts_of(const DevicePlan& plan) noexcept;
+/// Of both; all that a rig needs is there.
+[[nodiscard]] inline PatientDevices facts_of(const DevicePlans& plans) noexcept {
+  return {stage_facts_of(plans), sensor_facts_of(plans.cell ? *plans.cell : *plans.normal)};
+}
+
+}  // namespace palp::patient

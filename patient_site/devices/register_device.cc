@@ -1,0 +1,375 @@
+#include "patient_site/devices/register_device.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/core/limits.h"
+
+namespace palp::patient {
+namespace {
+
+using io::PortFault;
+
+constexpr Duration kReopenPause = std::chrono::milliseconds{500};
+constexpr Duration kHealthWait = std::chrono::seconds{1};  // after the last step of the start
+constexpr std::uint32_t kRetriesMax = 3;
+constexpr double kJumpFree = 2e-3;      // [m], more than any rounding or late stamp
+constexpr double kJumpSpeed = 3;        // [-], times the speed of the axis
+constexpr double kVelocityShare = 0.5;  // of the newest difference
+constexpr std::int64_t kStallPeriods = 5;
+constexpr std::uint64_t kStateEvery = 10;  // readings
+constexpr std::size_t kWriteWordsMax = 121;
+
+}  // namespace
+
+RegisterDevice::RegisterDevice(DeviceProfile profile,
+                               const DeviceInstallation& installation,
+                               io::RegisterPort& port)
+    : profile_{std::move(profile)},
+      installation_{installation},
+      port_{port},
+      words_{profile_.read_address, profile_.read_count},
+      state_{profile_.state_address, profile_.state_count},
+      load_{installation} {
+  if (profile_.position && installation_.position_unit > 0) {
+    profile_.position->unit = installation_.position_unit;
+  }
+  if (profile_.force && installation_.force_unit > 0) {
+    profile_.force->unit = installation_.force_unit;
+  }
+}
+
+DeviceReading RegisterDevice::cycle(const Clock& clock, const DeviceCommand& command) {
+  const TimePoint now = clock.now();
+  if (std::exchange(restarts_, command.restarts) != command.restarts &&
+      now_.state == DeviceState::Fault) {
+    if (now_.reason == DeviceReason::Touched) load_.begin_tare();
+    enter_start(now);
+  }
+  if (now_.state == DeviceState::Absent) reach(now);
+  if (now_.state == DeviceState::Absent) return now_;
+  if (now_.state == DeviceState::Ready) steer(command, now);
+  if (poll(clock)) {
+    judge(clock.now());
+    if (now_.state == DeviceState::Starting) proceed(clock.now());
+  }
+  if (now_.state == DeviceState::Ready && !profile_.exchange) send_move(clock.now());
+  return now_;
+}
+
+void RegisterDevice::stop() {
+  if (now_.state == DeviceState::Absent || !profile_.stop) return;
+  (void)send(*profile_.stop);
+}
+
+void RegisterDevice::reach(TimePoint now) {
+  if (tried_ && now < reopen_at_) return;
+  tried_ = true;
+  reopen_at_ = now + kReopenPause;
+  const PortFault fault = port_.open();
+  if (fault != PortFault::None) {
+    now_.reason = DeviceReason::Port;
+    now_.detail = static_cast<std::uint32_t>(fault);
+    return;
+  }
+  heard_at_ = now;
+  failed_in_a_row_ = 0;
+  enter_start(now);
+}
+
+void RegisterDevice::enter_start(TimePoint now) noexcept {
+  now_.state = DeviceState::Starting;
+  now_.reason = DeviceReason::None;
+  now_.detail = 0;
+  now_.saturated = false;
+  step_ = 0;
+  step_sent_ = false;
+  step_began_ = lived_at_ = now;
+  polls_ = 0;
+  position_known_ = anything_sent_ = false;
+  load_.resume();
+}
+
+bool RegisterDevice::poll(const Clock& clock) {
+  const TimePoint began = clock.now();
+  PortFault fault{};
+  if (profile_.exchange && profile_.move && now_.state == DeviceState::Ready) {
+    std::array<std::uint16_t, kWriteWordsMax> written{};
+    const std::size_t count = words_of(*profile_.move, written);
+    fault = port_.exchange(profile_.move->address,
+                           std::span{written}.first(count),
+                           profile_.read_address,
+                           words_.words());
+  } else {
+    fault = port_.read(profile_.read_address, words_.words(), profile_.input_registers);
+  }
+  const TimePoint ended = clock.now();
+  if (fault == PortFault::None && profile_.state_count > 0 && polls_++ % kStateEvery == 0) {
+    fault = port_.read(profile_.state_address, state_.words(), profile_.input_registers);
+  }
+  note_transfer(fault, ended);
+  if (fault != PortFault::None) {
+    motion_ = delivered_;  // what did not arrive is not made up for
+    return false;
+  }
+  if (profile_.exchange) delivered_ = motion_;
+  heard_at_ = ended;
+  take_reading(began + (ended - began) / 2);
+  return true;
+}
+
+void RegisterDevice::note_transfer(PortFault fault, TimePoint now) {
+  if (fault == PortFault::None) {
+    failed_in_a_row_ = 0;
+    return;
+  }
+  ++now_.failures;
+  ++failed_in_a_row_;
+  const auto detail = static_cast<std::uint32_t>(fault);
+  if (fault == PortFault::Refused) {
+    if (now_.state != DeviceState::Fault) fail(DeviceReason::Port, detail);
+    return;
+  }
+  const bool gone = fault == PortFault::Lost || fault == PortFault::NotOpen;
+  const bool wrong_answers = fault != PortFault::NoReply && failed_in_a_row_ > kRetriesMax;
+  if (!gone && !wrong_answers && now - heard_at_ <= profile_.silence) return;
+  port_.close();
+  now_.state = DeviceState::Absent;
+  now_.reason = DeviceReason::Port;
+  now_.detail = detail;
+  now_.velocity = 0;
+  reopen_at_ = now + kReopenPause;
+}
+
+void RegisterDevice::take_reading(TimePoint sampled_at) {
+  ++now_.number;
+  if (profile_.position) take_position(sampled_at);
+  if (profile_.force) take_force(sampled_at);
+  now_.sampled_at = sampled_at;
+}
+
+void RegisterDevice::take_position(TimePoint sampled_at) {
+  const double read = words_.counts(*profile_.position, profile_.order) * profile_.position->unit;
+  if (!std::isfinite(read)) {
+    if (now_.state != DeviceState::Fault) fail(DeviceReason::NotFinite, 0);
+    return;
+  }
+  const double position = (read - installation_.zero) * (installation_.reversed ? -1 : 1);
+  const double span = seconds(sampled_at - now_.sampled_at);
+  const double way = position - now_.position;
+  if (position_known_ && now_.state == DeviceState::Ready &&
+      std::abs(way) > kJumpFree + kJumpSpeed * installation_.speed_max * span) {
+    fail(DeviceReason::Jumped, 0);
+    return;
+  }
+  now_.velocity = position_known_ && span > 0
+                      ? now_.velocity + kVelocityShare * (way / span - now_.velocity)
+                      : 0;
+  now_.position = position;
+  position_known_ = true;
+}
+
+void RegisterDevice::take_force(TimePoint sampled_at) {
+  const double read = words_.counts(*profile_.force, profile_.order) * profile_.force->unit;
+  const double force = installation_.force_reversed ? -read : read;
+  const bool ready = now_.state == DeviceState::Ready || now_.state == DeviceState::Starting;
+  // Steps that move it, or switch it on, come before the tare.
+  if (!load_.tared() && step_ < profile_.start.size()) return;
+  const LoadCheck::Verdict verdict = load_.take(force, sampled_at);
+  now_.saturated = verdict == LoadCheck::Verdict::Saturated;
+  if (verdict == LoadCheck::Verdict::NotFinite) {
+    if (ready) fail(DeviceReason::NotFinite, 0);
+    return;
+  }
+  now_.zero = load_.zero();
+  now_.force = force - load_.zero();
+  if (!ready) return;
+  if (verdict == LoadCheck::Verdict::Stuck) fail(DeviceReason::Stuck, 0);
+  if (verdict == LoadCheck::Verdict::Touched) fail(DeviceReason::Touched, 0);
+}
+
+bool RegisterDevice::meets(const RegisterCondition& condition) const noexcept {
+  return (words_.holds(condition.address, 1) ? words_ : state_).meets(condition);
+}
+
+std::optional<std::uint32_t> RegisterDevice::unhealthy() const noexcept {
+  for (std::uint32_t i = 0; i < profile_.healthy.size(); ++i) {
+    if (!meets(profile_.healthy[i])) return i;
+  }
+  return std::nullopt;
+}
+
+void RegisterDevice::judge(TimePoint now) {
+  if (profile_.life) {
+    const std::uint16_t life = words_.word(*profile_.life);
+    if (std::exchange(life_, life) != life) lived_at_ = now;
+  }
+  if (now_.state != DeviceState::Ready) return;
+  if (const auto index = unhealthy()) fail(DeviceReason::NotHealthy, *index);
+  if (profile_.life && now - lived_at_ > profile_.life_within) fail(DeviceReason::NoLife, 0);
+}
+
+void RegisterDevice::next_step(TimePoint now) noexcept {
+  ++step_;
+  step_sent_ = false;
+  step_began_ = now;
+}
+
+void RegisterDevice::proceed(TimePoint now) {
+  if (step_ < profile_.start.size()) {
+    const StartStep& step = profile_.start[step_];
+    const auto index = static_cast<std::uint32_t>(step_);
+    if (!step_sent_ && step.unless && meets(*step.unless)) return next_step(now);
+    if (!step_sent_) {
+      if (step.moves && !installation_.may_home) return fail(DeviceReason::MayNotMove, index);
+      const PortFault fault = send(step.write);
+      if (fault == PortFault::Refused) return fail(DeviceReason::StartFailed, index);
+      note_transfer(fault, now);
+      step_sent_ = fault == PortFault::None;
+      step_began_ = now;
+      return;
+    }
+    if (!step.until || meets(*step.until)) return next_step(now);
+    if (now - step_began_ > step.wait_max) fail(DeviceReason::StartFailed, index);
+    return;
+  }
+  if (const auto index = unhealthy()) {
+    if (now - step_began_ > kHealthWait) fail(DeviceReason::NotHealthy, *index);
+    return;
+  }
+  if (profile_.force && !load_.tared()) return;
+  now_.state = DeviceState::Ready;
+  ++now_.starts;
+  begin_motion(now);
+}
+
+void RegisterDevice::begin_motion(TimePoint now) noexcept {
+  motion_ = delivered_ = {.command = now_.position, .velocity = 0};
+  steered_at_ = now;
+}
+
+/// What the thread slept through, the axis has stood: from there it sets out again.
+void RegisterDevice::steer(const DeviceCommand& command, TimePoint now) noexcept {
+  const Duration passed = now - steered_at_;
+  if (passed > kStallPeriods * profile_.period) begin_motion(now);
+  steered_at_ = now;
+  const double span = seconds(std::clamp(passed, profile_.period / 2, 2 * profile_.period));
+  const bool valid = command.move && now <= command.valid_until && std::isfinite(command.target);
+  const double target =
+      std::clamp(valid ? command.target : 0.0, installation_.travel_min, installation_.travel_max);
+  now_.at_limit = valid && target != command.target;
+  const double before = motion_.command;
+  if (valid) {
+    motion_ = step_axis(motion_,
+                        target,
+                        {.speed = installation_.speed_max,
+                         .acceleration = installation_.acceleration_max,
+                         .step_free = 0},
+                        span);
+  } else {
+    motion_.velocity = step_towards(motion_.velocity, 0, installation_.acceleration_max * span);
+    motion_.command += motion_.velocity * span;
+  }
+  // Where it stands outside its travel, it may stay there and come back.
+  const double within = std::clamp(motion_.command,
+                                   std::min(installation_.travel_min, before),
+                                   std::max(installation_.travel_max, before));
+  if (within != motion_.command) motion_ = {.command = within, .velocity = 0};
+}
+
+double RegisterDevice::raw_position(double position) const noexcept {
+  return installation_.zero + (installation_.reversed ? -position : position);
+}
+
+std::size_t RegisterDevice::words_of(const RegisterWrite& write,
+                                     std::span<std::uint16_t> words) const noexcept {
+  std::size_t count = 0;
+  for (const WriteValue& value : write.values) {
+    double counts = value.number;
+    // A target is in the unit in which the device reads its position.
+    const double place = profile_.position ? profile_.position->unit : 1;
+    const double unit = value.unit > 0 ? value.unit : place;
+    if (value.source == ValueSource::Position) counts = raw_position(motion_.command) / place;
+    if (value.source == ValueSource::Here) counts = raw_position(now_.position) / place;
+    if (value.source == ValueSource::Speed) counts = installation_.speed_max / unit;
+    if (value.source == ValueSource::Acceleration) counts = installation_.acceleration_max / unit;
+    const auto pair = to_words(counts, value.kind, profile_.order);
+    for (std::size_t i = 0; i < words_in(value.kind) && count < words.size(); ++i) {
+      words[count++] = pair[i];
+    }
+  }
+  return count;
+}
+
+PortFault RegisterDevice::send(const RegisterWrite& write) {
+  std::array<std::uint16_t, kWriteWordsMax> words{};
+  const std::size_t count = words_of(write, words);
+  if (write.kind == WriteKind::Coil) return port_.write_coil(write.address, words[0] != 0);
+  if (write.kind == WriteKind::OneRegister) return port_.write_one(write.address, words[0]);
+  return port_.write(write.address, std::span{words}.first(count));
+}
+
+void RegisterDevice::send_move(TimePoint now) {
+  if (!profile_.move || !profile_.position) return;
+  const double counts = raw_position(motion_.command) / profile_.position->unit;
+  const auto target = to_words(counts, profile_.position->kind, profile_.order);
+  if (profile_.only_changes && anything_sent_ && target == sent_) return;
+  const PortFault fault = send(*profile_.move);
+  note_transfer(fault, now);
+  if (fault != PortFault::None) {
+    motion_ = delivered_;
+    return;
+  }
+  delivered_ = motion_;
+  sent_ = target;
+  anything_sent_ = true;
+}
+
+void RegisterDevice::fail(DeviceReason reason, std::uint32_t detail) {
+  if (now_.state == DeviceState::Fault) return;
+  now_.state = DeviceState::Fault;
+  now_.reason = reason;
+  now_.detail = detail;
+  now_.velocity = 0;
+  if (profile_.stop) (void)send(*profile_.stop);
+}
+
+std::optional<std::string> flaw_of(const DeviceProfile& profile,
+                                   const DeviceInstallation& installation) {
+  if (profile.read_count == 0 || profile.read_count > ReadWords::kCountMax) {
+    return profile.name + " reads 1 to 125 registers";
+  }
+  if (profile.state_count > ReadWords::kCountMax) {
+    return profile.name + "'s state has at most 125 registers";
+  }
+  const ReadWords words{profile.read_address, profile.read_count};
+  const ReadWords state{profile.state_address, profile.state_count};
+  const auto readable = [&](std::uint16_t address) {
+    return words.holds(address, 1) || state.holds(address, 1);
+  };
+  const auto outside = [&](const char* what) {
+    return profile.name + "'s " + what + " is not among the registers that it reads";
+  };
+  const auto holds = [&](const std::optional<RegisterCondition>& one) {
+    return !one || readable(one->address);
+  };
+  if (!profile.position && !profile.force) return profile.name + " has neither position nor force";
+  for (const auto& field : {profile.position, profile.force}) {
+    if (field && !words.holds(field->address, words_in(field->kind))) {
+      return outside("position or force");
+    }
+  }
+  if (profile.life && !words.holds(*profile.life, 1)) return outside("sign of life");
+  for (const RegisterCondition& one : profile.healthy) {
+    if (!readable(one.address)) return outside("state");
+  }
+  for (const StartStep& step : profile.start) {
+    if (!holds(step.unless) || !holds(step.until)) return outside("condition of its start");
+  }
+  if (profile.move && !profile.position) return profile.name + " moves, and has no position";
+  if (installation.travel_min >= installation.travel_max) return profile.name + " has no travel";
+  return std::nullopt;
+}
+
+}  // namespace palp::patient

@@ -1,0 +1,65 @@
+#include "patient_site/devices_command.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include "common/config/json.h"
+#include "common/io/device/modbus_port.h"
+#include "patient_site/settings_devices.h"
+
+namespace palp::patient {
+
+using config::ExitCode;
+using site_program::ExitStatus;
+
+DevicesCommand::DevicesCommand(config::CommandLine& line) {
+  config::CommandLine& verb =
+      line.verb("devices", "Lists the devices of a file: what is there, what it reads, why not.");
+  verb.text("--devices", file_, "FILE", "where devices are and what they are");
+  verb.toggle("--json", json_, "as JSON, schema palp.devices/1");
+}
+
+ExitStatus DevicesCommand::run() const {
+  if (file_.empty()) return site_program::bad_input("devices needs --devices FILE");
+  const auto plans = read_device_plans(file_);
+  if (!plans) return site_program::exit_status_of(plans.error());
+  std::vector<DeviceLook> looks;
+  const auto look = [&](const char* place, const std::optional<DevicePlan>& plan) {
+    if (!plan) return;
+    io::ModbusPort port{plan->address};
+    looks.push_back(look_at(place, *plan, port));
+  };
+  look("normal axis", plans->normal);
+  look("x axis", plans->x);
+  look("y axis", plans->y);
+  look("force sensor", plans->cell);
+  std::fputs((json_ ? devices_json(looks) : devices_text(looks)).c_str(), stdout);
+  if (std::ranges::all_of(looks, &DeviceLook::usable)) return {ExitCode::Done, "completed", ""};
+  return {ExitCode::Missed, "not usable", "not all devices can be used"};
+}
+
+std::string devices_text(const std::vector<DeviceLook>& looks) {
+  std::string text;
+  for (const DeviceLook& one : looks) {
+    text += (one.usable ? "usable      " : "not usable  ") + one.place + " (" + one.product + ", " +
+            one.address + "): " + one.found + "\n";
+  }
+  return text;
+}
+
+std::string devices_json(const std::vector<DeviceLook>& looks) {
+  config::Json json;
+  json["schema"] = "palp.devices/1";
+  json["devices"] = config::Json::array();
+  for (const DeviceLook& one : looks) {
+    json["devices"].push_back({{"place", one.place},
+                               {"product", one.product},
+                               {"address", one.address},
+                               {"usable", one.usable},
+                               {"found", one.found}});
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace palp::patient

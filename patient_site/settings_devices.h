@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "common/core/result.h"
+#include "patient_site/devices/device_plans.h"
+
+namespace palp::patient {
+
+/// `text` is that of a PatientDeviceFile (proto/devices.proto), `name` its file. The sentence names
+/// line, field and range; relative profiles are looked for from the working folder.
+[[nodiscard]] Result<DevicePlans> make_device_plans(std::string_view text, const std::string& name);
+[[nodiscard]] Result<DevicePlans> read_device_plans(const std::string& path);
+
+/// A profile by its name, "iai", or "file:PATH".
+[[nodiscard]] Result<DeviceProfile> find_profile(const std::string& name);
+
+}  // namespace palp::patient

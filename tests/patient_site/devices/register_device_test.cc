@@ -1,0 +1,294 @@
+#include "patient_site/devices/register_device.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "patient_site/devices/device_profile.h"
+#include "patient_site/devices/device_reading.h"
+#include "patient_site/devices/profile_texts.h"
+#include "patient_site/settings_devices.h"
+#include "tests/patient_site/devices/fake_registers.h"
+
+namespace palp::patient {
+namespace {
+
+using io::PortFault;
+using testing::HasSubstr;
+
+/// An axis of the maker whose name stands there, in virtual time: it goes where it is sent.
+class Axis {
+ public:
+  explicit Axis(const std::string& name = "iai", DeviceInstallation built_in = installation())
+      : profile_{find_profile(name).value()}, device_{profile_, built_in, port} {
+    if (name == "iai") {
+      port.words[0x9005] = 0x3010;
+      port.written = [this](std::uint16_t address) {
+        if (address != 0x9900) return;
+        port.words[0x9000] = port.words[0x9900];
+        port.words[0x9001] = port.words[0x9901];
+      };
+    }
+    if (name == "orca") {
+      port.written = [this](std::uint16_t address) {
+        if (address != 30) return;
+        port.words[342] = port.words[30];
+        port.words[343] = port.words[31];
+      };
+    }
+  }
+  static DeviceInstallation installation() {
+    DeviceInstallation built_in;
+    built_in.zero = 0.05;
+    built_in.reversed = true;
+    built_in.speed_max = 0.1;
+    built_in.acceleration_max = 2;
+    built_in.tare_time = std::chrono::milliseconds{100};
+    return built_in;
+  }
+  const DeviceReading& cycles(int count) {
+    for (int i = 0; i < count; ++i) {
+      clock.at += profile_.period;
+      if (alive) command.valid_until = clock.at + std::chrono::milliseconds{50};
+      const double before = reading.position;
+      const bool was_ready = reading.state == DeviceState::Ready;
+      reading = device_.cycle(clock, command);
+      if (was_ready && reading.state == DeviceState::Ready) {
+        fastest = std::max(fastest, std::abs(reading.position - before) / seconds(profile_.period));
+      }
+    }
+    return reading;
+  }
+  void move(double target) {
+    command.move = true;
+    command.target = target;
+  }
+  [[nodiscard]] std::string why() const { return describe_reason(reading, profile_); }
+
+  FakeRegisters port;
+  TestClock clock;
+  DeviceCommand command;
+  DeviceReading reading;
+  double fastest{};  ///< [m/s]
+  bool alive{true};  ///< of the one who commands
+
+ private:
+  DeviceProfile profile_;
+  RegisterDevice device_;
+};
+
+TEST(RegisterDeviceTest, StartsAnAxisStepByStepAndHoldsItWhereItStands) {
+  Axis axis;
+  axis.port.words[0x9001] = 3070;
+  ASSERT_EQ(axis.cycles(20).state, DeviceState::Ready) << axis.why();
+  EXPECT_TRUE(axis.port.coils[0x427]);
+  EXPECT_TRUE(axis.port.coils[0x403]);
+  EXPECT_FALSE(axis.port.coils.contains(0x40B)) << "it was homed";
+  EXPECT_NEAR(axis.reading.position, 0.05 - 0.0307, 1e-9);
+  EXPECT_EQ(axis.port.words[0x9901], 3070);
+  EXPECT_EQ(axis.port.words[0x9905], 10'000) << "100 mm/s";
+  EXPECT_EQ(axis.port.words[0x9906], 20) << "hundredths of g";
+}
+
+TEST(RegisterDeviceTest, MovesWithinSpeedTravelAndTime) {
+  Axis axis;
+  axis.port.words[0x9001] = 5000;
+  axis.cycles(20);
+  axis.move(0.03);
+  axis.cycles(100);
+  EXPECT_NEAR(axis.reading.position, 0.03, 1e-5);
+  EXPECT_EQ(axis.port.words[0x9901], 2000) << "against the site";
+  EXPECT_LE(axis.fastest, 0.1 + 0.002);
+  axis.move(5);
+  axis.cycles(200);
+  EXPECT_TRUE(axis.reading.at_limit);
+  EXPECT_NEAR(axis.reading.position, 0.1, 1e-5);
+}
+
+TEST(RegisterDeviceTest, AnExpiredCommandStopsIt) {
+  Axis axis;
+  axis.cycles(20);
+  axis.move(-0.1);
+  axis.cycles(10);
+  axis.alive = false;
+  axis.cycles(10);
+  const double there = axis.reading.position;
+  axis.cycles(50);
+  EXPECT_EQ(axis.reading.position, there);
+  EXPECT_GT(there, -0.05);
+}
+
+TEST(RegisterDeviceTest, WhoIsLeftAloneStopsWithinItsTravel) {
+  for (int moving = 1; moving < 200; ++moving) {
+    Axis axis;
+    axis.port.words[0x9001] = 5000;
+    axis.cycles(20);
+    axis.move(0.1);
+    axis.cycles(moving);
+    axis.alive = false;
+    axis.cycles(20);
+    ASSERT_LE(axis.reading.position, 0.1 + 1e-5) << moving;
+  }
+}
+
+TEST(RegisterDeviceTest, ComesBackWithoutAJump) {
+  Axis axis;
+  axis.port.words[0x9001] = 5000;
+  axis.cycles(20);
+  axis.move(0.02);
+  axis.cycles(10);
+  axis.port.fault = PortFault::Lost;
+  axis.port.openable = false;
+  ASSERT_EQ(axis.cycles(100).state, DeviceState::Absent);
+  EXPECT_EQ(axis.why(), "cannot be opened");
+  EXPECT_LT(axis.port.opened, 8) << "tried now and then";
+  axis.port.words[0x9001] = 6000;
+  axis.port.fault = PortFault::None;
+  axis.port.openable = true;
+  axis.fastest = 0;
+  axis.cycles(200);
+  EXPECT_EQ(axis.reading.state, DeviceState::Ready) << axis.why();
+  EXPECT_NEAR(axis.reading.position, 0.02, 1e-5);
+  EXPECT_LE(axis.fastest, 0.1 + 0.002);
+}
+
+TEST(RegisterDeviceTest, AnEmergencyStopIsAFaultUntilRestarted) {
+  Axis axis;
+  axis.cycles(20);
+  axis.port.words[0x9005] = 0xB010;
+  ASSERT_EQ(axis.cycles(1).state, DeviceState::Fault);
+  EXPECT_EQ(axis.why(), "the device reports: emergency stop");
+  EXPECT_TRUE(axis.port.coils[0x42C]) << "told to stop";
+  axis.port.words[0x9005] = 0x3010;
+  EXPECT_EQ(axis.cycles(100).state, DeviceState::Fault);
+  ++axis.command.restarts;
+  EXPECT_EQ(axis.cycles(30).state, DeviceState::Ready) << axis.why();
+}
+
+TEST(RegisterDeviceTest, HomesOnlyWhereItMay) {
+  Axis axis;
+  axis.port.words[0x9005] = 0x3000;
+  ASSERT_EQ(axis.cycles(30).state, DeviceState::Fault);
+  EXPECT_THAT(axis.why(), HasSubstr("may_home does not permit: home"));
+  EXPECT_FALSE(axis.port.coils[0x40B]);
+}
+
+TEST(RegisterDeviceTest, AFewLostAnswersAreNoFaultAndSilenceIs) {
+  Axis axis;
+  axis.cycles(20);
+  axis.port.fault = PortFault::NoReply;
+  EXPECT_EQ(axis.cycles(1).state, DeviceState::Ready);
+  axis.port.fault = PortFault::None;
+  EXPECT_EQ(axis.cycles(2).state, DeviceState::Ready);
+  axis.port.fault = PortFault::BrokenFrame;
+  EXPECT_EQ(axis.cycles(10).state, DeviceState::Absent);
+  EXPECT_EQ(axis.why(), "broken frame");
+  EXPECT_GE(axis.reading.failures, 3U);
+  Axis silent;
+  silent.cycles(20);
+  silent.port.fault = PortFault::NoReply;
+  EXPECT_EQ(silent.cycles(12).state, DeviceState::Absent);
+  EXPECT_EQ(silent.why(), "no reply");
+}
+
+TEST(RegisterDeviceTest, ARefusalIsAFaultAtOnce) {
+  Axis axis;
+  axis.port.fault = PortFault::Refused;
+  EXPECT_EQ(axis.cycles(2).state, DeviceState::Fault);
+  EXPECT_EQ(axis.why(), "request refused");
+}
+
+TEST(RegisterDeviceTest, APositionThatJumpsIsAFault) {
+  Axis axis;
+  axis.port.words[0x9001] = 5000;
+  axis.cycles(20);
+  axis.port.words[0x9001] = 9000;
+  EXPECT_EQ(axis.cycles(1).state, DeviceState::Fault);
+  EXPECT_EQ(axis.why(), "the position jumped");
+}
+
+TEST(RegisterDeviceTest, OneRequestMovesAndReadsWhereTheDeviceCan) {
+  Axis axis{"orca"};
+  axis.port.words[342] = 50'000;
+  axis.port.words[348] = 20;
+  ASSERT_EQ(axis.cycles(60).state, DeviceState::Ready) << axis.why();
+  EXPECT_EQ(axis.port.words[163], 50) << "the drive's own watchdog";
+  EXPECT_EQ(axis.port.words[3], 3);
+  EXPECT_NEAR(axis.reading.zero, 0.02, 1e-9) << "its force is tared";
+  axis.port.words[348] = 1520;
+  axis.move(0.01);
+  axis.cycles(100);
+  EXPECT_NEAR(axis.reading.position, 0.01, 2e-6);
+  EXPECT_NEAR(axis.reading.force, 1.5, 1e-9);
+  axis.port.words[432] = 0x800;
+  EXPECT_EQ(axis.cycles(10).state, DeviceState::Fault);
+  EXPECT_THAT(axis.why(), HasSubstr("watchdog"));
+}
+
+TEST(RegisterDeviceTest, ATouchedSensorIsNotTared) {
+  Axis cell{"tlb4"};
+  cell.port.words[8] = 100;  // 1 N
+  EXPECT_EQ(cell.cycles(40).state, DeviceState::Fault);
+  EXPECT_THAT(cell.why(), HasSubstr("something touches"));
+  cell.port.words[8] = 3;
+  ++cell.command.restarts;
+  EXPECT_EQ(cell.cycles(40).state, DeviceState::Ready) << cell.why();
+}
+
+TEST(RegisterDeviceTest, AFloatThatIsNoNumberIsAFault) {
+  Axis cell{"z-sg"};
+  ASSERT_EQ(cell.cycles(20).state, DeviceState::Ready) << cell.why();
+  cell.port.words[63] = 0x7FC0;
+  EXPECT_EQ(cell.cycles(1).state, DeviceState::Fault);
+  EXPECT_EQ(cell.why(), "a reading is no number");
+}
+
+/// Whatever comes, in whatever order: no step beyond the speed, no position beyond the travel.
+RC_GTEST_PROP(RegisterDeviceTest, NoSequenceOfFaultsMakesItJump, ()) {
+  Axis axis{*rc::gen::element(std::string{"iai"}, std::string{"orca"})};
+  const std::uint16_t state = 0x9005;
+  axis.port.words[0x9001] = 5000;
+  axis.port.words[342] = 50'000;
+  axis.cycles(80);
+  for (int i = 0; i < 20; ++i) {
+    axis.move(static_cast<double>(*rc::gen::inRange(-300, 300)) * 1e-3);
+    axis.port.fault = *rc::gen::weightedElement<PortFault>({{8, PortFault::None},
+                                                            {1, PortFault::Lost},
+                                                            {1, PortFault::NoReply},
+                                                            {1, PortFault::BrokenFrame},
+                                                            {1, PortFault::WrongStation},
+                                                            {1, PortFault::Refused}});
+    axis.port.openable = *rc::gen::element(true, true, false);
+    axis.port.words[state] = *rc::gen::element<std::uint16_t>(0x3010, 0x3010, 0xB010, 0x2010);
+    axis.alive = *rc::gen::element(true, true, false);
+    axis.command.restarts += static_cast<std::uint32_t>(*rc::gen::inRange(0, 2));
+    axis.cycles(*rc::gen::inRange(1, 60));
+    RC_ASSERT(axis.fastest <= 0.1 + 0.003);
+    RC_ASSERT(std::abs(axis.reading.position) <= 0.1 + 1e-5);
+  }
+}
+
+TEST(DeviceFlawTest, NamesWhatIsNotRead) {
+  DeviceProfile profile = find_profile("iai").value();
+  EXPECT_FALSE(flaw_of(profile, {}));
+  profile.position->address = 0x9009;
+  EXPECT_THAT(flaw_of(profile, {}).value_or(""), HasSubstr("position"));
+  profile = find_profile("iai").value();
+  profile.healthy[0].address = 7;
+  EXPECT_THAT(flaw_of(profile, {}).value_or(""), HasSubstr("state"));
+  profile = find_profile("iai").value();
+  profile.read_count = 126;
+  EXPECT_TRUE(flaw_of(profile, {}));
+}
+
+TEST(ProfileTextsTest, ListsWhatIsBuiltIn) {
+  EXPECT_EQ(profile_names(), "az, iai, orca, tlb4, z-sg");
+  EXPECT_TRUE(profile_text("robot").empty());
+  EXPECT_THAT(std::string{profile_text("iai")}, HasSubstr("0x9900"));
+}
+
+}  // namespace
+}  // namespace palp::patient
