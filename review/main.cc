@@ -15,7 +15,9 @@
 #include "review/demo_report.h"
 #include "review/info.h"
 #include "review/recover.h"
+#include "review/replay_command.h"
 #include "review/taps.h"
+#include "review/time_line.h"
 
 namespace palp::review {
 namespace {
@@ -97,6 +99,45 @@ std::string optional_text(const std::string& path) {
   return {std::istreambuf_iterator<char>{file}, {}};
 }
 
+struct ReplayFlags {
+  std::vector<std::string> files;
+  std::string set;
+  ReplayAsk ask;
+};
+
+ExitStatus run_replay(ReplayFlags& flags) {
+  std::vector<record::MappedFile> files;
+  RunBytes bytes;
+  for (const std::string& path : flags.files) {
+    auto file = open_session(path);
+    if (!file) return exit_status_of(file.error());
+    files.push_back(std::move(*file));
+  }
+  bytes.reserve(files.size());
+  for (const record::MappedFile& file : files) bytes.push_back(file.bytes());
+  if (!flags.set.empty()) flags.ask.set.push_back(flags.set);
+  const auto answer = replay_command(bytes, flags.ask);
+  if (!answer) return bad_input(flags.files.front() + ": " + answer.error().text);
+  std::cout << answer->text;
+  return {answer->same ? ExitCode::Done : ExitCode::Missed, {}};
+}
+
+void declare(config::CommandLine& line, ReplayFlags& flags) {
+  line.arguments("FILE", flags.files, "session files of one run of a site, the first one first");
+  line.required();
+  line.text("--coupling", flags.ask.coupling, "NAME", "what would this one's half have said?");
+  line.choice("--estimator", flags.ask.estimator, {"bayes", "paper"}, "and this estimator?");
+  line.text("--set", flags.set, "PATH=VALUE", "and with this setting of the site?");
+}
+
+Result<SessionPair> load_pair(const SessionPaths& paths) {
+  auto surgeon = load_site(paths.surgeon, link::Role::Surgeon);
+  if (!surgeon) return tl::unexpected(surgeon.error());
+  auto patient = load_site(paths.patient, link::Role::Patient);
+  if (!patient) return tl::unexpected(patient.error());
+  return pair_of(std::move(*surgeon), std::move(*patient));
+}
+
 struct MetricsFlags {
   SessionPaths sessions;
   SessionPaths reports;
@@ -106,11 +147,10 @@ struct MetricsFlags {
 };
 
 ExitStatus run_metrics(const MetricsFlags& flags) {
-  const auto surgeon = load_site(flags.sessions.surgeon, link::Role::Surgeon);
-  const auto patient = load_site(flags.sessions.patient, link::Role::Patient);
-  if (!surgeon || !patient) {
-    return exit_status_of(!surgeon ? surgeon.error() : patient.error());
-  }
+  auto session = load_pair(flags.sessions);
+  if (!session) return exit_status_of(session.error());
+  const SiteData* const surgeon = &session->surgeon;
+  const SiteData* const patient = &session->patient;
   std::optional<judge::TissueTable> tissue;
   if (patient->tissue_csv) {
     auto table = judge::TissueTable::parse(*patient->tissue_csv);
@@ -119,7 +159,7 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
     }
     tissue = std::move(*table);
   }
-  const auto taps = match_taps(*surgeon, *patient, tissue ? &*tissue : nullptr);
+  const auto taps = match_taps(*surgeon, *patient, session->time_line, tissue ? &*tissue : nullptr);
   std::cout << tap_table(taps, overall_depth(taps));
   if (flags.report.empty()) {
     return {};
@@ -166,11 +206,15 @@ int run(int argc, char** argv) {
   }
   recovery.argument("OUT", out, "new file; must not exist");
   recovery.required();
+  ReplayFlags replay;
+  declare(line.verb("replay", "do a site's ticks again; exit code 1 at the first difference"),
+          replay);
   declare(line.verb("metrics", "taps, depth and counters of a session"), flags);
   return config::run_program(line, argc, argv, [&] {
     const std::string verb = line.chosen_verb();
     if (verb == "info") return run_info(in);
     if (verb == "check") return run_check(in);
+    if (verb == "replay") return run_replay(replay);
     return verb == "recover" ? run_recover(in, out) : run_metrics(flags);
   });
 }

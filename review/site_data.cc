@@ -22,7 +22,12 @@ struct Collector {
                            .force = tick.force,
                            .place = tick.place});
   }
+  void operator()(const LinkHeard& heard) const {
+    const bool known = !data.sessions.empty() && data.sessions.back().id == heard.session_id;
+    if (heard.session_id != 0 && !known) data.sessions.push_back({heard.session_id, heard.at});
+  }
   void operator()(const LinkStatus& status) const {
+    data.links.push_back(status);
     data.last_link = status;
     if (status.health.state == LinkState::Live && status.health.round_trip > Duration{0}) {
       data.round_trips.push_back(status.health.round_trip);
@@ -81,6 +86,7 @@ Result<SiteData> load_site(std::span<const std::byte> file,
     return fail(name + ": " + data.report.faults.front().text);
   }
   data.began_at = reader.began_at().value_or(TimePoint{});
+  data.clock = reader.clock();
   data.metadata = reader.metadata("palp");
   data.records_dropped = reader.metadata("palp.summary", "records_dropped");
   if (const auto csv = reader.attachment("tissue.csv")) {

@@ -143,6 +143,7 @@ const std::vector<Arrow>& arrows() {
         "patient_site",
         "depth",
         "judge",
+        "review/phase_finder.h",
         "netem/model",
         "common/message",
         "common/coupling",
@@ -169,8 +170,17 @@ const std::vector<Arrow>& arrows() {
         "common/config",
         "common/io/process/process_time.h",
         "common/io/process/parallel.h"}},
+      // What a site did is done again by the site's own control, and judged as the lab judges.
       {"review/*",
-       {"common/message", "common/record", "common/coupling", "judge", "common/config"}},
+       {"common/message",
+        "common/link",
+        "common/record",
+        "common/coupling",
+        "common/config",
+        "surgeon_site",
+        "patient_site",
+        "depth",
+        "judge"}},
   };
   return table;
 }
