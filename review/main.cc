@@ -2,6 +2,8 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <limits>
+#include <sstream>
 #include <string>
 
 #include "common/config/command_line.h"
@@ -13,10 +15,13 @@
 #include "common/record/mcap_reader.h"
 #include "review/check.h"
 #include "review/demo_report.h"
+#include "review/export.h"
 #include "review/info.h"
+#include "review/merge.h"
 #include "review/recover.h"
 #include "review/replay_command.h"
 #include "review/taps.h"
+#include "review/text.h"
 #include "review/time_line.h"
 
 namespace palp::review {
@@ -99,6 +104,86 @@ std::string optional_text(const std::string& path) {
   return {std::istreambuf_iterator<char>{file}, {}};
 }
 
+Result<SessionPair> load_pair(const SessionPaths& paths) {
+  auto surgeon = load_site(paths.surgeon, link::Role::Surgeon);
+  if (!surgeon) return tl::unexpected(surgeon.error());
+  auto patient = load_site(paths.patient, link::Role::Patient);
+  if (!patient) return tl::unexpected(patient.error());
+  return pair_of(std::move(*surgeon), std::move(*patient));
+}
+
+struct MergeFlags {
+  SessionPaths sessions;
+  std::string out;
+};
+
+ExitStatus run_merge(const MergeFlags& flags) {
+  const auto session = load_pair(flags.sessions);
+  if (!session) return exit_status_of(session.error());
+  const auto surgeon = open_session(flags.sessions.surgeon);
+  const auto patient = open_session(flags.sessions.patient);
+  if (!surgeon || !patient) return exit_status_of(!surgeon ? surgeon.error() : patient.error());
+  auto sink = record::FileSink::create(flags.out);
+  if (!sink) return cannot_open(sink.error().text);
+  const auto merged = merge_files({surgeon->bytes(), patient->bytes()}, *session, *sink);
+  if (!merged) return cannot_open(merged.error().text);
+  std::cout << *merged << " messages on the surgeon's line of time, laid there by "
+            << session->time_line.source;
+  if (session->time_line.known) {
+    std::cout << ", to " << fixed(seconds(session->time_line.uncertainty) * 1e3, 3) << " ms";
+  }
+  std::cout << '\n';
+  return {};
+}
+
+void declare(config::CommandLine& line, MergeFlags& flags) {
+  line.argument("SURGEON", flags.sessions.surgeon, "session file of the surgeon's site");
+  line.required();
+  line.argument("PATIENT", flags.sessions.patient, "session file of the patient's site");
+  line.required();
+  line.argument("OUT", flags.out, "new file; must not exist");
+  line.required();
+}
+
+struct ExportFlags {
+  std::string file;
+  std::string out;
+  std::string topics;
+  std::string format{"csv"};
+  std::optional<double> from;
+  std::optional<double> to;
+};
+
+ExitStatus run_export(const ExportFlags& flags) {
+  const auto file = open_session(flags.file);
+  if (!file) return exit_status_of(file.error());
+  ExportAsk ask;
+  ask.format = flags.format == "mat" ? ExportFormat::Mat : ExportFormat::Csv;
+  ask.from = flags.from.value_or(-std::numeric_limits<double>::infinity());
+  ask.to = flags.to;
+  std::stringstream list{flags.topics};
+  for (std::string topic; std::getline(list, topic, ',');) ask.topics.push_back(topic);
+  const auto rows = export_file(file->bytes(), ask, flags.out);
+  if (!rows) return config::refusal("palp-review", rows.error());
+  std::cout << *rows << " messages in " << harmless_line(flags.out) << '\n';
+  return {};
+}
+
+void declare(config::CommandLine& line, ExportFlags& flags) {
+  line.argument("FILE", flags.file, "session file, never changed");
+  line.required();
+  line.text(
+      "--topics", flags.topics, "LIST", "surgeon/tick,surgeon/link: palp-review info lists them");
+  line.required();
+  line.text("--out", flags.out, "FILE", "new file; must not exist");
+  line.required();
+  line.choice(
+      "--format", flags.format, {"csv", "mat"}, "csv: one topic; mat: MATLAB, Octave, R, Python");
+  const config::NumberRange span{.min = 0, .max = 1e9, .unit = "s"};
+  line.number("--from", flags.from, span, "since the file's first sample");
+  line.number("--to", flags.to, span, "since the file's first sample; it is left out");
+}
+
 struct ReplayFlags {
   std::vector<std::string> files;
   std::string set;
@@ -128,14 +213,6 @@ void declare(config::CommandLine& line, ReplayFlags& flags) {
   line.text("--coupling", flags.ask.coupling, "NAME", "what would this one's half have said?");
   line.choice("--estimator", flags.ask.estimator, {"bayes", "paper"}, "and this estimator?");
   line.text("--set", flags.set, "PATH=VALUE", "and with this setting of the site?");
-}
-
-Result<SessionPair> load_pair(const SessionPaths& paths) {
-  auto surgeon = load_site(paths.surgeon, link::Role::Surgeon);
-  if (!surgeon) return tl::unexpected(surgeon.error());
-  auto patient = load_site(paths.patient, link::Role::Patient);
-  if (!patient) return tl::unexpected(patient.error());
-  return pair_of(std::move(*surgeon), std::move(*patient));
 }
 
 struct MetricsFlags {
@@ -206,6 +283,10 @@ int run(int argc, char** argv) {
   }
   recovery.argument("OUT", out, "new file; must not exist");
   recovery.required();
+  MergeFlags merge;
+  declare(line.verb("merge", "both sites' files as one, on one line of time"), merge);
+  ExportFlags exported;
+  declare(line.verb("export", "numbers of chosen topics as CSV or MAT"), exported);
   ReplayFlags replay;
   declare(line.verb("replay", "do a site's ticks again; exit code 1 at the first difference"),
           replay);
@@ -214,6 +295,8 @@ int run(int argc, char** argv) {
     const std::string verb = line.chosen_verb();
     if (verb == "info") return run_info(in);
     if (verb == "check") return run_check(in);
+    if (verb == "merge") return run_merge(merge);
+    if (verb == "export") return run_export(exported);
     if (verb == "replay") return run_replay(replay);
     return verb == "recover" ? run_recover(in, out) : run_metrics(flags);
   });

@@ -91,6 +91,22 @@ TEST_F(PalpReviewTest, AFileThatIsNoSessionFileIsBadInputAndNothingIsMadeOfIt) {
   EXPECT_EQ(run("check text.mcap"), 1);
 }
 
+TEST_F(PalpReviewTest, MergeAndExportWriteNewFilesAlone) {
+  EXPECT_EQ(run("merge s.mcap p.mcap both.mcap"), 0);
+  EXPECT_EQ(run("check both.mcap"), 0);
+  EXPECT_EQ(run("merge s.mcap p.mcap both.mcap"), 3) << "never over an existing file";
+  EXPECT_EQ(run("export s.mcap --topics surgeon/tick --from 1 --to 2 --out t.csv"), 0);
+  EXPECT_EQ(text("t.csv").find("t_s,stamp_ns,state"), 0U);
+  EXPECT_EQ(run("export s.mcap --topics surgeon/tick --out t.csv"), 3);
+  EXPECT_EQ(run("export s.mcap --topics surgeon/nothing --out n.csv"), 2);
+  EXPECT_FALSE(fs::exists(folder_ + "/n.csv"));
+}
+
+TEST_F(PalpReviewTest, ReplaySaysInASentenceWhatAFileLacks) {
+  EXPECT_EQ(run("replay s.mcap"), 2);
+  EXPECT_NE(text("output").find("config.textproto"), std::string::npos);
+}
+
 TEST_F(PalpReviewTest, WrongFilesAndFlagsHaveTheirExitCodes) {
   EXPECT_EQ(run("info nothing.mcap"), 3);
   EXPECT_EQ(run("metrics --surgeon nothing.mcap --patient p.mcap"), 3);
