@@ -18,7 +18,7 @@ enum class ExportFormat : std::uint8_t {
 
 struct ExportAsk {
   std::vector<std::string> topics{};  ///< "surgeon/tick"; CSV: exactly one
-  double from{};                    ///< [s], since the file's first sample
+  double from{};                      ///< [s], since the file's first sample
   std::optional<double> to{};         ///< [s], absent: the end
   ExportFormat format{ExportFormat::Csv};
 };

@@ -20,6 +20,8 @@
 #include "review/merge.h"
 #include "review/recover.h"
 #include "review/replay_command.h"
+#include "review/report_page.h"
+#include "review/session_metrics.h"
 #include "review/taps.h"
 #include "review/text.h"
 #include "review/time_line.h"
@@ -220,6 +222,8 @@ struct MetricsFlags {
   SessionPaths reports;
   std::string relay;
   std::string report;
+  std::string page;  ///< of HTML
+  bool json{};
   Asked asked;
 };
 
@@ -237,14 +241,25 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
     tissue = std::move(*table);
   }
   const auto taps = match_taps(*surgeon, *patient, session->time_line, tissue ? &*tissue : nullptr);
-  std::cout << tap_table(taps, overall_depth(taps));
-  if (flags.report.empty()) {
+  if (!flags.json && flags.page.empty()) std::cout << tap_table(taps, overall_depth(taps));
+  if (flags.report.empty() && flags.page.empty() && !flags.json) {
     return {};
   }
   const ProgramReports reports{.surgeon = optional_text(flags.reports.surgeon),
                                .patient = optional_text(flags.reports.patient),
                                .relay = optional_text(flags.relay)};
-  const auto document = demo_report(*surgeon, *patient, taps, flags.asked, reports, flags.sessions);
+  const SessionTicks ticks = session_ticks(*session, tissue ? &*tissue : nullptr);
+  const auto document = demo_report(
+      *surgeon, *patient, taps, flags.asked, reports, flags.sessions, metrics_json(ticks));
+  if (flags.json) std::cout << document;
+  if (!flags.page.empty()) {
+    const std::string page = report_page(*session, ticks, document);
+    if (const auto written = config::write_whole_file(flags.page, page); !written) {
+      return cannot_open("--out: " + written.error().text);
+    }
+    std::cout << "report: " << harmless_line(flags.page) << '\n';
+  }
+  if (flags.report.empty()) return {};
   if (const auto written = config::write_whole_file(flags.report, document); !written) {
     return cannot_open("--report: " + written.error().text);
   }
@@ -290,7 +305,13 @@ int run(int argc, char** argv) {
   ReplayFlags replay;
   declare(line.verb("replay", "do a site's ticks again; exit code 1 at the first difference"),
           replay);
-  declare(line.verb("metrics", "taps, depth and counters of a session"), flags);
+  auto& metrics = line.verb("metrics", "taps, depth, metrics and counters of a session");
+  declare(metrics, flags);
+  metrics.toggle("--json", flags.json, "print the report in place of the table");
+  auto& report = line.verb("report", "a page of HTML that tells how the session went");
+  declare(report, flags);
+  report.text("--out", flags.page, "FILE", "the page; written over");
+  report.required();
   return config::run_program(line, argc, argv, [&] {
     const std::string verb = line.chosen_verb();
     if (verb == "info") return run_info(in);

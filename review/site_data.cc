@@ -21,7 +21,13 @@ struct Collector {
                            .velocity = tick.velocity,
                            .force = tick.force,
                            .place = tick.place});
+    data.states.push_back(tick.state);
   }
+  void operator()(const HandReading& hand) const {
+    const std::uint32_t before = data.phases.empty() ? 0 : data.phases.back().phase;
+    if (hand.script_phase != before) data.phases.push_back({hand.at, hand.script_phase});
+  }
+  void operator()(const Note& note) const { data.notes.push_back(note); }
   void operator()(const LinkHeard& heard) const {
     const bool known = !data.sessions.empty() && data.sessions.back().id == heard.session_id;
     if (heard.session_id != 0 && !known) data.sessions.push_back({heard.session_id, heard.at});
@@ -89,6 +95,9 @@ Result<SiteData> load_site(std::span<const std::byte> file,
   data.clock = reader.clock();
   data.metadata = reader.metadata("palp");
   data.records_dropped = reader.metadata("palp.summary", "records_dropped");
+  if (const auto text = reader.attachment("config.textproto")) {
+    data.settings = std::string{*text};
+  }
   if (const auto csv = reader.attachment("tissue.csv")) {
     data.tissue_csv = std::string{*csv};
   }

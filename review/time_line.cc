@@ -34,7 +34,14 @@ void keep_between(std::vector<Timed>& list, TimePoint from, TimePoint to, const 
 /// Leaves out what is not between.
 void keep_between(SiteData& site, TimePoint from, TimePoint to) {
   const auto at = [](const auto& one) { return one.at; };
+  std::vector<SiteState> states;
+  for (std::size_t i = 0; i < site.motion.size(); ++i) {
+    if (site.motion[i].at >= from && site.motion[i].at < to) states.push_back(site.states[i]);
+  }
+  site.states = std::move(states);
   keep_between(site.motion, from, to, at);
+  keep_between(site.phases, from, to, at);
+  keep_between(site.notes, from, to, at);
   keep_between(site.transitions, from, to, at);
   keep_between(site.links, from, to, at);
   keep_between(site.reports, from, to, at);

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "common/config/number.h"
 #include "common/link/session.h"
 #include "lab/run/session_setup.h"
 #include "patient_site/tissue_record.h"
@@ -39,6 +40,9 @@ SessionFiles::SessionFiles(const Scenario& scenario, const RunFiles& files, Time
   if (scenario.bare) return;
   record::SessionInfo surgeon = info_of(scenario, link::Role::Surgeon, start);
   surgeon.metadata.emplace_back("hand", describe(surgeon::facts_of(scenario.hand)));
+  surgeon.metadata.emplace_back(
+      "script_round_trip_s",
+      config::number_text(seconds(scenario.up.delay.mean + scenario.down.delay.mean)));
   surgeon_.emplace(files.surgeon != nullptr ? *files.surgeon : null_surgeon_, surgeon);
   record::SessionInfo patient = info_of(scenario, link::Role::Patient, start);
   const PatientDevices devices = patient::facts_of(scenario.tissue);

@@ -73,6 +73,7 @@ TEST(SessionPairTest, SessionsOfOtherSurgeonsAreLeftOut) {
     judge::Motion motion;
     motion.at = at_ms(ms);
     patient.motion.push_back(motion);
+    patient.states.push_back(SiteState::Engaged);
   }
   const auto pair = pair_of(surgeon, patient);
   ASSERT_TRUE(pair);
