@@ -101,6 +101,13 @@ class WorkAccount {
   double net_min_{};   ///< [J]
 };
 
+/// [N] of the tissue's law `indentation` [m] past its surface; above it there is none.
+double truth_of(const judge::TissueTable* tissue, const Place& place, double indentation) {
+  if (tissue == nullptr) return judge::kUndefined;
+  if (indentation <= 0) return 0;
+  return tissue->force(place, indentation).value_or(judge::kUndefined);
+}
+
 constexpr double kPeriod = 1e-3;  ///< [s], of a tick
 
 }  // namespace
@@ -127,9 +134,8 @@ SessionTicks session_ticks(const SessionPair& session, const judge::TissueTable*
     tick.hand = hand.position - surface;
     tick.hand_velocity = hand.velocity;
     tick.hand_force = hand.force;
-    tick.force_true = tissue == nullptr
-                          ? judge::kUndefined
-                          : tissue->force(hand.place, tick.hand).value_or(judge::kUndefined);
+    tick.force_true = truth_of(tissue, hand.place, tick.hand);
+    tick.tip = judge::kUndefined;
     if (tip != nullptr) {
       tick.contact_force = tip->force;
       tick.tip = tip->position - surface;

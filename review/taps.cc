@@ -165,7 +165,7 @@ std::vector<Tap> match_taps(const SiteData& surgeon,
 std::optional<judge::DepthStatement> overall_depth(const std::vector<Tap>& taps) {
   std::vector<DepthEstimate> over;
   for (const Tap& tap : taps) {
-    if (site_at(tap.place) == Site::B && tap.kind == StrokeKind::Tap) {
+    if (site_at(tap.place) == Site::B) {
       over.push_back(tap.estimate);
     }
   }

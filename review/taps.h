@@ -38,7 +38,7 @@ struct Tap {
                                           const TimeLine& line,
                                           const judge::TissueTable* tissue);
 
-/// What all taps over the inclusion say together; nullopt: there is none.
+/// What all strokes over the inclusion say together, as the lab has it; nullopt: there is none.
 [[nodiscard]] std::optional<judge::DepthStatement> overall_depth(const std::vector<Tap>& taps);
 
 /// For people, one line each.
