@@ -28,6 +28,7 @@ std::optional<record::SessionEntry> LoggedTicks::next_entry() {
   while (present_ < files_.size()) {
     if (!reader_) reader_.emplace(files_[present_]);
     if (auto entry = reader_->next()) return entry;
+    damaged_ += reader_->report().chunks_damaged;
     reader_.reset();
     ++present_;
   }

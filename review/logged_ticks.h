@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -71,6 +72,10 @@ class LoggedTicks {
   explicit LoggedTicks(const RunBytes& files) : files_{files} {}
   /// Without what the estimator's thread said; nullopt: the end.
   std::optional<LoggedTick> next();
+  /// Chunks that could not be read, so far: their ticks are missing.
+  [[nodiscard]] std::uint64_t damaged() const noexcept {
+    return damaged_ + (reader_ ? reader_->report().chunks_damaged : 0);
+  }
   /// Of the first tick; next() has given one.
   [[nodiscard]] TimePoint began_at() const { return began_at_.value_or(TimePoint{}); }
 
@@ -79,6 +84,7 @@ class LoggedTicks {
 
   const RunBytes& files_;
   std::size_t present_{};
+  std::uint64_t damaged_{};  ///< in files read to their end
   std::optional<record::SessionReader> reader_;
   std::optional<TimePoint> began_at_;
 };

@@ -31,6 +31,13 @@ tl::unexpected<Error> lacks(const char* what, const LoggedTick& tick) {
       " in the file");
 }
 
+tl::unexpected<Error> torn(const LoggedTick& tick) {
+  return fail(number_text("the file is damaged before its tick at ",
+                          seconds(tick.heard->at.time_since_epoch()),
+                          6,
+                          " s, and a site is done again only from all of its ticks"));
+}
+
 using Estimates = std::map<std::uint32_t, DepthEstimate>;
 
 Estimates estimates_of(const RunBytes& files) {
@@ -154,6 +161,7 @@ class PatientRun {
   Result<std::optional<LoggedTick>> next() {
     auto tick = ticks_.next();
     if (!tick) return std::optional<LoggedTick>{};
+    if (ticks_.damaged() > 0) return torn(*tick);
     if (!tick->stage || !tick->force) return lacks("no reading of stage or sensor", *tick);
     if (!site_ || tick->own_devices) {
       const DeviceFacts own = tick->own_devices.value_or(DeviceFacts{});
@@ -210,6 +218,7 @@ Result<ReplayReport> replay_surgeon(const RunBytes& files,
     const std::vector<Record>& again = site->step(*tick);
     ++report.ticks;
     report.records += again.size();
+    if (ticks.damaged() > 0) return torn(*tick);
     report.difference = comparison.compare(tick->records, again, ticks.began_at());
     if (!report.difference.empty()) break;
   }

@@ -88,8 +88,10 @@ Result<SiteData> load_site(std::span<const std::byte> file,
     std::visit(Collector{data}, entry->record);
   }
   data.report = reader.report();
-  if (data.report.messages == 0 && !data.report.faults.empty()) {
-    return fail(name + ": " + data.report.faults.front().text);
+  if (data.report.messages == 0) {
+    return fail(name + ": " +
+                (data.report.faults.empty() ? "there is no message of a session in it"
+                                            : data.report.faults.front().text));
   }
   data.began_at = reader.began_at().value_or(TimePoint{});
   data.clock = reader.clock();

@@ -102,6 +102,20 @@ TEST_F(PalpReviewTest, MergeAndExportWriteNewFilesAlone) {
   EXPECT_FALSE(fs::exists(folder_ + "/n.csv"));
 }
 
+TEST_F(PalpReviewTest, ReportWritesAPageThatHoldsTheNumbers) {
+  EXPECT_EQ(run("report --surgeon s.mcap --patient p.mcap --out r.html"), 0);
+  EXPECT_EQ(text("output"), "report: r.html\n");
+  EXPECT_NE(text("r.html").find("\"schema\":\"palp.demo/1\""), std::string::npos);
+  save("empty.mcap", {});
+  EXPECT_EQ(run("report --surgeon empty.mcap --patient p.mcap --out e.html"), 2);
+  EXPECT_FALSE(fs::exists(folder_ + "/e.html"));
+}
+
+TEST_F(PalpReviewTest, MetricsPrintsTheReportWhereAsked) {
+  EXPECT_EQ(run("metrics --json --surgeon s.mcap --patient p.mcap"), 0);
+  EXPECT_EQ(nlohmann::json::parse(text("output"))["metrics"]["phases_known"], false);
+}
+
 TEST_F(PalpReviewTest, ReplaySaysInASentenceWhatAFileLacks) {
   EXPECT_EQ(run("replay s.mcap"), 2);
   EXPECT_NE(text("output").find("config.textproto"), std::string::npos);

@@ -30,6 +30,22 @@ TEST(ReplayCommandTest, TellsWhatAnotherCouplingsHalfWouldHaveSaid) {
   EXPECT_THAT(answer->text, HasSubstr("target of the stage"));
 }
 
+TEST(ReplayCommandTest, ADamagedFileIsNoDifference) {
+  const auto bytes = three_seconds().surgeon.bytes();
+  std::vector<std::byte> damaged{bytes.begin(), bytes.end()};
+  damaged[damaged.size() / 2] ^= std::byte{1};
+  const auto answer = replay_command({damaged}, {});
+  ASSERT_FALSE(answer);
+  EXPECT_THAT(answer.error().text, HasSubstr("damaged"));
+}
+
+TEST(ReplayCommandTest, AFileThatWasCutOffIsDoneAgainToItsEnd) {
+  const auto bytes = three_seconds().surgeon.bytes();
+  const auto answer = replay_command({bytes.first(bytes.size() / 2)}, {});
+  ASSERT_TRUE(answer) << answer.error().text;
+  EXPECT_TRUE(answer->same) << answer->text;
+}
+
 TEST(ReplayCommandTest, RefusesInASentence) {
   const auto of_surgeon = replay_command({three_seconds().surgeon.bytes()}, {.estimator = "paper"});
   ASSERT_FALSE(of_surgeon);
