@@ -14,6 +14,7 @@
 #include "common/record/mapped_file.h"
 #include "common/record/mcap_reader.h"
 #include "review/check.h"
+#include "review/compare.h"
 #include "review/demo_report.h"
 #include "review/export.h"
 #include "review/info.h"
@@ -227,19 +228,42 @@ struct MetricsFlags {
   Asked asked;
 };
 
+/// The tissue of the patient's file; nothing: it holds none.
+Result<std::optional<judge::TissueTable>> tissue_of(const SiteData& patient,
+                                                    const std::string& path) {
+  if (!patient.tissue_csv) return std::optional<judge::TissueTable>{};
+  auto table = judge::TissueTable::parse(*patient.tissue_csv);
+  if (!table) return fail(path, table.error());
+  return std::optional{std::move(*table)};
+}
+
+ExitStatus run_compare(const std::vector<std::string>& files) {
+  if (files.size() % 2 != 0) {
+    return bad_input("compare needs the files in pairs: surgeon, patient, surgeon, patient, ...");
+  }
+  std::vector<Compared> sessions;
+  for (std::size_t i = 0; i + 1 < files.size(); i += 2) {
+    const auto session = load_pair({.surgeon = files[i], .patient = files[i + 1]});
+    if (!session) return exit_status_of(session.error());
+    const auto tissue = tissue_of(session->patient, files[i + 1]);
+    if (!tissue) return exit_status_of(tissue.error());
+    const SessionTicks ticks = session_ticks(*session, *tissue ? &**tissue : nullptr);
+    sessions.push_back({.name = std::to_string(i / 2 + 1),
+                        .coupling = session->surgeon.entry("coupling").value_or(""),
+                        .metrics = session_metrics(ticks)});
+  }
+  std::cout << comparison_text(sessions);
+  return {};
+}
+
 ExitStatus run_metrics(const MetricsFlags& flags) {
   auto session = load_pair(flags.sessions);
   if (!session) return exit_status_of(session.error());
   const SiteData* const surgeon = &session->surgeon;
   const SiteData* const patient = &session->patient;
-  std::optional<judge::TissueTable> tissue;
-  if (patient->tissue_csv) {
-    auto table = judge::TissueTable::parse(*patient->tissue_csv);
-    if (!table) {
-      return bad_input(flags.sessions.patient + ": " + table.error().text);
-    }
-    tissue = std::move(*table);
-  }
+  const auto tissue_told = tissue_of(*patient, flags.sessions.patient);
+  if (!tissue_told) return exit_status_of(tissue_told.error());
+  const std::optional<judge::TissueTable>& tissue = *tissue_told;
   const auto taps = match_taps(*surgeon, *patient, session->time_line, tissue ? &*tissue : nullptr);
   if (!flags.json && flags.page.empty()) std::cout << tap_table(taps, overall_depth(taps));
   if (flags.report.empty() && flags.page.empty() && !flags.json) {
@@ -305,6 +329,10 @@ int run(int argc, char** argv) {
   ReplayFlags replay;
   declare(line.verb("replay", "do a site's ticks again; exit code 1 at the first difference"),
           replay);
+  std::vector<std::string> compared;
+  auto& compare = line.verb("compare", "the metrics of several sessions side by side");
+  compare.arguments("FILE", compared, "session files: surgeon, patient, surgeon, patient, ...");
+  compare.required();
   auto& metrics = line.verb("metrics", "taps, depth, metrics and counters of a session");
   declare(metrics, flags);
   metrics.toggle("--json", flags.json, "print the report in place of the table");
@@ -316,6 +344,7 @@ int run(int argc, char** argv) {
     const std::string verb = line.chosen_verb();
     if (verb == "info") return run_info(in);
     if (verb == "check") return run_check(in);
+    if (verb == "compare") return run_compare(compared);
     if (verb == "merge") return run_merge(merge);
     if (verb == "export") return run_export(exported);
     if (verb == "replay") return run_replay(replay);

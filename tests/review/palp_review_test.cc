@@ -116,6 +116,12 @@ TEST_F(PalpReviewTest, MetricsPrintsTheReportWhereAsked) {
   EXPECT_EQ(nlohmann::json::parse(text("output"))["metrics"]["phases_known"], false);
 }
 
+TEST_F(PalpReviewTest, CompareTakesSessionsInPairs) {
+  EXPECT_EQ(run("compare s.mcap p.mcap s.mcap p.mcap"), 0);
+  EXPECT_NE(text("output").find("force_peak_n"), std::string::npos);
+  EXPECT_EQ(run("compare s.mcap p.mcap s.mcap"), 2);
+}
+
 TEST_F(PalpReviewTest, ReplaySaysInASentenceWhatAFileLacks) {
   EXPECT_EQ(run("replay s.mcap"), 2);
   EXPECT_NE(text("output").find("config.textproto"), std::string::npos);
