@@ -45,7 +45,7 @@ class Selection {
   }
 
  private:
-  const std::string& name(link::Role site, record::Topic topic) const {
+  [[nodiscard]] const std::string& name(link::Role site, record::Topic topic) const {
     static const std::array<std::vector<record::TopicFormat>, 2> all{
         record::topics_of(link::Role::Surgeon), record::topics_of(link::Role::Patient)};
     const auto& topics = all[site == link::Role::Patient ? 1 : 0];

@@ -29,7 +29,7 @@ NamedNumber named(std::string name, Number number) {
 
 }  // namespace
 
-bool NamedNumber::operator==(const NamedNumber& other) const noexcept {
+bool NamedNumber::operator==(const NamedNumber& other) const {
   if (name != other.name || value.index() != other.value.index()) return false;
   if (const auto* real = std::get_if<double>(&value)) {
     return std::bit_cast<std::uint64_t>(*real) ==
@@ -38,7 +38,7 @@ bool NamedNumber::operator==(const NamedNumber& other) const noexcept {
   return value == other.value;
 }
 
-double NamedNumber::number() const noexcept {
+double NamedNumber::number() const {
   return std::visit([](auto number) { return static_cast<double>(number); }, value);
 }
 
@@ -57,7 +57,7 @@ NamedNumbers numbers_of(const Record& record, link::Role site) {
   return numbers;
 }
 
-TimePoint instant_of(const Record& record) noexcept {
+TimePoint instant_of(const Record& record) {
   if (const auto* estimate = std::get_if<DepthEstimate>(&record)) return estimate->stroke_ended_at;
   TimePoint at{};
   std::visit(

@@ -16,8 +16,8 @@ struct NamedNumber {
   std::variant<double, std::int64_t, std::uint64_t> value;
 
   /// Equal to the bit: a NaN is itself, and -0 is not 0.
-  [[nodiscard]] bool operator==(const NamedNumber& other) const noexcept;
-  [[nodiscard]] double number() const noexcept;
+  [[nodiscard]] bool operator==(const NamedNumber& other) const;
+  [[nodiscard]] double number() const;
   [[nodiscard]] std::string text() const;  ///< reads back as the same number
 };
 using NamedNumbers = std::vector<NamedNumber>;
@@ -26,6 +26,6 @@ using NamedNumbers = std::vector<NamedNumber>;
 [[nodiscard]] NamedNumbers numbers_of(const Record& record, link::Role site);
 
 /// The record's own instant.
-[[nodiscard]] TimePoint instant_of(const Record& record) noexcept;
+[[nodiscard]] TimePoint instant_of(const Record& record);
 
 }  // namespace palp::review
