@@ -8,10 +8,10 @@
 #include "common/config/settings_text.h"
 #include "common/core/whole_file.h"
 #include "common/coupling/any_coupling.h"
+#include "judge/metric_table.h"
 #include "lab/report/batch_report.h"
 #include "lab/report/metric_plot.h"
 #include "lab/report/stability_map.h"
-#include "lab/run/metric_table.h"
 
 namespace palp::lab {
 namespace {
@@ -78,9 +78,10 @@ struct Run {
 };
 
 Result<void> check_metric(const BatchArguments& arguments) {
-  if (metric_index(arguments.metric)) return {};
+  if (judge::metric_index(arguments.metric)) return {};
   std::string sentence = "there is no metric '" + arguments.metric + "', there are:";
-  for (const Metric& metric : metric_table()) sentence.append(" ").append(metric.name);
+  for (const judge::Metric& metric : judge::metric_table())
+    sentence.append(" ").append(metric.name);
   return fail(sentence);
 }
 

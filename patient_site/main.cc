@@ -134,7 +134,7 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   info.metadata.emplace_back("estimator", settings->estimator_kind);
   info.metadata.emplace_back("stage", describe(facts.stage));
   info.metadata.emplace_back("force_sensor", describe(facts.sensor));
-  if (tissue_known) describe_tissue(*phantom, simulation.surface_offset, info);
+  if (tissue_known) describe_tissue(*phantom, simulation.surface_offset, settings->node.gate, info);
   return Plan{std::move(*settings),
               std::move(*phantom),
               std::move(*devices),

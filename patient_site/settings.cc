@@ -119,6 +119,8 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
   const auto coupling = settings::make_coupling(message.coupling());
   if (!coupling) return fail(coupling.error().text);
   if (const auto known = check_devices(message); !known) return fail(known.error().text);
+  const auto record = settings::make_record(message.record());
+  if (!record) return fail(record.error().text);
   Settings made;
   made.loop = settings::make_loop(message.loop());
   const auto estimator = make_estimator(message.estimator(), made.loop.period);
@@ -139,7 +141,7 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
   made.estimator_kind = message.estimator().kind();
   made.estimator = *estimator;
   made.impairment = settings::make_impairment(message.impairment());
-  made.record = settings::make_record(message.record());
+  made.record = *record;
   made.duration = from_seconds(message.duration_s());
   made.seed = message.seed();
   return made;

@@ -5,12 +5,16 @@
 
 namespace palp::patient {
 
-void describe_tissue(const Phantom& phantom, double surface_offset, record::SessionInfo& info) {
+void describe_tissue(const Phantom& phantom,
+                     double surface_offset,
+                     const MotionGateConfig& gate,
+                     record::SessionInfo& info) {
   const auto optional_text = [](const std::optional<double>& value, double unit) {
     return value ? config::number_text(*value / unit) : std::string{};
   };
   info.metadata.emplace_back("surface_offset_mm",
                              config::number_text(surface_offset / kMillimetre));
+  info.metadata.emplace_back(kTravelMaxKey, config::number_text(gate.travel_max));
   info.metadata.emplace_back("phantom_name", phantom.name);
   info.metadata.emplace_back("phantom_depth_mm", optional_text(phantom.depth, kMillimetre));
   info.metadata.emplace_back("phantom_radius_mm", optional_text(phantom.radius, kMillimetre));

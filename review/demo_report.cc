@@ -204,7 +204,8 @@ std::string demo_report(const SiteData& surgeon,
                         const std::vector<Tap>& taps,
                         const Asked& asked,
                         const ProgramReports& reports,
-                        const SessionPaths& paths) {
+                        const SessionPaths& paths,
+                        const config::Json& metrics) {
   const Json surgeon_report = parsed(reports.surgeon);
   const Json patient_report = parsed(reports.patient);
   Json json;
@@ -224,6 +225,7 @@ std::string demo_report(const SiteData& surgeon,
     json["taps"].push_back(tap_json(tap, patient));
   }
   json["depth"] = depth_json(overall_depth(taps));
+  json["metrics"] = metrics;
   json["sites"]["surgeon"] = site_json(surgeon, surgeon_report, paths.surgeon);
   json["sites"]["patient"] = site_json(patient, patient_report, paths.patient);
   json["transitions"] = transitions_json(surgeon, patient);

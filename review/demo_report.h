@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/config/json.h"
 #include "review/site_data.h"
 #include "review/taps.h"
 
@@ -32,12 +33,13 @@ struct SessionPaths {
   std::string patient;
 };
 
-/// The JSON document `palp.demo/1`.
+/// The JSON document `palp.demo/1`. `metrics`: as metrics_json().
 [[nodiscard]] std::string demo_report(const SiteData& surgeon,
                                       const SiteData& patient,
                                       const std::vector<Tap>& taps,
                                       const Asked& asked,
                                       const ProgramReports& reports,
-                                      const SessionPaths& paths);
+                                      const SessionPaths& paths,
+                                      const config::Json& metrics = nullptr);
 
 }  // namespace palp::review

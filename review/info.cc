@@ -45,13 +45,17 @@ std::string describe(std::span<const std::byte> file) {
   }
   std::string text;
   for (const auto& [key, value] : reader.metadata("palp")) {
-    text += left(printable(key), 22) + harmless_line(value) + '\n';
+    text += left(printable(key), 26) + harmless_line(value) + '\n';
+  }
+  for (const record::SessionName& session : reader.sessions()) {
+    text += left("session " + printable(session.number), 26) + printable(session.id) + ", began " +
+            printable(session.began_utc) + '\n';
   }
   if (reader.began_at() && reader.ended_at()) {
-    text += left("duration", 22) +
+    text += left("duration", 26) +
             fixed(seconds(elapsed(*reader.began_at(), *reader.ended_at())), 3) + " s\n";
   }
-  text += left("records", 22) + std::to_string(records);
+  text += left("records", 26) + std::to_string(records);
   if (const auto dropped = reader.metadata("palp.summary", "records_dropped")) {
     text += ", dropped " + printable(*dropped);
   }

@@ -2,6 +2,8 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <limits>
+#include <sstream>
 #include <string>
 
 #include "common/config/command_line.h"
@@ -12,10 +14,18 @@
 #include "common/record/mapped_file.h"
 #include "common/record/mcap_reader.h"
 #include "review/check.h"
+#include "review/compare.h"
 #include "review/demo_report.h"
+#include "review/export.h"
 #include "review/info.h"
+#include "review/merge.h"
 #include "review/recover.h"
+#include "review/replay_command.h"
+#include "review/report_page.h"
+#include "review/session_metrics.h"
 #include "review/taps.h"
+#include "review/text.h"
+#include "review/time_line.h"
 
 namespace palp::review {
 namespace {
@@ -97,37 +107,183 @@ std::string optional_text(const std::string& path) {
   return {std::istreambuf_iterator<char>{file}, {}};
 }
 
+Result<SessionPair> load_pair(const SessionPaths& paths) {
+  auto surgeon = load_site(paths.surgeon, link::Role::Surgeon);
+  if (!surgeon) return tl::unexpected(surgeon.error());
+  auto patient = load_site(paths.patient, link::Role::Patient);
+  if (!patient) return tl::unexpected(patient.error());
+  return pair_of(std::move(*surgeon), std::move(*patient));
+}
+
+struct MergeFlags {
+  SessionPaths sessions;
+  std::string out;
+};
+
+ExitStatus run_merge(const MergeFlags& flags) {
+  const auto session = load_pair(flags.sessions);
+  if (!session) return exit_status_of(session.error());
+  const auto surgeon = open_session(flags.sessions.surgeon);
+  const auto patient = open_session(flags.sessions.patient);
+  if (!surgeon || !patient) return exit_status_of(!surgeon ? surgeon.error() : patient.error());
+  auto sink = record::FileSink::create(flags.out);
+  if (!sink) return cannot_open(sink.error().text);
+  const auto merged = merge_files({surgeon->bytes(), patient->bytes()}, *session, *sink);
+  if (!merged) return cannot_open(merged.error().text);
+  std::cout << *merged << " messages on the surgeon's line of time, laid there by "
+            << session->time_line.source;
+  if (session->time_line.known) {
+    std::cout << ", to " << fixed(seconds(session->time_line.uncertainty) * 1e3, 3) << " ms";
+  }
+  std::cout << '\n';
+  return {};
+}
+
+void declare(config::CommandLine& line, MergeFlags& flags) {
+  line.argument("SURGEON", flags.sessions.surgeon, "session file of the surgeon's site");
+  line.required();
+  line.argument("PATIENT", flags.sessions.patient, "session file of the patient's site");
+  line.required();
+  line.argument("OUT", flags.out, "new file; must not exist");
+  line.required();
+}
+
+struct ExportFlags {
+  std::string file;
+  std::string out;
+  std::string topics;
+  std::string format{"csv"};
+  std::optional<double> from;
+  std::optional<double> to;
+};
+
+ExitStatus run_export(const ExportFlags& flags) {
+  const auto file = open_session(flags.file);
+  if (!file) return exit_status_of(file.error());
+  ExportAsk ask;
+  ask.format = flags.format == "mat" ? ExportFormat::Mat : ExportFormat::Csv;
+  ask.from = flags.from.value_or(-std::numeric_limits<double>::infinity());
+  ask.to = flags.to;
+  std::stringstream list{flags.topics};
+  for (std::string topic; std::getline(list, topic, ',');) ask.topics.push_back(topic);
+  const auto rows = export_file(file->bytes(), ask, flags.out);
+  if (!rows) return config::refusal("palp-review", rows.error());
+  std::cout << *rows << " messages in " << harmless_line(flags.out) << '\n';
+  return {};
+}
+
+void declare(config::CommandLine& line, ExportFlags& flags) {
+  line.argument("FILE", flags.file, "session file, never changed");
+  line.required();
+  line.text(
+      "--topics", flags.topics, "LIST", "surgeon/tick,surgeon/link: palp-review info lists them");
+  line.required();
+  line.text("--out", flags.out, "FILE", "new file; must not exist");
+  line.required();
+  line.choice(
+      "--format", flags.format, {"csv", "mat"}, "csv: one topic; mat: MATLAB, Octave, R, Python");
+  const config::NumberRange span{.min = 0, .max = 1e9, .unit = "s"};
+  line.number("--from", flags.from, span, "since the file's first sample");
+  line.number("--to", flags.to, span, "since the file's first sample; it is left out");
+}
+
+struct ReplayFlags {
+  std::vector<std::string> files;
+  std::string set;
+  ReplayAsk ask;
+};
+
+ExitStatus run_replay(ReplayFlags& flags) {
+  std::vector<record::MappedFile> files;
+  RunBytes bytes;
+  for (const std::string& path : flags.files) {
+    auto file = open_session(path);
+    if (!file) return exit_status_of(file.error());
+    files.push_back(std::move(*file));
+  }
+  bytes.reserve(files.size());
+  for (const record::MappedFile& file : files) bytes.push_back(file.bytes());
+  if (!flags.set.empty()) flags.ask.set.push_back(flags.set);
+  const auto answer = replay_command(bytes, flags.ask);
+  if (!answer) return bad_input(flags.files.front() + ": " + answer.error().text);
+  std::cout << answer->text;
+  return {answer->same ? ExitCode::Done : ExitCode::Missed, {}};
+}
+
+void declare(config::CommandLine& line, ReplayFlags& flags) {
+  line.arguments("FILE", flags.files, "session files of one run of a site, the first one first");
+  line.required();
+  line.text("--coupling", flags.ask.coupling, "NAME", "what would this one's half have said?");
+  line.choice("--estimator", flags.ask.estimator, {"bayes", "paper"}, "and this estimator?");
+  line.text("--set", flags.set, "PATH=VALUE", "and with this setting of the site?");
+}
+
 struct MetricsFlags {
   SessionPaths sessions;
   SessionPaths reports;
   std::string relay;
   std::string report;
+  std::string page;  ///< of HTML
+  bool json{};
   Asked asked;
 };
 
+/// The tissue of the patient's file; nothing: it holds none.
+Result<std::optional<judge::TissueTable>> tissue_of(const SiteData& patient,
+                                                    const std::string& path) {
+  if (!patient.tissue_csv) return std::optional<judge::TissueTable>{};
+  auto table = judge::TissueTable::parse(*patient.tissue_csv);
+  if (!table) return fail(path, table.error());
+  return std::optional{std::move(*table)};
+}
+
+ExitStatus run_compare(const std::vector<std::string>& files) {
+  if (files.size() % 2 != 0) {
+    return bad_input("compare needs the files in pairs: surgeon, patient, surgeon, patient, ...");
+  }
+  std::vector<Compared> sessions;
+  for (std::size_t i = 0; i + 1 < files.size(); i += 2) {
+    const auto session = load_pair({.surgeon = files[i], .patient = files[i + 1]});
+    if (!session) return exit_status_of(session.error());
+    const auto tissue = tissue_of(session->patient, files[i + 1]);
+    if (!tissue) return exit_status_of(tissue.error());
+    const SessionTicks ticks = session_ticks(*session, *tissue ? &**tissue : nullptr);
+    sessions.push_back({.name = std::to_string(i / 2 + 1),
+                        .coupling = session->surgeon.entry("coupling").value_or(""),
+                        .metrics = session_metrics(ticks)});
+  }
+  std::cout << comparison_text(sessions);
+  return {};
+}
+
 ExitStatus run_metrics(const MetricsFlags& flags) {
-  const auto surgeon = load_site(flags.sessions.surgeon, link::Role::Surgeon);
-  const auto patient = load_site(flags.sessions.patient, link::Role::Patient);
-  if (!surgeon || !patient) {
-    return exit_status_of(!surgeon ? surgeon.error() : patient.error());
-  }
-  std::optional<judge::TissueTable> tissue;
-  if (patient->tissue_csv) {
-    auto table = judge::TissueTable::parse(*patient->tissue_csv);
-    if (!table) {
-      return bad_input(flags.sessions.patient + ": " + table.error().text);
-    }
-    tissue = std::move(*table);
-  }
-  const auto taps = match_taps(*surgeon, *patient, tissue ? &*tissue : nullptr);
-  std::cout << tap_table(taps, overall_depth(taps));
-  if (flags.report.empty()) {
+  auto session = load_pair(flags.sessions);
+  if (!session) return exit_status_of(session.error());
+  const SiteData* const surgeon = &session->surgeon;
+  const SiteData* const patient = &session->patient;
+  const auto tissue_told = tissue_of(*patient, flags.sessions.patient);
+  if (!tissue_told) return exit_status_of(tissue_told.error());
+  const std::optional<judge::TissueTable>& tissue = *tissue_told;
+  const auto taps = match_taps(*surgeon, *patient, session->time_line, tissue ? &*tissue : nullptr);
+  if (!flags.json && flags.page.empty()) std::cout << tap_table(taps, overall_depth(taps));
+  if (flags.report.empty() && flags.page.empty() && !flags.json) {
     return {};
   }
   const ProgramReports reports{.surgeon = optional_text(flags.reports.surgeon),
                                .patient = optional_text(flags.reports.patient),
                                .relay = optional_text(flags.relay)};
-  const auto document = demo_report(*surgeon, *patient, taps, flags.asked, reports, flags.sessions);
+  const SessionTicks ticks = session_ticks(*session, tissue ? &*tissue : nullptr);
+  const auto document = demo_report(
+      *surgeon, *patient, taps, flags.asked, reports, flags.sessions, metrics_json(ticks));
+  if (flags.json) std::cout << document;
+  if (!flags.page.empty()) {
+    const std::string page = report_page(*session, ticks, document);
+    if (const auto written = config::write_whole_file(flags.page, page); !written) {
+      return cannot_open("--out: " + written.error().text);
+    }
+    std::cout << "report: " << harmless_line(flags.page) << '\n';
+  }
+  if (flags.report.empty()) return {};
   if (const auto written = config::write_whole_file(flags.report, document); !written) {
     return cannot_open("--report: " + written.error().text);
   }
@@ -166,11 +322,32 @@ int run(int argc, char** argv) {
   }
   recovery.argument("OUT", out, "new file; must not exist");
   recovery.required();
-  declare(line.verb("metrics", "taps, depth and counters of a session"), flags);
+  MergeFlags merge;
+  declare(line.verb("merge", "both sites' files as one, on one line of time"), merge);
+  ExportFlags exported;
+  declare(line.verb("export", "numbers of chosen topics as CSV or MAT"), exported);
+  ReplayFlags replay;
+  declare(line.verb("replay", "do a site's ticks again; exit code 1 at the first difference"),
+          replay);
+  std::vector<std::string> compared;
+  auto& compare = line.verb("compare", "the metrics of several sessions side by side");
+  compare.arguments("FILE", compared, "session files: surgeon, patient, surgeon, patient, ...");
+  compare.required();
+  auto& metrics = line.verb("metrics", "taps, depth, metrics and counters of a session");
+  declare(metrics, flags);
+  metrics.toggle("--json", flags.json, "print the report in place of the table");
+  auto& report = line.verb("report", "a page of HTML that tells how the session went");
+  declare(report, flags);
+  report.text("--out", flags.page, "FILE", "the page; written over");
+  report.required();
   return config::run_program(line, argc, argv, [&] {
     const std::string verb = line.chosen_verb();
     if (verb == "info") return run_info(in);
     if (verb == "check") return run_check(in);
+    if (verb == "compare") return run_compare(compared);
+    if (verb == "merge") return run_merge(merge);
+    if (verb == "export") return run_export(exported);
+    if (verb == "replay") return run_replay(replay);
     return verb == "recover" ? run_recover(in, out) : run_metrics(flags);
   });
 }

@@ -4,7 +4,7 @@
 
 #include "common/core/printable.h"
 #include "common/record/mcap_writer.h"
-#include "review/text.h"
+#include "common/record/wall_clock.h"
 
 namespace palp::review {
 namespace {
@@ -92,9 +92,8 @@ Result<Recovery> recover(std::span<const std::byte> file, record::ByteSink& out)
 
 std::string describe(const Recovery& recovery) {
   const record::McapReadReport& report = recovery.report;
-  std::string text{std::to_string(recovery.messages) + " messages saved, the last one logged at " +
-                   fixed(1e-9 * static_cast<double>(report.last_log_time), 3) +
-                   " s on the site's clock\n"};
+  std::string text{std::to_string(recovery.messages) + " messages saved, the last one at " +
+                   record::utc_text(report.last_log_time) + "\n"};
   text += report.closed ? "the file was closed in order\n"
                         : "the file was not closed; what came after the last message is lost, " +
                               std::to_string(report.bytes_unread) + " bytes of it are there\n";
@@ -103,8 +102,7 @@ std::string describe(const Recovery& recovery) {
   }
   for (const auto& [topic, loss] : recovery.losses) {
     text += printable(topic) + ": " + std::to_string(loss.messages) +
-            " messages lost, first after " + fixed(1e-9 * static_cast<double>(loss.after), 3) +
-            " s\n";
+            " messages lost, first after " + record::utc_text(loss.after) + "\n";
   }
   return text;
 }

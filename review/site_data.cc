@@ -21,8 +21,19 @@ struct Collector {
                            .velocity = tick.velocity,
                            .force = tick.force,
                            .place = tick.place});
+    data.states.push_back(tick.state);
+  }
+  void operator()(const HandReading& hand) const {
+    const std::uint32_t before = data.phases.empty() ? 0 : data.phases.back().phase;
+    if (hand.script_phase != before) data.phases.push_back({hand.at, hand.script_phase});
+  }
+  void operator()(const Note& note) const { data.notes.push_back(note); }
+  void operator()(const LinkHeard& heard) const {
+    const bool known = !data.sessions.empty() && data.sessions.back().id == heard.session_id;
+    if (heard.session_id != 0 && !known) data.sessions.push_back({heard.session_id, heard.at});
   }
   void operator()(const LinkStatus& status) const {
+    data.links.push_back(status);
     data.last_link = status;
     if (status.health.state == LinkState::Live && status.health.round_trip > Duration{0}) {
       data.round_trips.push_back(status.health.round_trip);
@@ -77,12 +88,18 @@ Result<SiteData> load_site(std::span<const std::byte> file,
     std::visit(Collector{data}, entry->record);
   }
   data.report = reader.report();
-  if (data.report.messages == 0 && !data.report.faults.empty()) {
-    return fail(name + ": " + data.report.faults.front().text);
+  if (data.report.messages == 0) {
+    return fail(name + ": " +
+                (data.report.faults.empty() ? "there is no message of a session in it"
+                                            : data.report.faults.front().text));
   }
   data.began_at = reader.began_at().value_or(TimePoint{});
+  data.clock = reader.clock();
   data.metadata = reader.metadata("palp");
   data.records_dropped = reader.metadata("palp.summary", "records_dropped");
+  if (const auto text = reader.attachment("config.textproto")) {
+    data.settings = std::string{*text};
+  }
   if (const auto csv = reader.attachment("tissue.csv")) {
     data.tissue_csv = std::string{*csv};
   }

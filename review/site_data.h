@@ -12,18 +12,37 @@
 
 namespace palp::review {
 
+/// A session as the link's words begin it.
+struct SessionSpan {
+  std::uint64_t id{};
+  TimePoint began_at{};
+};
+
+/// From then on the hand is in this phase of its script: 1, 2, ...
+struct PhaseChange {
+  TimePoint at{};
+  std::uint32_t phase{};
+};
+
 /// What one session file says, in memory.
 struct SiteData {
   link::Role site{};
   TimePoint began_at{};  ///< the earliest sample
   std::vector<judge::Motion> motion;
+  std::vector<SiteState> states;    ///< one for each of `motion`
+  std::vector<PhaseChange> phases;  ///< surgeon: of a scripted hand
+  std::vector<Note> notes;
+  std::vector<SessionSpan> sessions;
+  record::WallClock clock;
   std::vector<Transition> transitions;
   std::vector<DepthEstimate> estimates;
   std::vector<Duration> round_trips;  ///< of the link's statuses, where measured
   std::optional<LinkStatus> last_link;
+  std::vector<LinkStatus> links;               ///< all of them
   std::vector<DepthArrived> reports;           ///< surgeon: each estimate as it arrived
   record::McapMap metadata;                    ///< of the record `palp`
   std::optional<std::string> tissue_csv;       ///< attachment tissue.csv
+  std::optional<std::string> settings;         ///< attachment config.textproto
   std::uint64_t records{};                     ///< decoded
   std::optional<std::string> records_dropped;  ///< from the summary
   record::McapReadReport report;

@@ -12,11 +12,27 @@
 namespace palp::review {
 namespace {
 
+/// What a telegram takes from the surgeon's to the patient's site, mostly; bounded, for a file may
+/// say anything.
+Duration way_out(const SiteData& surgeon) {
+  std::vector<double> ways;
+  for (const LinkStatus& status : surgeon.links) {
+    const LinkHealth& health = status.health;
+    if (health.round_trip <= Duration{0}) continue;
+    ways.push_back(
+        seconds(health.delay_out > Duration{0} ? health.delay_out : health.round_trip / 2));
+  }
+  return from_seconds(std::clamp(median(ways).value_or(0), 0.0, 10.0));
+}
+
 /// The surgeon's excursions, each with its stiffness once it was asked for.
 class Strokes {
  public:
-  Strokes(const SiteData& surgeon, double surface, const judge::TissueTable* tissue)
-      : surface_{surface}, tissue_{tissue} {
+  Strokes(const SiteData& surgeon,
+          const TimeLine& line,
+          double surface,
+          const judge::TissueTable* tissue)
+      : line_{line}, way_{way_out(surgeon)}, surface_{surface}, tissue_{tissue} {
     for (const DepthArrived& arrived : surgeon.reports) {
       arrived_at_.try_emplace(arrived.report.number, arrived.at);
     }
@@ -28,23 +44,9 @@ class Strokes {
     });
   }
 
-  /// The one an estimate came from: the last one that the surgeon began before the estimate
-  /// arrived. The clocks of the sites need not agree for that, and an estimate leaves at the
-  /// stroke's reversal, long before the next stroke begins.
+  /// The one an estimate came from.
   [[nodiscard]] std::optional<std::size_t> of(const DepthEstimate& estimate) const {
-    const auto arrived = arrived_at_.find(estimate.number);
-    if (arrived == arrived_at_.end()) {
-      return std::nullopt;
-    }
-    const auto later = std::partition_point(
-        strokes_.begin(), strokes_.end(), [at = arrived->second](const Stroke& stroke) {
-          return stroke.excursion.began_at < at;
-        });
-    if (later == strokes_.begin() ||
-        distance(std::prev(later)->excursion.place, estimate.place) > kSamePlace) {
-      return std::nullopt;
-    }
-    return static_cast<std::size_t>(std::prev(later) - strokes_.begin());
+    return line_.known ? by_time(estimate) : by_arrival(estimate);
   }
   [[nodiscard]] Duration span(std::size_t index) const {
     const judge::Excursion& excursion = strokes_[index].excursion;
@@ -64,6 +66,51 @@ class Strokes {
     std::optional<judge::FeltStiffness> stiffness;
   };
 
+  /// How many the surgeon began before.
+  [[nodiscard]] std::size_t begun_before(TimePoint at) const {
+    const auto later =
+        std::partition_point(strokes_.begin(), strokes_.end(), [at](const Stroke& stroke) {
+          return stroke.excursion.began_at < at;
+        });
+    return static_cast<std::size_t>(later - strokes_.begin());
+  }
+
+  /// The one at the estimate's place that shares most time with its stroke, as the hand's motion
+  /// reaches the tip.
+  [[nodiscard]] std::optional<std::size_t> by_time(const DepthEstimate& estimate) const {
+    const TimePoint began{elapsed(TimePoint{way_}, line_.surgeons(estimate.stroke_began_at))};
+    const TimePoint ended{elapsed(TimePoint{way_}, line_.surgeons(estimate.stroke_ended_at))};
+    std::optional<std::size_t> best;
+    Duration most{};
+    for (std::size_t i = begun_before(ended); i-- > 0;) {
+      const judge::Excursion& excursion = strokes_[i].excursion;
+      if (excursion.ended_at <= began) break;  // as all before it
+      if (distance(excursion.place, estimate.place) > kSamePlace) continue;
+      const Duration shared =
+          elapsed(std::max(began, excursion.began_at), std::min(ended, excursion.ended_at));
+      if (shared <= most) continue;
+      most = shared;
+      best = i;
+    }
+    return best;
+  }
+
+  /// Without knowing how the clocks lie: the last one that the surgeon began before the estimate
+  /// arrived, for it leaves at the stroke's reversal, long before the next stroke begins.
+  [[nodiscard]] std::optional<std::size_t> by_arrival(const DepthEstimate& estimate) const {
+    const auto arrived = arrived_at_.find(estimate.number);
+    if (arrived == arrived_at_.end()) {
+      return std::nullopt;
+    }
+    const std::size_t later = begun_before(arrived->second);
+    if (later == 0 || distance(strokes_[later - 1].excursion.place, estimate.place) > kSamePlace) {
+      return std::nullopt;
+    }
+    return later - 1;
+  }
+
+  TimeLine line_;
+  Duration way_;    ///< from the hand to the tip
   double surface_;  ///< [m]
   const judge::TissueTable* tissue_;
   std::map<std::uint32_t, TimePoint> arrived_at_;  ///< by the estimate's number
@@ -91,8 +138,9 @@ std::string cell(const std::optional<double>& value, int digits, std::size_t wid
 
 std::vector<Tap> match_taps(const SiteData& surgeon,
                             const SiteData& patient,
+                            const TimeLine& line,
                             const judge::TissueTable* tissue) {
-  Strokes strokes{surgeon, surface_of(patient), tissue};
+  Strokes strokes{surgeon, line, surface_of(patient), tissue};
   std::vector<Tap> taps;
   for (const DepthEstimate& estimate : patient.estimates) {
     const auto stroke = strokes.of(estimate);
@@ -117,7 +165,7 @@ std::vector<Tap> match_taps(const SiteData& surgeon,
 std::optional<judge::DepthStatement> overall_depth(const std::vector<Tap>& taps) {
   std::vector<DepthEstimate> over;
   for (const Tap& tap : taps) {
-    if (site_at(tap.place) == Site::B && tap.kind == StrokeKind::Tap) {
+    if (site_at(tap.place) == Site::B) {
       over.push_back(tap.estimate);
     }
   }

@@ -10,6 +10,7 @@
 #include "judge/felt_stiffness.h"
 #include "judge/tissue_table.h"
 #include "review/site_data.h"
+#include "review/time_line.h"
 
 namespace palp::review {
 
@@ -29,13 +30,15 @@ struct Tap {
   judge::FeltStiffness stiffness;  ///< empty: nobody knows what was felt
 };
 
-/// The strokes of the patient's file with what the surgeon felt in them: a stroke is the last
-/// excursion of the hand that began before its estimate arrived at the surgeon's.
+/// The strokes of the patient's file with what the surgeon felt in them: a stroke belongs to the
+/// excursion of the hand at its place that shares most time with it; where nobody knows how the
+/// clocks lie, to the last one that began before its estimate arrived at the surgeon's.
 [[nodiscard]] std::vector<Tap> match_taps(const SiteData& surgeon,
                                           const SiteData& patient,
+                                          const TimeLine& line,
                                           const judge::TissueTable* tissue);
 
-/// What all taps over the inclusion say together; nullopt: there is none.
+/// What all strokes over the inclusion say together, as the lab has it; nullopt: there is none.
 [[nodiscard]] std::optional<judge::DepthStatement> overall_depth(const std::vector<Tap>& taps);
 
 /// For people, one line each.

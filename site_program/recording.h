@@ -26,12 +26,14 @@ struct RecordAccount {
 };
 
 /// Carries the records of a site's threads to its session file, on a thread of its own (record),
-/// and tells people of what happened. Without a file the records go nowhere. Where the file cannot
+/// and tells people of what happened; where files of sessions are asked for, each session after the
+/// first begins the next file, at the first record of its first tick. Without a file the records go
+/// nowhere. Where the file cannot
 /// take them the session goes on without, and everybody is told.
 /// Thread: its maker's; each recorder() has one writer of its own.
 class Recording {
  public:
-  /// `info.opened_at` is filled in here.
+  /// `info.opened_at` and its clock are filled in here.
   /// @throws std::runtime_error with one sentence where the file cannot be created or begun.
   Recording(const settings::RecordSettings& settings,
             record::SessionInfo info,
@@ -52,11 +54,15 @@ class Recording {
 
  private:
   void drain(TimePoint now);
-  void write(const Record& record, TimePoint now);
+  void write(const Record& record);
+  void write_tick(const Record& record);
+  [[nodiscard]] std::string next_path() const;
+  void open(const std::string& path);
+  void begin_next_file();
+  void close_file();
   void tell_of(const Record& record);
   void keep_watch(TimePoint now);
   [[nodiscard]] std::string fault() const;
-  void close();
 
   static constexpr std::size_t kNewsMax = 256;
   /// Less than so much recording left is told.
@@ -71,6 +77,11 @@ class Recording {
     Duration left{};
   };
 
+  std::string prefix_;  ///< of the files of sessions; empty: one file
+  record::SessionInfo info_;
+  std::uint64_t session_id_{};  ///< record's, as the next three: of the newest session
+  std::vector<Record> tick_;    ///< of the present tick, with files of sessions
+  std::string file_fault_;      ///< of a file before this one, or why there is none
   std::optional<record::FileSink> sink_;
   std::optional<record::SessionWriter> writer_;
   std::vector<std::unique_ptr<record::QueueRecorder>> queues_;
@@ -80,7 +91,8 @@ class Recording {
   TimePoint looked_at_{};
   bool told_of_nearly_full_{};
   std::string told_fault_;
-  Mailbox<Need> need_;  ///< writer: record, reader: the maker
+  Mailbox<Need> need_;    ///< writer: record, reader: the maker
+  std::uint64_t lost_{};  ///< in no file, and not for a full queue
   RecordAccount account_;
   std::optional<io::BackgroundLoop> loop_;
 };

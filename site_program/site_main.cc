@@ -18,6 +18,7 @@ constexpr int kHeapSpare = 4 << 20;  // [bytes], many times what a session's hea
 
 void declare_session_flags(config::CommandLine& line) {
   line.knob("--session-file", "record.file");
+  line.knob("--session-files", "record.files");
   line.knob("--duration-s", "duration_s");
   line.knob("--delay-ms", "impairment.delay_ms");
   line.knob("--jitter-ms", "impairment.jitter_ms");

@@ -45,7 +45,8 @@ ExitStatus run_session(tl::expected<Plan, ExitStatus> plan, SiteReport& report) 
   if (!plan) return plan.error();
   report.seed = plan->settings.seed;
   report.coupling = plan->settings.coupling.name;
-  report.session_file = plan->settings.record.file;
+  const settings::RecordSettings& files = plan->settings.record;
+  report.session_file = files.files.empty() ? files.file : files.files + "*.mcap";
   io::Terminal terminal;
   if (plan->settings.protection.insecure) {
     io::warn("datagrams are neither encrypted nor authenticated: they stay on this machine");

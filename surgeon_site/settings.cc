@@ -44,6 +44,8 @@ Result<Settings> make_settings(const proto::config::SurgeonConfig& message) {
   if (!coupling) return fail(coupling.error().text);
   const auto hand = make_hand(message.hand());
   if (!hand) return fail(hand.error().text);
+  const auto record = settings::make_record(message.record());
+  if (!record) return fail(record.error().text);
   Settings made;
   made.peer = message.peer();
   made.protection = settings::make_protection(message.link());
@@ -64,7 +66,7 @@ Result<Settings> make_settings(const proto::config::SurgeonConfig& message) {
   made.grip = message.hand().grip();
   made.hand = *hand;
   made.impairment = settings::make_impairment(message.impairment());
-  made.record = settings::make_record(message.record());
+  made.record = *record;
   made.duration = from_seconds(message.duration_s());
   made.give_up_after = from_seconds(message.give_up_after_s());
   made.seed = message.seed();

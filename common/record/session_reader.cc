@@ -1,13 +1,18 @@
 #include "common/record/session_reader.h"
 
 #include <algorithm>
+#include <charconv>
 
 namespace palp::record {
 namespace {
 
-TimePoint instant(std::uint64_t stamp) noexcept {
-  return TimePoint{Duration{static_cast<std::int64_t>(stamp)}};
+std::string value_of(const McapMap& map, std::string_view key) {
+  const auto found =
+      std::find_if(map.begin(), map.end(), [&](const auto& pair) { return pair.first == key; });
+  return found == map.end() ? std::string{} : found->second;
 }
+
+constexpr std::size_t kSessionsMax = 4096;  ///< kept of a file that names more
 
 }  // namespace
 
@@ -17,7 +22,7 @@ SessionReader::SessionReader(std::span<const std::byte> file, const McapLimits& 
 std::optional<SessionEntry> SessionReader::next() {
   while (const auto item = mcap_.next()) {
     if (const auto* metadata = std::get_if<McapMetadata>(&*item)) {
-      metadata_.insert_or_assign(std::string{metadata->name}, metadata->entries);
+      keep(*metadata);
     } else if (const auto* attachment = std::get_if<McapAttachment>(&*item)) {
       // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes of a text
       const auto* text = reinterpret_cast<const char*>(attachment->data.data());
@@ -33,9 +38,27 @@ std::optional<SessionEntry> SessionReader::next() {
   return std::nullopt;
 }
 
+void SessionReader::keep(const McapMetadata& metadata) {
+  if (metadata.name == "palp.session") {
+    if (sessions_.size() < kSessionsMax) {
+      sessions_.push_back({.id = value_of(metadata.entries, "session_id"),
+                           .number = value_of(metadata.entries, "session_number"),
+                           .began_utc = value_of(metadata.entries, "began_utc")});
+    }
+    return;
+  }
+  if (metadata.name == "palp") {
+    const std::string ahead = value_of(metadata.entries, kWallClockKey);
+    std::int64_t value{};
+    const auto [stop, error] = std::from_chars(ahead.data(), ahead.data() + ahead.size(), value);
+    if (error == std::errc{} && stop == ahead.data() + ahead.size()) clock_.ahead = Duration{value};
+  }
+  metadata_.insert_or_assign(std::string{metadata.name}, metadata.entries);
+}
+
 void SessionReader::count(const McapMessage& message) {
   TopicCount& topic = topics_[message.channel->topic];
-  const TimePoint at = instant(message.publish_time);
+  const TimePoint at = clock_.own(message.publish_time);
   if (topic.messages == 0) {
     topic.schema = message.schema == nullptr ? "" : message.schema->name;
     topic.first = at;
@@ -58,12 +81,11 @@ std::optional<SessionEntry> SessionReader::decode(const McapMessage& message) {
     ++unknown_;
     return std::nullopt;
   }
-  const auto answer =
-      SessionDecoder::decode(message.schema->name, message.payload, instant(message.publish_time));
+  const auto answer = SessionDecoder::decode(
+      message.schema->name, message.payload, clock_.own(message.publish_time));
   using Verdict = SessionDecoder::Verdict;
   if (answer.verdict == Verdict::Decoded) {
     return SessionEntry{.site = surgeon ? link::Role::Surgeon : link::Role::Patient,
-                        .logged_at = instant(message.log_time),
                         .record = answer.record};
   }
   if (answer.verdict == Verdict::Unknown) {

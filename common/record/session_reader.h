@@ -6,17 +6,25 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/link/telegram.h"
 #include "common/record/mcap_reader.h"
 #include "common/record/recorder.h"
 #include "common/record/session_decoder.h"
+#include "common/record/wall_clock.h"
 
 namespace palp::record {
 
+/// A session that a file names.
+struct SessionName {
+  std::string id;  ///< 16 hexadecimal digits, the same in both sites' files
+  std::string number;
+  std::string began_utc;
+};
+
 struct SessionEntry {
   link::Role site{};
-  TimePoint logged_at{};
   Record record;
 };
 
@@ -52,6 +60,10 @@ class SessionReader {
   [[nodiscard]] std::uint64_t malformed() const noexcept { return malformed_; }
   /// Topic and sequence of the first malformed message; empty: there is none.
   [[nodiscard]] const std::string& first_malformed() const noexcept { return first_malformed_; }
+  /// Sessions in the order in which they began.
+  [[nodiscard]] const std::vector<SessionName>& sessions() const noexcept { return sessions_; }
+  /// What makes a stamp of the file an instant of the site's own time.
+  [[nodiscard]] const WallClock& clock() const noexcept { return clock_; }
   /// Earliest instant of any sample: where a session's own time begins.
   [[nodiscard]] std::optional<TimePoint> began_at() const noexcept { return began_at_; }
   [[nodiscard]] std::optional<TimePoint> ended_at() const noexcept { return ended_at_; }
@@ -59,11 +71,14 @@ class SessionReader {
  private:
   std::optional<SessionEntry> decode(const McapMessage& message);
   void count(const McapMessage& message);
+  void keep(const McapMetadata& metadata);
 
   McapReader mcap_;
   std::map<std::string, TopicCount> topics_;
   std::map<std::string, McapMap, std::less<>> metadata_;
   std::map<std::string, std::string_view, std::less<>> attachments_;
+  std::vector<SessionName> sessions_;
+  WallClock clock_;
   std::uint64_t unknown_{};
   std::uint64_t malformed_{};
   std::string first_malformed_;

@@ -6,8 +6,16 @@
 namespace palp::record {
 namespace {
 
-std::uint64_t stamp(TimePoint at) noexcept {
-  return static_cast<std::uint64_t>(at.time_since_epoch().count());
+/// Where the file and its stamps lie in the world's time.
+void describe_clock(const SessionInfo& info, McapMap& metadata) {
+  const WallClock& clock = info.clock;
+  metadata.emplace_back("file_number", std::to_string(info.files_before + 1));
+  metadata.emplace_back("began_utc", utc_text(clock.stamp(info.opened_at)));
+  metadata.emplace_back("time_zone", clock.zone);
+  metadata.emplace_back("clock_source", clock.source);
+  metadata.emplace_back("clock_synchronised", clock.synchronised);
+  metadata.emplace_back("clock_uncertainty_us", clock.uncertainty_us);
+  metadata.emplace_back(kWallClockKey, std::to_string(clock.ahead.count()));
 }
 
 }  // namespace
@@ -16,13 +24,24 @@ std::uint64_t SessionCounts::records() const noexcept {
   return std::accumulate(by_type.begin(), by_type.end(), std::uint64_t{0});
 }
 
+SessionCounts& SessionCounts::operator+=(const SessionCounts& other) noexcept {
+  for (std::size_t type = 0; type < by_type.size(); ++type) by_type[type] += other.by_type[type];
+  views += other.views;
+  misplaced += other.misplaced;
+  return *this;
+}
+
 SessionWriter::SessionWriter(ByteSink& sink, const SessionInfo& info, const McapOptions& options)
-    : mcap_{sink, options}, encoder_{info.site}, newest_now_{info.opened_at} {
+    : mcap_{sink, options},
+      encoder_{info.site},
+      clock_{info.clock},
+      sessions_{info.sessions_before} {
   McapMap metadata{{"site", std::string{site_name(info.site)}}};
+  describe_clock(info, metadata);
   metadata.insert(metadata.end(), info.metadata.begin(), info.metadata.end());
   mcap_.add_metadata("palp", metadata);
   for (const SessionAttachment& attachment : info.attachments) {
-    mcap_.add_attachment(stamp(info.opened_at),
+    mcap_.add_attachment(clock_.stamp(info.opened_at),
                          attachment.name,
                          attachment.media_type,
                          std::as_bytes(std::span{attachment.content}));
@@ -36,29 +55,40 @@ SessionWriter::SessionWriter(ByteSink& sink, const SessionInfo& info, const Mcap
 
 SessionWriter::~SessionWriter() { close(); }
 
-bool SessionWriter::write(const Record& record, TimePoint now) {
-  newest_now_ = now;
+bool SessionWriter::write(const Record& record) {
   if (const auto* tick = std::get_if<SiteTick>(&record)) {
-    view(*tick, now);
+    view(*tick);
+  } else if (const auto* heard = std::get_if<LinkHeard>(&record)) {
+    look_for_session(*heard);
   }
   const auto prepared = encoder_.prepare(record, dropped_);
   if (!prepared) {
     ++counts_.misplaced;
     return false;
   }
-  if (!put(*prepared, now)) {
+  if (!put(*prepared)) {
     return false;
   }
   ++counts_.by_type[record.index()];
   return true;
 }
 
-bool SessionWriter::put(const Prepared& prepared, TimePoint now) {
+void SessionWriter::look_for_session(const LinkHeard& heard) {
+  if (heard.session_id == 0 || heard.session_id == session_id_ || closed_) return;
+  session_id_ = heard.session_id;
+  mcap_.add_metadata("palp.session",
+                     {{"session_id", session_id_text(session_id_)},
+                      {"session_number", std::to_string(++sessions_)},
+                      {"began_utc", utc_text(clock_.stamp(heard.at))}});
+}
+
+bool SessionWriter::put(const Prepared& prepared) {
+  const std::uint64_t stamp = clock_.stamp(prepared.at);
   Channel& channel = channels_[static_cast<std::size_t>(prepared.topic)];
   std::byte* place = mcap_.add_message({.channel = channel.id,
                                         .sequence = channel.sequence,
-                                        .log_time = stamp(now),
-                                        .publish_time = stamp(prepared.at)},
+                                        .log_time = stamp,
+                                        .publish_time = stamp},
                                        prepared.size);
   if (place == nullptr) {
     return false;
@@ -69,22 +99,22 @@ bool SessionWriter::put(const Prepared& prepared, TimePoint now) {
   return true;
 }
 
-void SessionWriter::view(const SiteTick& tick, TimePoint now) {
+void SessionWriter::view(const SiteTick& tick) {
   if (view_.ticks > 0 && elapsed(view_.began_at, tick.at) >= kViewInterval) {
-    write_view(now);
+    write_view();
   }
   view_.add(tick);
 }
 
-void SessionWriter::write_view(TimePoint now) {
-  if (put(encoder_.prepare(view_), now)) {
+void SessionWriter::write_view() {
+  if (put(encoder_.prepare(view_))) {
     ++counts_.views;
   }
   view_ = {};
 }
 
 void SessionWriter::flush_if_due(TimePoint now) {
-  mcap_.flush_if_due(stamp(now));
+  mcap_.flush_if_due(clock_.stamp(now));
   if (mcap_.waiting() == 0 && !failed()) settled_ = counts_;
 }
 
@@ -94,7 +124,7 @@ void SessionWriter::close() {
   }
   closed_ = true;
   if (view_.ticks > 0) {
-    write_view(newest_now_);
+    write_view();
   }
   McapMap summary{{"messages", std::to_string(messages())},
                   {"records", std::to_string(counts_.records())},

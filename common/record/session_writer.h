@@ -11,6 +11,7 @@
 #include "common/record/mcap_writer.h"
 #include "common/record/recorder.h"
 #include "common/record/session_encoder.h"
+#include "common/record/wall_clock.h"
 
 namespace palp::record {
 
@@ -28,18 +29,24 @@ struct SessionInfo {
   McapMap metadata{};
   std::vector<SessionAttachment> attachments{};
   TimePoint opened_at{};
+  WallClock clock{};
+  /// Of the site's run before this file: files have the numbers 1, 2, ..., as sessions have.
+  std::uint32_t files_before{};
+  std::uint32_t sessions_before{};
 };
 
 struct SessionCounts {
+  SessionCounts& operator+=(const SessionCounts& other) noexcept;
   std::array<std::uint64_t, std::variant_size_v<Record>> by_type{};  ///< in the order of Record
   std::uint64_t views{};
   std::uint64_t misplaced{};  ///< records that have no topic at this site
   [[nodiscard]] std::uint64_t records() const noexcept;
 };
 
-/// Writes one site's session file: each Record on its topic, stamped with its own instant, and the
-/// ticks once more at 50 Hz as extremes. Never throws after construction; when the disk is full
-/// the recording ends and `lost()` grows. Thread: record (or the one thread of virtual time).
+/// Writes one site's session file: each Record on its topic, stamped with its own instant on the
+/// wall clock, and the ticks once more at 50 Hz as extremes. As a session begins the metadata
+/// record `palp.session` names it. Never throws after construction; when the disk is full the
+/// recording ends and `lost()` grows. Thread: record (or the one thread of virtual time).
 class SessionWriter {
  public:
   /// `sink` outlives the writer.
@@ -48,8 +55,8 @@ class SessionWriter {
   SessionWriter(const SessionWriter&) = delete;
   SessionWriter& operator=(const SessionWriter&) = delete;
 
-  /// `now`: the instant of writing. @returns false: not written, and counted.
-  bool write(const Record& record, TimePoint now);
+  /// @returns false: not written, and counted.
+  bool write(const Record& record);
   /// Total of records that a full queue dropped; shown in the next link status and the summary.
   void set_dropped(std::uint64_t total) noexcept { dropped_ = total; }
   /// Keeps the promise that a kill loses at most half a second, also when nothing is recorded.
@@ -69,9 +76,10 @@ class SessionWriter {
   [[nodiscard]] bool failed() const noexcept { return mcap_.failed(); }
 
  private:
-  bool put(const Prepared& prepared, TimePoint now);
-  void view(const SiteTick& tick, TimePoint now);
-  void write_view(TimePoint now);
+  bool put(const Prepared& prepared);
+  void view(const SiteTick& tick);
+  void write_view();
+  void look_for_session(const LinkHeard& heard);
 
   McapWriter mcap_;
   SessionEncoder encoder_;
@@ -81,7 +89,9 @@ class SessionWriter {
   };
   std::array<Channel, kTopicCount> channels_{};
   TickView view_;
-  TimePoint newest_now_{};
+  WallClock clock_;
+  std::uint64_t session_id_{};  ///< the newest; 0: none yet
+  std::uint32_t sessions_{};
   std::uint64_t dropped_{};
   SessionCounts counts_;
   SessionCounts settled_;  ///< as of the newest chunk that was written

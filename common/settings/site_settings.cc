@@ -92,8 +92,13 @@ ProtectionSettings make_protection(const proto::config::Link& message) {
           .room = message.room()};
 }
 
-RecordSettings make_record(const proto::config::Record& message) {
-  return {.file = message.file(), .queue_records = message.queue_records()};
+Result<RecordSettings> make_record(const proto::config::Record& message) {
+  if (!message.file().empty() && !message.files().empty()) {
+    return fail(
+        "record.file (--session-file) and record.files (--session-files) exclude each other");
+  }
+  return RecordSettings{
+      .file = message.file(), .files = message.files(), .queue_records = message.queue_records()};
 }
 
 std::uint64_t agreement_hash(const proto::config::Coupling& message, Duration period) {

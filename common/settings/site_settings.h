@@ -41,8 +41,10 @@ struct ImpairmentSettings {
   }
 };
 
+/// At most one of `file` and `files`; neither: no session file.
 struct RecordSettings {
-  std::string file{};  ///< empty: no session file
+  std::string file{};   ///< of the whole run
+  std::string files{};  ///< a file for each session: this and 001.mcap, 002.mcap, ...
   std::size_t queue_records{16384};
 };
 
@@ -63,7 +65,8 @@ struct ProtectionSettings {
 [[nodiscard]] ProtectionSettings make_protection(const proto::config::Link& message);
 [[nodiscard]] LoopSettings make_loop(const proto::config::Loop& message);
 [[nodiscard]] ImpairmentSettings make_impairment(const proto::config::Impairment& message);
-[[nodiscard]] RecordSettings make_record(const proto::config::Record& message);
+/// The sentence says that both were asked for.
+[[nodiscard]] Result<RecordSettings> make_record(const proto::config::Record& message);
 
 /// Of all that both sites must agree on: the law with its numbers, and the control period.
 [[nodiscard]] std::uint64_t agreement_hash(const proto::config::Coupling& message, Duration period);

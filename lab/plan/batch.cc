@@ -9,8 +9,8 @@
 #include <mutex>
 #include <optional>
 
+#include "judge/metric_table.h"
 #include "lab/run/digest.h"
-#include "lab/run/metric_table.h"
 #include "lab/run/run.h"
 
 namespace palp::lab {
@@ -37,7 +37,7 @@ CaseResult result_of(const Case& one, const RunResult& run) {
   result.outcome = surgeon::to_string(run.outcome);
   result.unstable = run.metrics.unstable;
   result.unstable_reason = run.metrics.unstable_reason;
-  for (const Metric& metric : metric_table()) {
+  for (const judge::Metric& metric : judge::metric_table()) {
     result.values.push_back(nine_digits(metric.value(run.metrics)));
   }
   return result;

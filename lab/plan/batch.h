@@ -22,7 +22,8 @@ struct CaseResult {
   std::string outcome;
   bool unstable{};
   std::string unstable_reason;
-  std::vector<double> values;  ///< [as the metric], as metric_table(), nine digits, NaN: undefined
+  std::vector<double>
+      values;  ///< [as the metric], as judge::metric_table(), nine digits, NaN: undefined
 };
 
 /// Calls the function once per index, in any order, on any threads.

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/core/random.h"
-#include "lab/run/metric_table.h"
+#include "judge/metric_table.h"
 
 namespace palp::lab {
 namespace {
@@ -22,8 +22,8 @@ double right_answers(double ratio, double weber) noexcept {
 }
 
 std::vector<ObserverRow> observe(const std::vector<CaseResult>& results) {
-  const std::size_t truth = *metric_index("ratio_true");
-  const std::size_t error = *metric_index("ratio_error");
+  const std::size_t truth = *judge::metric_index("ratio_true");
+  const std::size_t error = *judge::metric_index("ratio_error");
   std::vector<std::vector<std::string>> groups;
   for (const CaseResult& result : results) {
     if (std::find(groups.begin(), groups.end(), result.labels) == groups.end()) {

@@ -9,9 +9,9 @@
 #include <span>
 
 #include "common/config/json.h"
+#include "judge/metric_table.h"
 #include "lab/plan/observer.h"
 #include "lab/run/digest.h"
-#include "lab/run/metric_table.h"
 
 namespace palp::lab {
 namespace {
@@ -34,7 +34,7 @@ std::string decimal(double value) {
 
 Json worst_of(const std::vector<CaseResult>& results) {
   Json worst = Json::array();
-  const auto table = metric_table();
+  const auto table = judge::metric_table();
   for (std::size_t metric = 0; metric < table.size(); ++metric) {
     std::vector<const CaseResult*> order;
     for (const CaseResult& result : results) {
@@ -85,7 +85,7 @@ std::uint64_t unstable_count(const std::vector<CaseResult>& results) {
 std::string metric_rows(const std::vector<CaseResult>& results) {
   std::array<char, 240> line{};
   std::string text;
-  const auto table = metric_table();
+  const auto table = judge::metric_table();
   for (std::size_t metric = 0; metric < table.size(); ++metric) {
     const Spread spread = spread_of(results, metric);
     if (spread.undefined == results.size()) continue;
@@ -124,7 +124,7 @@ std::string batch_report(const Plan& plan,
   json["outcomes"] = outcomes;
   Json undefined = Json::object();
   Json metrics = Json::object();
-  const auto table = metric_table();
+  const auto table = judge::metric_table();
   for (std::size_t metric = 0; metric < table.size(); ++metric) {
     const Spread spread = spread_of(results, metric);
     if (spread.undefined == results.size()) continue;
@@ -215,7 +215,7 @@ std::string cell(const std::string& text) {
 
 std::string header_of_cases() {
   std::string text{kFixedFirst};
-  for (const Metric& metric : metric_table()) text.append(",").append(metric.name);
+  for (const judge::Metric& metric : judge::metric_table()) text.append(",").append(metric.name);
   return text.append(",").append(kFixedLast);
 }
 
@@ -334,7 +334,7 @@ Result<std::vector<CaseResult>> read_cases_csv(const std::string& text,
                                                const std::string& name,
                                                Plan& plan) {
   const std::vector<std::string> lines = lines_of(text);
-  const auto table = metric_table();
+  const auto table = judge::metric_table();
   const std::string expected = header_of_cases();
   if (lines.front().rfind(expected, 0) != 0) {
     return fail(name + ": the first line is not that of a cases file of this version");

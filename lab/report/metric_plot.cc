@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "common/plot/line_plot.h"
-#include "lab/run/metric_table.h"
+#include "judge/metric_table.h"
 
 namespace palp::lab {
 namespace {
@@ -95,7 +95,7 @@ std::string metric_plot(const std::vector<std::string>& label_names,
                         const std::vector<CaseResult>& results,
                         const std::string& metric,
                         const std::string& title) {
-  const auto at = metric_index(metric);
+  const auto at = judge::metric_index(metric);
   const auto varying = varying_labels(label_names.size(), results);
   const auto along = numeric_label(varying, results);
   if (!at) return {};

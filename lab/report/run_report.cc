@@ -12,8 +12,8 @@
 #include "common/core/place_text.h"
 #include "judge/depth_statement.h"
 #include "judge/depth_summary.h"
+#include "judge/metric_table.h"
 #include "lab/run/digest.h"
-#include "lab/run/metric_table.h"
 
 namespace palp::lab {
 namespace {
@@ -76,7 +76,7 @@ Json metrics_json(const judge::RunMetrics& m) {
   Json json;
   json["unstable"] = m.unstable;
   json["unstable_reason"] = m.unstable_reason;
-  for (const Metric& metric : metric_table()) {
+  for (const judge::Metric& metric : judge::metric_table()) {
     json[std::string{metric.name}] = number(metric.value(m));
   }
   return json;

@@ -9,16 +9,15 @@
 #include "common/core/denormals.h"
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
-#include "common/record/session_writer.h"
 #include "lab/run/pause_probe.h"
-#include "lab/run/phase_finder.h"
+#include "lab/run/session_files.h"
 #include "lab/run/simulator.h"
 #include "lab/run/site_process.h"
 #include "lab/run/state_digest.h"
 #include "lab/run/valve.h"
 #include "netem/model/pipe.h"
 #include "patient_site/estimator_worker.h"
-#include "patient_site/tissue_record.h"
+#include "review/phase_finder.h"
 
 namespace palp::lab {
 namespace {
@@ -33,54 +32,17 @@ constexpr std::size_t kInFlightMax = 4096;
 constexpr std::size_t kContactQueue = 4096;
 constexpr std::uint64_t kTissueStream = 0x7469737375650000;  ///< keeps the sensor's noise apart
 
-/// Both session files of a run, or none.
-class Files final {
- public:
-  Files(const Scenario& scenario, const RunFiles& files, TimePoint now) {
-    if (scenario.bare) return;
-    const record::McapMap metadata{{"program", "palp-lab"},
-                                   {"scenario", scenario.name},
-                                   {"seed", std::to_string(scenario.seed)},
-                                   {"time", "virtual"}};
-    const std::vector<record::SessionAttachment> attached{
-        {"scenario.textproto", "text/plain", scenario.text}};
-    surgeon_.emplace(files.surgeon != nullptr ? *files.surgeon : null_surgeon_,
-                     record::SessionInfo{link::Role::Surgeon, metadata, attached, now});
-    record::SessionInfo patient_info{link::Role::Patient, metadata, attached, now};
-    patient::describe_tissue(scenario.phantom, scenario.tissue.surface_offset, patient_info);
-    patient_.emplace(files.patient != nullptr ? *files.patient : null_patient_, patient_info);
-  }
-  [[nodiscard]] record::SessionWriter* surgeon() { return surgeon_ ? &*surgeon_ : nullptr; }
-  [[nodiscard]] record::SessionWriter* patient() { return patient_ ? &*patient_ : nullptr; }
-  [[nodiscard]] std::uint64_t records() const {
-    return (surgeon_ ? surgeon_->counts().records() : 0) +
-           (patient_ ? patient_->counts().records() : 0);
-  }
-  void close() {
-    if (surgeon_) surgeon_->close();
-    if (patient_) patient_->close();
-  }
-
- private:
-  record::NullSink null_surgeon_;
-  record::NullSink null_patient_;
-  std::optional<record::SessionWriter> surgeon_;
-  std::optional<record::SessionWriter> patient_;
-};
-
 /// Writes at once: in virtual time nobody waits for a disk.
 class DirectRecorder final : public record::Recorder {
  public:
-  DirectRecorder(const Simulator& simulator, record::SessionWriter* writer)
-      : simulator_{simulator}, writer_{writer} {}
+  explicit DirectRecorder(record::SessionWriter* writer) : writer_{writer} {}
   bool record(const Record& record) noexcept override {
     if (const auto* estimate = std::get_if<DepthEstimate>(&record)) estimates_.push_back(*estimate);
-    return writer_ == nullptr || writer_->write(record, simulator_.now());
+    return writer_ == nullptr || writer_->write(record);
   }
   [[nodiscard]] const std::vector<DepthEstimate>& estimates() const { return estimates_; }
 
  private:
-  const Simulator& simulator_;
   record::SessionWriter* writer_;
   std::vector<DepthEstimate> estimates_;
 };
@@ -172,7 +134,7 @@ class Probe {
   const Scenario& scenario_;
   const surgeon::SimulatedHand& hand_;
   const patient::SimulatedPhantom& tissue_;
-  PhaseFinder phases_;
+  review::PhaseFinder phases_;
   std::unique_ptr<patient::TissueField> field_;
   patient::RelaxingForce relaxing_;
   double work_min_{};  ///< [J]
@@ -274,11 +236,10 @@ class DarkPath {
 struct SurgeonEnd {
   SurgeonEnd(const Scenario& scenario,
              std::unique_ptr<link::Transport> path,
-             const Simulator& simulator,
              record::SessionWriter* writer,
              Digest& digest)
       : hand{scenario.hand, scenario.script},
-        file{simulator, writer},
+        file{writer},
         recorder{digest, &file},
         process{scenario, hand, std::move(path), recorder} {}
 
@@ -292,11 +253,10 @@ struct SurgeonEnd {
 struct PatientEnd {
   PatientEnd(const Scenario& scenario,
              std::unique_ptr<link::Transport> path,
-             const Simulator& simulator,
              record::SessionWriter* writer,
              Digest& digest)
       : tissue{scenario.phantom, seeded(scenario.tissue, scenario.seed)},
-        file{simulator, writer},
+        file{writer},
         recorder{digest, &file},
         process{scenario, {tissue, recorder, contact, depth}, std::move(path)},
         estimator{depth::with_sensor(scenario.estimator, tissue.sensor_facts()),
@@ -340,14 +300,12 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   Simulator simulator;
   const TimePoint start = simulator.now();
   Digest digest;
-  Files session_files{scenario, files, start};
+  SessionFiles session_files{scenario, files, start};
   netem::Pipe pipe{scenario.up, scenario.down, scenario.seed, kInFlightMax, start};
   DarkPath dark{scenario};
   const auto valve = [&](auto end) { return std::make_unique<Valve>(std::move(end), dark.shut()); };
-  SurgeonEnd surgeon{
-      scenario, valve(pipe.surgeon_end()), simulator, session_files.surgeon(), digest};
-  PatientEnd patient{
-      scenario, valve(pipe.patient_end()), simulator, session_files.patient(), digest};
+  SurgeonEnd surgeon{scenario, valve(pipe.surgeon_end()), session_files.surgeon(), digest};
+  PatientEnd patient{scenario, valve(pipe.patient_end()), session_files.patient(), digest};
   surgeon.process.start(start);
   patient.process.start(start);
 

@@ -5,9 +5,9 @@
 
 #include "common/link/telegram.h"
 #include "common/message/depth.h"
-#include "common/record/byte_sink.h"
 #include "judge/metrics.h"
 #include "lab/run/scenario.h"
+#include "lab/run/session_files.h"
 #include "surgeon_site/haptic_device.h"
 
 namespace palp::lab {
@@ -24,12 +24,6 @@ struct RunResult {
   LinkHealth surgeon_link;
   LinkHealth patient_link;
   std::uint64_t records{};  ///< written to both session files
-};
-
-/// Where the session files go; null: encoded and compressed all the same, then thrown away.
-struct RunFiles {
-  record::ByteSink* surgeon{};
-  record::ByteSink* patient{};
 };
 
 /// Runs the scenario on the caller's thread. Deterministic.

@@ -21,7 +21,9 @@ namespace palp::lab {
 /// Everything that decides a run: two runs of equal scenarios give equal bits.
 struct Scenario {
   std::string name;
-  std::string text{};  ///< the document it was made of
+  std::string text{};          ///< the document it was made of
+  std::string surgeon_text{};  ///< of that, the site's settings, as the site itself would have them
+  std::string patient_text{};
   std::uint64_t seed{1};
   coupling::CouplingConfig coupling;
   link::LinkConfig link;

@@ -1,26 +1,25 @@
 #include "lab/run/session_setup.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
 #include "common/core/random.h"
 #include "common/link/packet_protection.h"
+#include "lab/run/digest.h"
 
 namespace palp::lab {
 namespace {
 
 constexpr std::uint64_t kEntropyStream = 0x656e'7472'6f70'0000ULL;  ///< "entrop": ids of sessions
 
+constexpr std::uint64_t kSessionStream = 0x7365'7373'696f'6e00ULL;  ///< "session"
+
 /// Where clocks step there are two of them, both long since started: none may fall below 0.
 constexpr Duration kSurgeonAhead = std::chrono::hours{1};
 constexpr Duration kPatientAhead = std::chrono::hours{7};
 
 bool by_handshake(const Scenario& scenario) { return scenario.fault.kind != FaultKind::None; }
-
-LocalClock clock_of(const Scenario& scenario, link::Role role) {
-  if (!by_handshake(scenario)) return {};
-  return {role == link::Role::Surgeon ? kSurgeonAhead : kPatientAhead};
-}
 
 DeviceFacts devices_of(const Scenario& scenario, link::Role role) {
   if (role == link::Role::Surgeon) {
@@ -35,16 +34,30 @@ link::Role other(link::Role role) {
 }
 
 /// A session as the handshake would have left it.
-link::LinkUpdate link_update(std::unique_ptr<link::Transport> transport, const DeviceFacts& peer) {
+link::LinkUpdate link_update(std::unique_ptr<link::Transport> transport,
+                             const DeviceFacts& peer,
+                             std::uint64_t session_id) {
   return {.transport = std::move(transport),
           .protection = std::make_unique<link::PlainProtection>(),
           .send_connection = 1,
           .receive_connection = 1,
-          .session_id = 1,
+          .session_id = session_id,
           .peer_devices = peer};
 }
 
+/// The same at both sites and in each run of the scenario, another one in any other.
+std::uint64_t session_id_of(const Scenario& scenario) {
+  Digest text;
+  for (const char letter : scenario.text) text.add(static_cast<std::uint64_t>(letter));
+  return std::max<std::uint64_t>(1, random_bits(scenario.seed, kSessionStream, text.value()));
+}
+
 }  // namespace
+
+LocalClock clock_of(const Scenario& scenario, link::Role role) noexcept {
+  if (!by_handshake(scenario)) return {};
+  return {role == link::Role::Surgeon ? kSurgeonAhead : kPatientAhead};
+}
 
 SessionSetup::SessionSetup(const Scenario& scenario,
                            link::Role role,
@@ -53,7 +66,9 @@ SessionSetup::SessionSetup(const Scenario& scenario,
 
 void SessionSetup::start(link::Link& link, TimePoint now) {
   if (!by_handshake(scenario_)) {
-    (void)link.adopt(link_update(std::move(end_), devices_of(scenario_, other(role_))), now);
+    (void)link.adopt(
+        link_update(std::move(end_), devices_of(scenario_, other(role_)), session_id_of(scenario_)),
+        now);
     return;
   }
   // Another 64 bits for every start.

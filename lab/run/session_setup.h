@@ -12,6 +12,9 @@
 
 namespace palp::lab {
 
+/// A site's clock beside the lab's when a run begins.
+[[nodiscard]] LocalClock clock_of(const Scenario& scenario, link::Role role) noexcept;
+
 /// How a process and its peer find each other, at every start: by the real handshake where the
 /// scenario has a fault, else they know each other from the beginning, and no process dies. Has
 /// what outlives a process: its end of the path and its machine's clock. Thread: the lab's. Times

@@ -157,6 +157,8 @@ const std::vector<Arrow>& arrows() {
         "patient_site",
         "depth",
         "judge",
+        "review/phase_finder.h",
+        "common/config/number.h",
         "netem/model",
         "common/message",
         "common/coupling",
@@ -179,12 +181,22 @@ const std::vector<Arrow>& arrows() {
        {"lab/run", "lab/plan", "depth", "judge", "common/message", "common/config", "common/plot"}},
       {"lab/*",
        {"lab/*",
+        "judge/metric_table.h",
         "common/coupling",
         "common/config",
         "common/io/process/process_time.h",
         "common/io/process/parallel.h"}},
+      // What a site did is done again by the site's own control, and judged as the lab judges.
       {"review/*",
-       {"common/message", "common/record", "common/coupling", "judge", "common/config"}},
+       {"common/message",
+        "common/link",
+        "common/record",
+        "common/coupling",
+        "common/config",
+        "surgeon_site",
+        "patient_site",
+        "depth",
+        "judge"}},
   };
   return table;
 }

@@ -11,7 +11,9 @@ using testing::Pair;
 
 record::SessionInfo described(std::string_view phantom) {
   record::SessionInfo info;
-  describe_tissue(*make_phantom(phantom), 1.7e-3, info);
+  MotionGateConfig gate;
+  gate.travel_max = 0.0123;
+  describe_tissue(*make_phantom(phantom), 1.7e-3, gate, info);
   return info;
 }
 
@@ -22,6 +24,7 @@ TEST(TissueRecordTest, SaysWhatTheTissueIsInTheUnitsOfItsNames) {
   EXPECT_THAT(info.metadata, Contains(Pair("phantom_depth_mm", "10")));
   EXPECT_THAT(info.metadata, Contains(Pair("phantom_radius_mm", "15")));
   EXPECT_THAT(info.metadata, Contains(Pair("phantom_shape", "ball")));
+  EXPECT_THAT(info.metadata, Contains(Pair(kTravelMaxKey, "0.0123")));
   ASSERT_EQ(info.attachments.size(), 1U);
   EXPECT_EQ(info.attachments[0].name, "tissue.csv");
 }

@@ -91,6 +91,42 @@ TEST_F(PalpReviewTest, AFileThatIsNoSessionFileIsBadInputAndNothingIsMadeOfIt) {
   EXPECT_EQ(run("check text.mcap"), 1);
 }
 
+TEST_F(PalpReviewTest, MergeAndExportWriteNewFilesAlone) {
+  EXPECT_EQ(run("merge s.mcap p.mcap both.mcap"), 0);
+  EXPECT_EQ(run("check both.mcap"), 0);
+  EXPECT_EQ(run("merge s.mcap p.mcap both.mcap"), 3) << "never over an existing file";
+  EXPECT_EQ(run("export s.mcap --topics surgeon/tick --from 1 --to 2 --out t.csv"), 0);
+  EXPECT_EQ(text("t.csv").find("t_s,stamp_ns,state"), 0U);
+  EXPECT_EQ(run("export s.mcap --topics surgeon/tick --out t.csv"), 3);
+  EXPECT_EQ(run("export s.mcap --topics surgeon/nothing --out n.csv"), 2);
+  EXPECT_FALSE(fs::exists(folder_ + "/n.csv"));
+}
+
+TEST_F(PalpReviewTest, ReportWritesAPageThatHoldsTheNumbers) {
+  EXPECT_EQ(run("report --surgeon s.mcap --patient p.mcap --out r.html"), 0);
+  EXPECT_EQ(text("output"), "report: r.html\n");
+  EXPECT_NE(text("r.html").find("\"schema\":\"palp.demo/1\""), std::string::npos);
+  save("empty.mcap", {});
+  EXPECT_EQ(run("report --surgeon empty.mcap --patient p.mcap --out e.html"), 2);
+  EXPECT_FALSE(fs::exists(folder_ + "/e.html"));
+}
+
+TEST_F(PalpReviewTest, MetricsPrintsTheReportWhereAsked) {
+  EXPECT_EQ(run("metrics --json --surgeon s.mcap --patient p.mcap"), 0);
+  EXPECT_EQ(nlohmann::json::parse(text("output"))["metrics"]["phases_known"], false);
+}
+
+TEST_F(PalpReviewTest, CompareTakesSessionsInPairs) {
+  EXPECT_EQ(run("compare s.mcap p.mcap s.mcap p.mcap"), 0);
+  EXPECT_NE(text("output").find("force_peak_n"), std::string::npos);
+  EXPECT_EQ(run("compare s.mcap p.mcap s.mcap"), 2);
+}
+
+TEST_F(PalpReviewTest, ReplaySaysInASentenceWhatAFileLacks) {
+  EXPECT_EQ(run("replay s.mcap"), 2);
+  EXPECT_NE(text("output").find("config.textproto"), std::string::npos);
+}
+
 TEST_F(PalpReviewTest, WrongFilesAndFlagsHaveTheirExitCodes) {
   EXPECT_EQ(run("info nothing.mcap"), 3);
   EXPECT_EQ(run("metrics --surgeon nothing.mcap --patient p.mcap"), 3);

@@ -81,7 +81,7 @@ inline SampleFiles sample_session(const SampleOptions& options = {}) {
     const int strokes = 2 * options.taps_per_place;
     for (std::int64_t ms = 0; ms < 1000 * strokes; ++ms) {
       const SiteTick tick = hand_tick(ms, options.taps_per_place);
-      surgeon.write(tick, tick.at);
+      surgeon.write(tick);
       const TimePoint there = tick.at + kClockOffset + kWay;
       if (ms % 100 == 0) {
         LinkHealth health;
@@ -89,7 +89,7 @@ inline SampleFiles sample_session(const SampleOptions& options = {}) {
         health.round_trip = 2 * kWay;
         health.late = 5;
         health.forged = 2;
-        surgeon.write(LinkStatus{.at = tick.at, .health = health}, tick.at);
+        surgeon.write(LinkStatus{.at = tick.at, .health = health});
       }
       const int stroke = static_cast<int>(ms / 1000);
       if (ms % 1000 == 400 && stroke != options.unseen_stroke) {
@@ -97,7 +97,7 @@ inline SampleFiles sample_session(const SampleOptions& options = {}) {
         const auto number = static_cast<std::uint32_t>(stroke + 1);
         if (options.reports) {
           const TimePoint heard = tick.at + 2 * kWay;
-          surgeon.write(DepthArrived{.at = heard, .report = {.number = number}}, tick.at);
+          surgeon.write(DepthArrived{.at = heard, .report = {.number = number}});
         }
         patient.write(DepthEstimate{.number = number,
                                     .stroke_began_at = there - std::chrono::milliseconds{180},
@@ -113,12 +113,10 @@ inline SampleFiles sample_session(const SampleOptions& options = {}) {
                                     .depth_stddev = 0,
                                     .depth_low = at_b ? 0.0098 + 1e-4 * stroke : 0,
                                     .depth_high = at_b ? 0.0098 + 1e-4 * stroke : 0,
-                                    .fit_rms = 0.001},
-                      there);
+                                    .fit_rms = 0.001});
       }
     }
-    surgeon.write(Transition{at_ms(500), SiteState::Clutched, SiteState::Engaged, 2},
-                  at_ms(1000 * strokes));
+    surgeon.write(Transition{at_ms(500), SiteState::Clutched, SiteState::Engaged, 2});
   }
   return {bytes_of(surgeon_sink), bytes_of(patient_sink)};
 }

@@ -13,7 +13,7 @@ using test::sample_session;
 std::vector<Tap> taps_of(const test::SampleFiles& files) {
   const auto session = load(files);
   const auto tissue = judge::TissueTable::parse(*session.patient.tissue_csv);
-  return match_taps(session.surgeon, session.patient, &*tissue);
+  return match_taps(session.surgeon, session.patient, {}, &*tissue);
 }
 
 TEST(TapsTest, EachStrokeGetsItsPlaceIndexAndStiffness) {
@@ -37,7 +37,7 @@ TEST(TapsTest, StrokeThatThePatientNeverSawDoesNotShiftTheOthers) {
       motion.force = 0;
     }
   }
-  const auto taps = match_taps(session.surgeon, session.patient, nullptr);
+  const auto taps = match_taps(session.surgeon, session.patient, {}, nullptr);
   ASSERT_EQ(taps.size(), 5u);
   EXPECT_NEAR(taps[1].stiffness.felt().value(), test::kFeltA, 1e-6);
   EXPECT_EQ(taps[1].estimate.number, 3u);
@@ -56,7 +56,7 @@ TEST(TapsTest, ManyEstimatesOfOneLongStrokeTakeNoLonger) {
   session.patient.estimates.resize(1);
   session.surgeon.reports.resize(50'000, session.surgeon.reports.front());
   session.patient.estimates.resize(50'000, session.patient.estimates.front());
-  EXPECT_EQ(match_taps(session.surgeon, session.patient, nullptr).size(), 50'000u);
+  EXPECT_EQ(match_taps(session.surgeon, session.patient, {}, nullptr).size(), 50'000u);
 }
 
 TEST(TapsTest, HandAtAnotherPlaceIsNotTheOneOfTheStroke) {
@@ -64,7 +64,7 @@ TEST(TapsTest, HandAtAnotherPlaceIsNotTheOneOfTheStroke) {
   for (judge::Motion& motion : session.surgeon.motion) {
     motion.place = kSiteB;
   }
-  const auto taps = match_taps(session.surgeon, session.patient, nullptr);
+  const auto taps = match_taps(session.surgeon, session.patient, {}, nullptr);
   EXPECT_FALSE(taps[0].stiffness.felt()) << "A";
   EXPECT_TRUE(taps[3].stiffness.felt()) << "B";
 }
@@ -80,7 +80,7 @@ TEST(TapsTest, LongStrokeIsAPress) {
   auto& estimates = session.patient.estimates;
   estimates[1].stroke_began_at = estimates[1].stroke_ended_at - kTapMax;
   estimates[2].stroke_began_at = estimates[2].stroke_ended_at - kTapMax - Duration{1};
-  const auto taps = match_taps(session.surgeon, session.patient, nullptr);
+  const auto taps = match_taps(session.surgeon, session.patient, {}, nullptr);
   EXPECT_EQ(taps[1].kind, StrokeKind::Tap);
   EXPECT_EQ(taps[2].kind, StrokeKind::Press);
   EXPECT_EQ(taps[2].index, 1);
@@ -94,7 +94,7 @@ TEST(TapsTest, AHandThatStaysInTheTissueMakesAPress) {
       motion.position = test::kSurface + 4e-3;
     }
   }
-  const auto taps = match_taps(session.surgeon, session.patient, nullptr);
+  const auto taps = match_taps(session.surgeon, session.patient, {}, nullptr);
   EXPECT_EQ(taps[0].kind, StrokeKind::Press);
 }
 

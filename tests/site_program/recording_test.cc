@@ -14,7 +14,9 @@
 
 #include "common/io/process/diagnostics.h"
 #include "common/io/realtime/steady_clock.h"
+#include "common/record/mapped_file.h"
 #include "common/record/notes.h"
+#include "common/record/session_reader.h"
 
 namespace palp::site_program {
 namespace {
@@ -46,6 +48,64 @@ TEST(RecordingTest, WhatAllWritersRecordedIsInTheFile) {
   EXPECT_EQ(account.dropped, 0U);
   EXPECT_GT(std::filesystem::file_size(path), 1000U);
   EXPECT_EQ(recording.stop().messages, account.messages) << "once more changes nothing";
+}
+
+/// A tick of a session; 0: of none.
+void record_tick(Recording& recording, std::uint64_t session_id) {
+  LinkHeard heard;
+  heard.session_id = session_id;
+  EXPECT_TRUE(recording.recorder(0).record(SiteTick{}));
+  EXPECT_TRUE(recording.recorder(0).record(heard));
+}
+
+struct FileOfSession {
+  std::vector<std::string> ids;
+  std::uint64_t ticks{};
+  std::string number;
+};
+
+FileOfSession read_file(const std::string& path) {
+  const auto file = record::MappedFile::open(path);
+  EXPECT_TRUE(file) << path;
+  record::SessionReader reader{file->bytes()};
+  FileOfSession told;
+  while (const auto entry = reader.next()) {
+    if (std::holds_alternative<SiteTick>(entry->record)) ++told.ticks;
+  }
+  for (const record::SessionName& session : reader.sessions()) told.ids.push_back(session.id);
+  told.number = reader.metadata("palp", "file_number").value_or("");
+  return told;
+}
+
+TEST(RecordingTest, EachSessionHasAFileOfItsOwnFromItsFirstTickOn) {
+  const std::string prefix = fresh_file() + "-";
+  for (const char* number : {"001.mcap", "002.mcap"}) std::filesystem::remove(prefix + number);
+  Recording recording{{.files = prefix}, patient_info(), 1};
+  for (const std::uint64_t session : {0U, 7U, 7U, 0U, 9U, 9U, 9U}) record_tick(recording, session);
+  const RecordAccount& account = recording.stop();
+  EXPECT_EQ(account.fault, "");
+  EXPECT_EQ(account.counts.records(), 14U);
+  const FileOfSession first = read_file(prefix + "001.mcap");
+  EXPECT_EQ(first.ids, std::vector<std::string>{"0000000000000007"});
+  EXPECT_EQ(first.ticks, 4U);
+  const FileOfSession second = read_file(prefix + "002.mcap");
+  EXPECT_EQ(second.ids, std::vector<std::string>{"0000000000000009"});
+  EXPECT_EQ(second.ticks, 3U);
+  EXPECT_EQ(second.number, "2");
+}
+
+TEST(RecordingTest, WhereTheNextFileCannotBeginTheRecordsAreCountedAsLost) {
+  const std::string prefix = fresh_file() + "-";
+  std::filesystem::remove(prefix + "001.mcap");
+  std::FILE* taken = std::fopen((prefix + "002.mcap").c_str(), "w");
+  ASSERT_NE(taken, nullptr);
+  std::fclose(taken);
+  Recording recording{{.files = prefix}, patient_info(), 1};
+  for (const std::uint64_t session : {7U, 9U}) record_tick(recording, session);
+  const RecordAccount& account = recording.stop();
+  EXPECT_THAT(account.fault, testing::HasSubstr("002.mcap"));
+  EXPECT_EQ(account.counts.records(), 2U);
+  EXPECT_EQ(account.dropped, 2U);
 }
 
 TEST(RecordingTest, WithoutAFileNothingIsWritten) {

@@ -80,18 +80,17 @@ class IndependentReaderTest : public testing::Test {
 /// Three seconds of everything a surgeon's site writes.
 void write_session(SessionWriter& writer, int ticks) {
   for (int k = 0; k < ticks; ++k) {
-    writer.write(test::tick(k), at_ms(k));
+    writer.write(test::tick(k));
     writer.write(Arrived{.at = at_ms(k),
                          .incoming = {.sample = {.payload = ModelPayload{.version = 2}},
-                                      .number = static_cast<std::uint64_t>(k)}},
-                 at_ms(k));
+                                      .number = static_cast<std::uint64_t>(k)}});
     if (k % 100 == 0) {
-      writer.write(LinkStatus{.at = at_ms(k), .health = {.state = LinkState::Live}}, at_ms(k));
-      writer.write(Note{.at = at_ms(k), .code = 39, .detail = 2}, at_ms(k));
-      writer.write(Transition{at_ms(k), SiteState::Hold, SiteState::Engaged, 10}, at_ms(k));
+      writer.write(LinkStatus{.at = at_ms(k), .health = {.state = LinkState::Live}});
+      writer.write(Note{.at = at_ms(k), .code = 39, .detail = 2});
+      writer.write(Transition{at_ms(k), SiteState::Hold, SiteState::Engaged, 10});
     }
     if (k % 1000 == 0) {
-      writer.write(DepthArrived{.at = at_ms(k), .report = {.number = 1, .depth = 0.01}}, at_ms(k));
+      writer.write(DepthArrived{.at = at_ms(k), .report = {.number = 1, .depth = 0.01}});
     }
   }
 }

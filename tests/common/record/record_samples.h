@@ -39,13 +39,12 @@ inline std::vector<std::byte> small_session(int ticks, int chunk_ms) {
                         .attachments = {{"tissue.csv", "text/csv", "site,d_mm,F_N\nA,0,0\n"}}},
                        options};
   for (int k = 0; k < ticks; ++k) {
-    writer.write(tick(k), at_ms(k));
+    writer.write(tick(k));
     if (k % 10 == 3) {
-      writer.write(Note{.at = at_ms(k), .code = 33, .detail = 1.5}, at_ms(k));
+      writer.write(Note{.at = at_ms(k), .code = 33, .detail = 1.5});
     }
   }
-  writer.write(DepthEstimate{.number = 1, .stroke_ended_at = at_ms(ticks), .place = {}},
-               at_ms(ticks));
+  writer.write(DepthEstimate{.number = 1, .stroke_ended_at = at_ms(ticks), .place = {}});
   writer.close();
   return {sink.bytes().begin(), sink.bytes().end()};
 }

@@ -74,7 +74,7 @@ RC_GTEST_PROP(SessionTest, WhatIsWrittenIsReadBackBitForBit, ()) {
     SessionWriter writer{sink, {.site = site}};
     for (int k = 0; k < count; ++k) {
       written.push_back(any_record(site));
-      RC_ASSERT(writer.write(written.back(), at_ms(k)));
+      RC_ASSERT(writer.write(written.back()));
     }
   }
   SessionReader reader{sink.bytes()};
@@ -83,7 +83,6 @@ RC_GTEST_PROP(SessionTest, WhatIsWrittenIsReadBackBitForBit, ()) {
   for (std::size_t k = 0; k < written.size(); ++k) {
     RC_ASSERT(fields(entries[k].record) == fields(written[k]));
     RC_ASSERT(entries[k].site == site);
-    RC_ASSERT(entries[k].logged_at == at_ms(static_cast<std::int64_t>(k)));
   }
   RC_ASSERT(reader.malformed() == 0u);
   RC_ASSERT(reader.report().fault_count == 0u);
@@ -104,11 +103,11 @@ WrittenSession five_seconds() {
                         .metadata = {{"program", "palp-patient"}, {"seed", "42"}},
                         .attachments = {{"tissue.csv", "text/csv", "site,d_mm,F_N\n"}}}};
   for (int k = 0; k < 5000; ++k) {
-    writer.write(test::tick(k), at_ms(k + 3));
-    writer.write(Arrived{.at = at_ms(k), .incoming = {}}, at_ms(k + 3));
+    writer.write(test::tick(k));
+    writer.write(Arrived{.at = at_ms(k), .incoming = {}});
     if (k % 100 == 0) {
       writer.set_dropped(static_cast<std::uint64_t>(k));
-      writer.write(LinkStatus{.at = at_ms(k), .health = {}}, at_ms(k + 3));
+      writer.write(LinkStatus{.at = at_ms(k), .health = {}});
     }
   }
   writer.close();
@@ -130,7 +129,7 @@ TEST(SessionTest, StatisticsEqualTheWritersCounters) {
   EXPECT_EQ(statistics->messages, session.messages);
   EXPECT_EQ(statistics->messages, session.counts.records() + session.counts.views);
   EXPECT_EQ(session.counts.records(), 10050u);
-  EXPECT_EQ(statistics->begin, 3'000'000u) << "log time of the first message [ns]";
+  EXPECT_EQ(statistics->begin, 0U) << "instant of the first sample [ns]";
   EXPECT_EQ(statistics->chunks, 10u) << "one each half second";
 }
 
@@ -154,7 +153,7 @@ TEST(SessionTest, AfterAFullDiskTheCountsAreThoseOfTheFile) {
     SessionWriter writer{disk, {.site = Role::Surgeon}};
     std::uint64_t handed = 0;
     for (int k = 0; k < 100'000 && !writer.failed(); ++k, ++handed) {
-      (void)writer.write(test::tick(k), at_ms(k));
+      (void)writer.write(test::tick(k));
     }
     writer.close();
     ASSERT_TRUE(writer.failed());
@@ -184,7 +183,7 @@ TEST(SessionTest, ViewKeepsItsRateWhenTicksComeALittleEarlyOrLate) {
   for (int k = 0; k < 5000; ++k) {
     SiteTick tick = test::tick(k);
     tick.at += std::chrono::microseconds{(k * 7919) % 200 - 100};
-    writer.write(tick, tick.at);
+    writer.write(tick);
   }
   writer.close();
   EXPECT_EQ(writer.counts().views, 250u);
@@ -232,8 +231,8 @@ TEST(SessionTest, DamagedChunkShowsAsAGapOfEachTopic) {
 TEST(SessionTest, RecordWithoutATopicAtThisSiteIsCountedNotWritten) {
   NullSink sink;
   SessionWriter surgeon{sink, {.site = Role::Surgeon}};
-  EXPECT_FALSE(surgeon.write(ContactSample{}, at_ms(0)));
-  EXPECT_FALSE(surgeon.write(DepthEstimate{}, at_ms(0)));
+  EXPECT_FALSE(surgeon.write(ContactSample{}));
+  EXPECT_FALSE(surgeon.write(DepthEstimate{}));
   EXPECT_EQ(surgeon.counts().misplaced, 2u);
   EXPECT_EQ(surgeon.messages(), 0u);
 }
@@ -260,7 +259,7 @@ TEST(SessionTest, WriteAfterCloseIsRefused) {
   NullSink sink;
   SessionWriter writer{sink, {.site = Role::Surgeon}};
   writer.close();
-  EXPECT_FALSE(writer.write(test::tick(0), at_ms(0)));
+  EXPECT_FALSE(writer.write(test::tick(0)));
 }
 
 TEST(SessionTest, ValueOutsideItsEnumerationIsMalformedNotTrusted) {

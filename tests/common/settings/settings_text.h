@@ -88,7 +88,9 @@ inline void add(FieldList& list, const settings::ImpairmentSettings& impairment)
 }
 
 inline void add(FieldList& list, const settings::RecordSettings& record) {
-  list.add("record.file", record.file).add("record.queue_records", record.queue_records);
+  list.add("record.file", record.file)
+      .add("record.files", record.files)
+      .add("record.queue_records", record.queue_records);
 }
 
 }  // namespace palp::settings_test

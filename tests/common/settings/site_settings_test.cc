@@ -15,7 +15,7 @@ TEST(SiteSettingsTest, EmptyMessagesGiveTheDefaultsOfTheParts) {
   add(made, make_link({}, std::chrono::milliseconds{1}));
   add(made, make_loop({}));
   add(made, make_impairment({}));
-  add(made, make_record({}));
+  add(made, make_record({}).value());
   settings_test::FieldList defaults;
   add(defaults, coupling::CouplingConfig{});
   add(defaults, link::LinkConfig{});

@@ -13,11 +13,11 @@
 #include <unistd.h>
 
 #include "common/config/report.h"
+#include "judge/metric_table.h"
 #include "lab/plan/plan.h"
 #include "lab/report/batch_report.h"
 #include "lab/report/stability_map.h"
 #include "lab/run/adversary.h"
-#include "lab/run/metric_table.h"
 #include "lab/run/valve.h"
 #include "lab/verbs.h"
 
@@ -65,7 +65,7 @@ std::vector<CaseResult> empty_cases(const Plan& plan) {
     result.index = one.index;
     result.seed = one.seed;
     result.labels = one.labels;
-    result.values.assign(metric_table().size(), judge::kUndefined);
+    result.values.assign(judge::metric_table().size(), judge::kUndefined);
     results.push_back(std::move(result));
   }
   return results;
@@ -331,7 +331,7 @@ TEST(PlanTest, ARoundTripBesideTheWordsOfALinkIsRefusedNotIgnored) {
 TEST(SpreadTest, CountsUndefinedValuesAsTheWorst) {
   std::vector<CaseResult> results(20);
   for (std::size_t i = 0; i < results.size(); ++i) {
-    results[i].values.assign(metric_table().size(), static_cast<double>(i));
+    results[i].values.assign(judge::metric_table().size(), static_cast<double>(i));
   }
   EXPECT_EQ(spread_of(results, 0).p95, 19);
   results[0].values[0] = judge::kUndefined;

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lab/run/metric_table.h"
+#include "judge/metric_table.h"
 
 namespace palp::lab {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 CaseResult felt(double ratio_true, double ratio_error, const std::string& link) {
   CaseResult result;
   result.labels = {"500", link};
-  for (const Metric& metric : metric_table()) {
+  for (const judge::Metric& metric : judge::metric_table()) {
     double value = 0;
     if (metric.name == "ratio_true") value = ratio_true;
     if (metric.name == "ratio_error") value = ratio_error;

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lab/run/metric_table.h"
+#include "judge/metric_table.h"
 
 namespace palp::lab {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 CaseResult result(std::vector<std::string> labels, double value) {
   CaseResult one;
   one.labels = std::move(labels);
-  one.values.assign(metric_table().size(), value);
+  one.values.assign(judge::metric_table().size(), value);
   return one;
 }
 

@@ -108,7 +108,7 @@ class Desk {
     link_updates_.destroy_retired();
     journey_.look(status);
     if (!disk_works) return;
-    queue_.drain([&](const Record& record) { (void)file_.write(record, status.at); });
+    queue_.drain([&](const Record& record) { (void)file_.write(record); });
   }
 
  private:

@@ -1,4 +1,4 @@
-#include "lab/run/phase_finder.h"
+#include "review/phase_finder.h"
 
 #include <utility>
 #include <vector>
@@ -7,7 +7,7 @@
 
 #include "surgeon_site/script_builder.h"
 
-namespace palp::lab {
+namespace palp::review {
 namespace {
 
 TEST(PhaseFinderTest, CountsTheTapsOfEachVisit) {
@@ -30,4 +30,4 @@ TEST(PhaseFinderTest, CountsTheTapsOfEachVisit) {
 }
 
 }  // namespace
-}  // namespace palp::lab
+}  // namespace palp::review

@@ -1,6 +1,6 @@
-#include "lab/run/phase_finder.h"
+#include "review/phase_finder.h"
 
-namespace palp::lab {
+namespace palp::review {
 namespace {
 
 judge::PhaseKind kind_of(surgeon::StretchKind kind) {
@@ -48,4 +48,4 @@ judge::PhaseTag PhaseFinder::at(Duration script_time) noexcept {
   return tag;
 }
 
-}  // namespace palp::lab
+}  // namespace palp::review

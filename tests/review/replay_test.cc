@@ -1,4 +1,4 @@
-#include "lab/run/replay.h"
+#include "review/replay.h"
 
 #include <cmath>
 #include <variant>
@@ -15,9 +15,14 @@
 // with jitter, loss, a blackout and devices that fail, are written to files in memory; from a file
 // alone, a new control and a new law must record the same again, bit for bit.
 
-namespace palp::lab {
+namespace palp::review {
 namespace {
 
+using lab::FaultKind;
+using lab::kDeviceFaults;
+using lab::load_scenario;
+using lab::make_scenario;
+using lab::Scenario;
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
@@ -67,9 +72,9 @@ Scenario scenario_of(std::span<const std::byte> file) {
 /// From the files alone.
 Replays replay(const Files& files) {
   const Scenario scenario = scenario_of(files.surgeon.bytes());
-  const auto surgeon = replay_surgeon(files.surgeon.bytes(), scenario.surgeon, scenario.coupling);
-  const auto patient = replay_patient(
-      files.patient.bytes(), scenario.patient, scenario.coupling, scenario.estimator);
+  const auto surgeon = replay_surgeon({files.surgeon.bytes()}, scenario.surgeon, scenario.coupling);
+  const auto patient = replay_patient({files.patient.bytes()},
+                                      {scenario.patient, scenario.coupling, scenario.estimator});
   EXPECT_TRUE(surgeon) << surgeon.error().text;
   EXPECT_TRUE(patient) << patient.error().text;
   return {surgeon.value_or(ReplayReport{}), patient.value_or(ReplayReport{})};
@@ -164,7 +169,7 @@ std::vector<std::byte> altered(std::span<const std::byte> file, link::Role site,
     record::SessionWriter writer{sink, {.site = site}};
     record::SessionReader reader{file};
     while (auto entry = reader.next()) {
-      if (change(entry->record)) (void)writer.write(entry->record, entry->logged_at);
+      if (change(entry->record)) (void)writer.write(entry->record);
     }
   }
   return {sink.bytes().begin(), sink.bytes().end()};
@@ -179,10 +184,11 @@ TEST(ReplayTest, OneBitOfOneReadingIsADifference) {
     if (hand != nullptr && ++hands == 9000) hand->position = std::nextafter(hand->position, 1);
     return true;
   });
-  const auto again = replay_surgeon(changed, scenario.surgeon, scenario.coupling);
+  const auto again = replay_surgeon({changed}, scenario.surgeon, scenario.coupling);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->ticks, 9000U);
-  EXPECT_NE(again->difference.find("'tick'"), std::string::npos) << again->difference;
+  EXPECT_EQ(again->difference.find("surgeon/tick, 8.999"), 0U) << again->difference;
+  EXPECT_NE(again->difference.find(" s, position_m: "), std::string::npos) << again->difference;
 }
 
 TEST(ReplayTest, AFileWithoutReadingsIsRefusedInOneSentence) {
@@ -191,11 +197,12 @@ TEST(ReplayTest, AFileWithoutReadingsIsRefusedInOneSentence) {
   const auto without = altered(files.patient.bytes(), link::Role::Patient, [](auto& record) {
     return !std::holds_alternative<ForceReading>(record);
   });
-  const auto refused = replay_patient(without, scenario.patient, scenario.coupling, std::nullopt);
+  const auto refused =
+      replay_patient({without}, {scenario.patient, scenario.coupling, std::nullopt});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().text,
             "the tick at 1.000000 s has no reading of stage or sensor in the file");
 }
 
 }  // namespace
-}  // namespace palp::lab
+}  // namespace palp::review

@@ -7,12 +7,12 @@
 
 #include "judge/metrics.h"
 
-namespace palp::lab {
+namespace palp::judge {
 
 /// One number of a run as reports name it, in the unit at the end of the name.
 struct Metric {
   std::string_view name;
-  double (*value)(const judge::RunMetrics&);
+  double (*value)(const RunMetrics&);
 };
 
 /// All of them, in the order of reports.
@@ -20,4 +20,4 @@ struct Metric {
 /// Which of them has that name; nullopt: none.
 [[nodiscard]] std::optional<std::size_t> metric_index(std::string_view name) noexcept;
 
-}  // namespace palp::lab
+}  // namespace palp::judge

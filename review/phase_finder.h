@@ -5,7 +5,7 @@
 #include "judge/metrics.h"
 #include "surgeon_site/gesture_script.h"
 
-namespace palp::lab {
+namespace palp::review {
 
 /// Says to which tap or hold of a script an instant of script time belongs.
 class PhaseFinder {
@@ -24,4 +24,4 @@ class PhaseFinder {
   std::size_t present_{};  ///< where the last answer was found: time mostly goes on by one tick
 };
 
-}  // namespace palp::lab
+}  // namespace palp::review

@@ -1,12 +1,12 @@
-#include "lab/run/metric_table.h"
+#include "judge/metric_table.h"
 
 #include <algorithm>
 #include <array>
 
-namespace palp::lab {
+namespace palp::judge {
 namespace {
 
-using M = judge::RunMetrics;
+using M = RunMetrics;
 
 constexpr std::array kTable{
     Metric{"tap_a_error", [](const M& m) { return m.tap_error[0]; }},
@@ -52,4 +52,4 @@ std::optional<std::size_t> metric_index(std::string_view name) noexcept {
   return static_cast<std::size_t>(found - kTable.begin());
 }
 
-}  // namespace palp::lab
+}  // namespace palp::judge

@@ -1,0 +1,38 @@
+#include "review/logged_ticks.h"
+
+#include <variant>
+
+namespace palp::review {
+namespace {
+
+bool of_estimator(const Record& record) {
+  return std::holds_alternative<ContactSample>(record) ||
+         std::holds_alternative<DepthEstimate>(record);
+}
+
+}  // namespace
+
+std::optional<LoggedTick> LoggedTicks::next() {
+  LoggedTick tick;
+  while (const auto entry = next_entry()) {
+    if (of_estimator(entry->record)) continue;
+    tick.add(entry->record);
+    if (!tick.heard) continue;
+    began_at_ = began_at_.value_or(tick.heard->at);
+    return tick;
+  }
+  return std::nullopt;
+}
+
+std::optional<record::SessionEntry> LoggedTicks::next_entry() {
+  while (present_ < files_.size()) {
+    if (!reader_) reader_.emplace(files_[present_]);
+    if (auto entry = reader_->next()) return entry;
+    damaged_ += reader_->report().chunks_damaged;
+    reader_.reset();
+    ++present_;
+  }
+  return std::nullopt;
+}
+
+}  // namespace palp::review

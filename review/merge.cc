@@ -1,0 +1,116 @@
+#include "review/merge.h"
+
+#include <cstring>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/config/number.h"
+#include "common/record/mcap_reader.h"
+#include "common/record/mcap_writer.h"
+
+namespace palp::review {
+namespace {
+
+/// One of the files on its way into the new one; knows its next message.
+class MergeSource {
+ public:
+  MergeSource(std::span<const std::byte> file, std::string site, record::McapWriter& writer)
+      : reader_{file}, site_{std::move(site)}, writer_{writer} {}
+  MergeSource(const MergeSource&) = delete;
+  MergeSource& operator=(const MergeSource&) = delete;
+
+  /// `stamp`: of the file's stamp, on the common line.
+  void advance(const auto& stamp) {
+    message_.reset();
+    while (!message_) {
+      auto item = reader_.next();
+      if (!item) return;
+      std::visit([this](const auto& one) { take(one); }, *item);
+    }
+    at_ = stamp(message_->publish_time);
+  }
+  [[nodiscard]] bool done() const { return !message_; }
+  [[nodiscard]] std::uint64_t at() const { return at_; }  ///< [ns], common line
+  void write() {
+    std::byte* place = writer_.add_message({.channel = channels_[message_->channel->id],
+                                            .sequence = message_->sequence,
+                                            .log_time = at_,
+                                            .publish_time = at_},
+                                           message_->payload.size());
+    if (place != nullptr && !message_->payload.empty()) {
+      std::memcpy(place, message_->payload.data(), message_->payload.size());
+    }
+  }
+
+ private:
+  void take(const record::McapSchema& schema) {
+    schemas_[schema.id] = writer_.add_schema(schema.name, schema.encoding, schema.data);
+  }
+  void take(const record::McapChannel& channel) {
+    const std::uint16_t schema = channel.schema == 0 ? std::uint16_t{0} : schemas_[channel.schema];
+    channels_[channel.id] =
+        writer_.add_channel(schema, channel.topic, channel.message_encoding, channel.metadata);
+  }
+  void take(const record::McapMessage& message) { message_ = message; }
+  void take(const record::McapAttachment& attachment) {
+    writer_.add_attachment(attachment.log_time,
+                           site_ + '/' + std::string{attachment.name},
+                           attachment.media_type,
+                           attachment.data);
+  }
+  void take(const record::McapMetadata& metadata) {
+    writer_.add_metadata(site_ + '/' + std::string{metadata.name}, metadata.entries);
+  }
+  void take(const record::McapStatistics& /*statistics*/) {}
+
+  record::McapReader reader_;
+  std::string site_;
+  record::McapWriter& writer_;
+  std::map<std::uint16_t, std::uint16_t> schemas_;   ///< old id to new
+  std::map<std::uint16_t, std::uint16_t> channels_;  ///< old id to new
+  std::optional<record::McapMessage> message_;
+  std::uint64_t at_{};
+};
+
+record::McapMap description_of(const SessionPair& session) {
+  const TimeLine& line = session.time_line;
+  return {{"session_id", session.session_id},
+          {"time_line", "surgeon"},
+          {"offset_source", line.source},
+          {"patient_minus_surgeon_ns", std::to_string(line.offset.count())},
+          {"skew_s_per_s", config::number_text(line.skew)},
+          {"uncertainty_ns", line.known ? std::to_string(line.uncertainty.count()) : "unknown"}};
+}
+
+}  // namespace
+
+Result<std::uint64_t> merge_files(const PairBytes& files,
+                                  const SessionPair& session,
+                                  record::ByteSink& out) {
+  record::McapWriter writer{out, {.library = "palp-review merge"}};
+  writer.add_metadata("palp.merge", description_of(session));
+  const record::WallClock& wall = session.surgeon.clock;
+  const auto as_is = [](std::uint64_t stamp) { return stamp; };
+  const auto moved = [&](std::uint64_t stamp) {
+    return wall.stamp(session.time_line.surgeons(session.patient.clock.own(stamp)));
+  };
+  MergeSource surgeon{files.surgeon, "surgeon", writer};
+  MergeSource patient{files.patient, "patient", writer};
+  surgeon.advance(as_is);
+  patient.advance(moved);
+  while (!surgeon.done() || !patient.done()) {
+    if (patient.done() || (!surgeon.done() && surgeon.at() <= patient.at())) {
+      surgeon.write();
+      surgeon.advance(as_is);
+    } else {
+      patient.write();
+      patient.advance(moved);
+    }
+  }
+  writer.close();
+  if (writer.failed()) return fail("the new file could not be written whole: is the disk full?");
+  return writer.counts().messages;
+}
+
+}  // namespace palp::review

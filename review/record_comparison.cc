@@ -1,0 +1,64 @@
+#include "review/record_comparison.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "common/core/number_text.h"
+#include "review/record_numbers.h"
+
+namespace palp::review {
+
+RecordComparison::RecordComparison(link::Role site) : site_{site}, encoder_{site} {
+  for (const record::TopicFormat& format : record::topics_of(site)) {
+    names_[static_cast<std::size_t>(format.topic)] = format.name;
+  }
+}
+
+std::string RecordComparison::compare(const std::vector<Record>& logged,
+                                      const std::vector<Record>& again,
+                                      TimePoint began_at) {
+  const auto place = [&](const Encoded& of) {
+    return of.topic + number_text(", ", seconds(elapsed(began_at, of.at)), 6, " s, ");
+  };
+  for (std::size_t i = 0; i < std::min(logged.size(), again.size()); ++i) {
+    const Encoded there = encoded(logged[i]);
+    if (there.bytes == encoded(again[i]).bytes) continue;
+    return place(there) + field_of(logged[i], again[i]);
+  }
+  if (logged.size() == again.size()) return {};
+  if (logged.size() > again.size()) {
+    return place(encoded(logged[again.size()])) + "the whole record: it did not come again";
+  }
+  return place(encoded(again[logged.size()])) + "the whole record: the file has none";
+}
+
+RecordComparison::Encoded RecordComparison::encoded(const Record& record) {
+  const auto prepared = encoder_.prepare(record, 0);
+  if (!prepared) return {};
+  Encoded of{.topic = names_[static_cast<std::size_t>(prepared->topic)],
+             .at = prepared->at,
+             .bytes = std::vector<std::byte>(prepared->size)};
+  encoder_.store(of.bytes.data());
+  of.bytes.push_back(static_cast<std::byte>(prepared->topic));
+  const auto at = static_cast<std::uint64_t>(prepared->at.time_since_epoch().count());
+  for (unsigned shift = 0; shift < 64; shift += 8) {
+    of.bytes.push_back(static_cast<std::byte>(at >> shift & 0xFFU));
+  }
+  return of;
+}
+
+std::string RecordComparison::field_of(const Record& logged, const Record& again) const {
+  if (logged.index() != again.index()) {
+    return std::string{"the whole record: it became '"} + kRecordNames[again.index()] + "'";
+  }
+  const NamedNumbers there = numbers_of(logged, site_);
+  const NamedNumbers here = numbers_of(again, site_);
+  for (std::size_t i = 0; i < std::min(there.size(), here.size()); ++i) {
+    if (there[i] == here[i]) continue;
+    const std::string other = there[i].name == here[i].name ? "" : here[i].name + " ";
+    return there[i].name + ": " + there[i].text() + " became " + other + here[i].text();
+  }
+  return "the payload: it became another one";
+}
+
+}  // namespace palp::review

@@ -1,0 +1,62 @@
+#include "review/replay_command.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/review/lab_files.h"
+
+namespace palp::review {
+namespace {
+
+using testing::HasSubstr;
+
+const test::LabFiles& three_seconds() {
+  static const test::LabFiles files = test::lab_files(test::lab_scenario(std::chrono::seconds{3}));
+  return files;
+}
+
+TEST(ReplayCommandTest, TheFileAloneIsEnough) {
+  for (const auto bytes : {three_seconds().surgeon.bytes(), three_seconds().patient.bytes()}) {
+    const auto answer = replay_command({bytes}, {});
+    ASSERT_TRUE(answer) << answer.error().text;
+    EXPECT_TRUE(answer->same) << answer->text;
+    EXPECT_THAT(answer->text, HasSubstr("3000 ticks"));
+  }
+}
+
+TEST(ReplayCommandTest, TellsWhatAnotherCouplingsHalfWouldHaveSaid) {
+  const auto answer = replay_command({three_seconds().patient.bytes()}, {.coupling = "wave"});
+  ASSERT_TRUE(answer) << answer.error().text;
+  EXPECT_THAT(answer->text, HasSubstr("target of the stage"));
+}
+
+TEST(ReplayCommandTest, ADamagedFileIsNoDifference) {
+  const auto bytes = three_seconds().surgeon.bytes();
+  std::vector<std::byte> damaged{bytes.begin(), bytes.end()};
+  damaged[damaged.size() / 2] ^= std::byte{1};
+  const auto answer = replay_command({damaged}, {});
+  ASSERT_FALSE(answer);
+  EXPECT_THAT(answer.error().text, HasSubstr("damaged"));
+}
+
+TEST(ReplayCommandTest, AFileThatWasCutOffIsDoneAgainToItsEnd) {
+  const auto bytes = three_seconds().surgeon.bytes();
+  const auto answer = replay_command({bytes.first(bytes.size() / 2)}, {});
+  ASSERT_TRUE(answer) << answer.error().text;
+  EXPECT_TRUE(answer->same) << answer->text;
+}
+
+TEST(ReplayCommandTest, RefusesInASentence) {
+  const auto of_surgeon = replay_command({three_seconds().surgeon.bytes()}, {.estimator = "paper"});
+  ASSERT_FALSE(of_surgeon);
+  EXPECT_THAT(of_surgeon.error().text, HasSubstr("patient's file"));
+  const auto unknown = replay_command({three_seconds().patient.bytes()}, {.coupling = "felt"});
+  EXPECT_FALSE(unknown);
+  const auto twice =
+      replay_command({three_seconds().patient.bytes(), three_seconds().patient.bytes()}, {});
+  ASSERT_FALSE(twice);
+  EXPECT_THAT(twice.error().text, HasSubstr("number 1 of its run where number 2 is due"));
+}
+
+}  // namespace
+}  // namespace palp::review

@@ -1,0 +1,45 @@
+#include "review/report_page.h"
+
+#include <gtest/gtest.h>
+
+#include "review/demo_report.h"
+#include "tests/review/lab_files.h"
+
+namespace palp::review {
+namespace {
+
+/// The page of a session in virtual time; `outcome` as the caller told it.
+std::string page_of(const std::string& outcome) {
+  const test::LabFiles files = test::lab_files(test::lab_scenario(std::chrono::seconds{12}));
+  auto surgeon = load_site(files.surgeon.bytes(), "s", link::Role::Surgeon).value();
+  auto patient = load_site(files.patient.bytes(), "p", link::Role::Patient).value();
+  const SessionPair pair = pair_of(std::move(surgeon), std::move(patient)).value();
+  const SessionTicks ticks = session_ticks(pair, nullptr);
+  const auto taps = match_taps(pair.surgeon, pair.patient, pair.time_line, nullptr);
+  Asked asked;
+  asked.outcome = outcome;
+  return report_page(
+      pair,
+      ticks,
+      demo_report(pair.surgeon, pair.patient, taps, asked, {}, {}, metrics_json(ticks)));
+}
+
+TEST(ReportPageTest, NeedsNothingFromOutside) {
+  const std::string page = page_of("completed");
+  for (const char* place : {"/*DATA*/", "/*UPLOT-CODE*/", "/*UPLOT-STYLE*/"}) {
+    EXPECT_EQ(page.find(place), std::string::npos) << place << " was filled in";
+  }
+  for (const char* outside : {"src=", "<link", "@import", "url("}) {
+    EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+  }
+  EXPECT_NE(page.find("Copyright"), std::string::npos) << "of the library";
+  EXPECT_LT(page.size(), 3'000'000U);
+}
+
+TEST(ReportPageTest, NoTextOfAFileEndsTheScript) {
+  const std::string page = page_of("</script><script>alert(1)</script>");
+  EXPECT_EQ(page.find("alert(1)</script>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace palp::review

@@ -1,0 +1,59 @@
+#include "review/session_metrics.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/review/lab_files.h"
+
+namespace palp::review {
+namespace {
+
+using std::chrono_literals::operator""s;
+
+struct Judged {
+  SessionTicks session;
+  judge::RunMetrics review;
+  judge::RunMetrics lab;
+};
+
+/// The lab judges by true states, the review by what was written down.
+Judged judged(const lab::Scenario& scenario) {
+  test::LabFiles files;
+  Judged made;
+  made.lab =
+      lab::simulate(scenario, {.surgeon = &files.surgeon, .patient = &files.patient}).metrics;
+  auto surgeon = load_site(files.surgeon.bytes(), "s", link::Role::Surgeon).value();
+  auto patient = load_site(files.patient.bytes(), "p", link::Role::Patient).value();
+  const auto tissue = judge::TissueTable::parse(patient.tissue_csv.value()).value();
+  const SessionPair pair = pair_of(std::move(surgeon), std::move(patient)).value();
+  made.session = session_ticks(pair, &tissue);
+  made.review = session_metrics(made.session);
+  return made;
+}
+
+TEST(SessionMetricsTest, FindsTheLabsTapsAndForcesInTheFiles) {
+  const Judged one = judged(test::lab_scenario(25s));
+  EXPECT_TRUE(one.session.phases);
+  EXPECT_FALSE(one.review.unstable);
+  ASSERT_GT(one.lab.taps.size(), 1U);
+  ASSERT_EQ(one.review.taps.size(), one.lab.taps.size());
+  for (std::size_t i = 0; i < one.lab.taps.size(); ++i) {
+    EXPECT_EQ(one.review.taps[i].index, one.lab.taps[i].index);
+    // What is written down comes from an encoder, and a tick later.
+    EXPECT_NEAR(one.review.taps[i].hand_max, one.lab.taps[i].hand_max, 0.1e-3);
+  }
+  EXPECT_NEAR(one.review.force_peak, one.lab.force_peak, 0.02);
+  EXPECT_TRUE(std::isnan(one.review.whole.force_kick)) << "nobody wrote that down";
+}
+
+TEST(SessionMetricsTest, WithoutSettingsThereAreNoPhases) {
+  SessionPair pair;
+  const SessionTicks none = session_ticks(pair, nullptr);
+  EXPECT_FALSE(none.phases);
+  EXPECT_TRUE(none.ticks.empty());
+  EXPECT_TRUE(metrics_json(none)["drag_rms_n"].is_null());
+}
+
+}  // namespace
+}  // namespace palp::review
