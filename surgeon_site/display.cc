@@ -32,12 +32,18 @@ std::string stage_text(const SurgeonStatus& status) {
          "  ";
 }
 
+std::string incomplete_text(const SurgeonStatus& status) {
+  if (!status.force_incomplete) return {};
+  return number_text("LESS THAN THE TISSUE'S BY ", status.force_missing, 2, " N: lift once  ");
+}
+
 }  // namespace
 
 std::string status_line(const SurgeonStatus& status) {
   return record::state_text(status.state, status.reason, status.refused) + "  " +
          link::health_text(status.link) + number_text("  force ", status.force, 2, " N  ") +
-         stage_text(status) + depth_line_of(status.depth) + progress_text(status.script);
+         incomplete_text(status) + stage_text(status) + depth_line_of(status.depth) +
+         progress_text(status.script);
 }
 
 std::optional<std::string> delay_advice(const SurgeonStatus& status,

@@ -9,6 +9,11 @@ namespace {
 
 using record::NoteCode;
 
+// What a surgeon is told of: less than this is not felt, shorter is the model coming in.
+constexpr double kMissingMin = 0.05;    // [N]
+constexpr double kMissingShare = 0.05;  // [-], of the tissue's force
+constexpr double kMissingTime = 0.3;    // [s]
+
 ForceGateConfig within_device(ForceGateConfig gate, const HandFacts& hand) noexcept {
   gate.force_max = std::min(gate.force_max, hand.force_peak);
   gate.force_continuous = std::min(gate.force_continuous, hand.force_continuous);
@@ -148,11 +153,30 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
   now_.gate_acted = answer_.acted;
   now_.position = given.position;
   now_.place = hand_.place;
+  judge_force(wanted.force_missing, lapse);
   return {.force = answer_.force,
           .hold_in_plane = config_.hold_in_plane && answer_.force >= pressing_force(),
           .to_peer = {{now_.state, now_.epoch, hand_.place, {}},
                       account_.within_limits(wanted.to_patient)},
           .view = {now_.state, now_.peer_state, now_.link.state, now_.tip, now_.tip_known}};
+}
+
+/// A hand that feels less than the tissue must know it.
+void SurgeonControl::judge_force(double missing, const Lapse& lapse) noexcept {
+  const bool rendered = now_.state == SiteState::Engaged;
+  now_.force_missing = rendered ? missing : 0;
+  const double noticed = std::max(kMissingMin, kMissingShare * (missing + now_.force));
+  const bool incomplete = now_.force_missing > noticed;
+  if (incomplete == now_.force_incomplete) {
+    incomplete_for_ = 0;
+    return;
+  }
+  incomplete_for_ += seconds(lapse.passed());
+  if (rendered && incomplete_for_ < kMissingTime) return;
+  now_.force_incomplete = incomplete;
+  if (rendered) {
+    account_.note(incomplete ? NoteCode::ForceIncomplete : NoteCode::ForceComplete, missing);
+  }
 }
 
 void SurgeonControl::write_down(const SurgeonInputs& in, const SurgeonOutputs& out) noexcept {
@@ -167,7 +191,8 @@ void SurgeonControl::write_down(const SurgeonInputs& in, const SurgeonOutputs& o
                            .command = now_.force,
                            .gate_acted = now_.gate_acted,
                            .round_trip = now_.link.round_trip,
-                           .sent = out.to_peer.port});
+                           .sent = out.to_peer.port,
+                           .force_missing = now_.force_missing});
   account_.link(in.link);
   note_script(in.script);
   record_readings(in);

@@ -81,6 +81,7 @@ class SurgeonControl {
   [[nodiscard]] coupling::SurgeonInput law_input(const link::Arrivals& arrived,
                                                  bool engaged_now) const noexcept;
   [[nodiscard]] double pressing_force() const noexcept;
+  void judge_force(double missing, const Lapse& lapse) noexcept;
   void note_script(const ScriptProgress& script) noexcept;
   void record_readings(const SurgeonInputs& in) noexcept;
 
@@ -93,7 +94,8 @@ class SurgeonControl {
   SurgeonStatus now_;  ///< of this tick: what is shown, and what one tick leaves to the next
   HandState hand_;     ///< last one with numbers
   ForceAnswer answer_;
-  double force_before_{};  ///< [N], applied in the tick before
+  double force_before_{};    ///< [N], applied in the tick before
+  double incomplete_for_{};  ///< [s], that the force is otherwise than the surgeon was told
   bool hand_was_finite_{true};
   bool session_began_{};          ///< or ended, in this tick
   std::uint32_t resets_{};        ///< last heard of

@@ -32,6 +32,8 @@ struct SurgeonStatus : record::SiteCounts {
   double force{};          ///< [N], to the hand
   double contact_force{};  ///< [N], as last heard
   bool gate_acted{};
+  double force_missing{};   ///< [N], of the believed tissue's force, what the law cannot give
+  bool force_incomplete{};  ///< so much of it, and for so long, that the surgeon is told
   DepthReport depth;
   ScriptProgress script;
   record::NoteCode refused{};  ///< why the last press of the pedal did not engage; None: it did

@@ -30,6 +30,8 @@ struct SurgeonOutput {
   /// [N], most that may push the hand out while a gate that closes fades it: what the law's books
   /// can still pay for.
   double fade_max{std::numeric_limits<double>::infinity()};
+  /// [N], of the tissue that the law believes in, the force that it cannot give here and now.
+  double force_missing{};
 };
 
 struct PatientInput {

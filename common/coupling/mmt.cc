@@ -43,7 +43,9 @@ void MmtSurgeon::drop_model() noexcept {
   showing_ = false;
   stored_ = 0;
   shown_force_ = 0;
-  offset_ = 0;
+  depth_ = 0;
+  release_ = 0;
+  released_ = 0;
   brake_ = 0;
   ContactModel nothing = shown_.elastic();
   nothing.c = {};
@@ -102,23 +104,53 @@ void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& 
   shown_.age_into(elastic, relaxing, depth, passed);
 }
 
-/// The least offset with which energy and force stay below their limits.
-void MmtSurgeon::choose_offset(double position, double energy_max, double force_max) noexcept {
+/// The hand moved, the model did not. Within the play a force that lets go steeply stays as it is:
+/// else every tremble of a holding hand, and every count of its encoder, would cost some of it.
+void MmtSurgeon::give_way(double moved) noexcept {
+  depth_ += moved;
+  const double slack = slack_ - moved;
+  slack_ = std::clamp(slack, 0.0, config_.release_play);
+  released_ = std::max(0.0, released_ - release_ * (slack - slack_));
+}
+
+double MmtSurgeon::force_now() const noexcept {
+  return release_ > 0 ? released_ : shown_.force(depth_);
+}
+
+/// What the hand could take as it lets the force push it out.
+double MmtSurgeon::energy_now() const noexcept {
+  if (release_ <= 0) return shown_.energy(depth_);
+  return 0.5 * released_ * released_ / release_ + released_ * (config_.release_play - slack_);
+}
+
+/// The greatest depth with which energy and force stay below their limits. Holding a force takes no
+/// energy, giving way does: where the tank cannot pay for the model's own spring, the force is
+/// shown all the same and lets go along a steeper line, which stores less.
+void MmtSurgeon::choose_depth(double position, double energy_max, double force_max) noexcept {
   const double whole = depth_at(position);
-  const auto fits = [&](double offset) {
-    const double depth = whole - offset;
-    return shown_.force(depth) <= force_max + kForceTolerance &&
-           shown_.energy(depth) <= energy_max + kEnergyTolerance;
+  const double play = config_.release_play - slack_;
+  const auto fits = [&](double depth) {
+    const double force = shown_.force(depth);
+    const double steep = 0.5 * force * force / config_.release_max + force * play;
+    return force <= force_max + kForceTolerance &&
+           std::min(shown_.energy(depth), steep) <= energy_max + kEnergyTolerance;
   };
-  offset_ = 0;
-  if (whole <= 0 || fits(0)) return;
-  double low = 0;
-  double high = whole;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = 0.5 * (low + high);
-    (fits(middle) ? high : low) = middle;
+  depth_ = whole;
+  if (whole > 0 && !fits(whole)) {
+    double low = 0;
+    double high = whole;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (low + high);
+      (fits(middle) ? low : high) = middle;
+    }
+    depth_ = low;
   }
-  offset_ = high;
+  released_ = shown_.force(depth_);
+  release_ = 0;
+  if (shown_.energy(depth_) > energy_max + kEnergyTolerance) {
+    const double left = std::max(kEnergyTolerance, energy_max - released_ * play);
+    release_ = std::min(0.5 * released_ * released_ / left, config_.release_max);
+  }
 }
 
 /// How fast a new model may come in under a hand on its way in. A large force that appears under a
@@ -169,10 +201,8 @@ SurgeonOutput MmtSurgeon::let_go(const SurgeonInput& in, double work) noexcept {
   if (in.force_applied == 0) drop_model();
   // A hand that was let out under a force held too long has taken of this already.
   const double left = std::max(0.0, stored_ + tank_);
-  if (shown_.energy(depth_at(in.position) - offset_) > left) {
-    choose_offset(in.position, left, std::numeric_limits<double>::infinity());
-  }
-  shown_force_ = shown_.force(depth_at(in.position) - offset_);
+  if (energy_now() > left) choose_depth(in.position, left, force_now());
+  shown_force_ = force_now();
   return {0, {in.position, in.velocity, 0, std::monostate{}}, shown_force_};
 }
 
@@ -182,14 +212,15 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexc
   hear(in.arrived, in.round_trip);
   const double speed = velocity_.step(in.position, lapse.periods);
   const double work = in.force_applied * (in.position - position_before_);
+  give_way(in.position - position_before_);
   position_before_ = in.position;
 
   if (!may_render(in.state)) return let_go(in, work);
   if (in.state == SiteState::Retract) presence_.fall(span, config_.fade);
 
-  const double depth_before = depth_at(in.position) - offset_;
-  const double moved = shown_.energy(depth_before);
-  const double force_before = shown_.force(depth_before);
+  const double depth_before = depth_;
+  const double moved = energy_now();
+  const double force_before = force_now();
   tank_ = std::min(config_.tank_max, tank_ + work - (moved - stored_));
 
   approach_candidate(in.position, depth_before, lapse);
@@ -198,17 +229,18 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexc
   const double moving = std::clamp(config_.slew_rest + speed / config_.slew_speed, 0.0, 1.0);
   const double force_max =
       std::max(force_before + config_.slew_beside * span, shown_force_ + moving * rise_max);
-  choose_offset(in.position, std::max(0.0, moved + tank_), force_max);
-
-  const double depth = depth_at(in.position) - offset_;
-  stored_ = shown_.energy(depth);
+  choose_depth(in.position, std::max(0.0, moved + tank_), force_max);
+  stored_ = energy_now();
   tank_ -= stored_ - moved;
 
-  shown_force_ = shown_.force(depth);
+  shown_force_ = shown_.force(depth_);
   const double risen = std::max(0.0, shown_force_ - force_before);
   brake(shown_.force(depth_at(in.position)) - shown_force_, speed, std::max(0.0, rise_max - risen));
-  const double force = damp(shown_force_, depth, speed) + brake_;
-  return {force, {in.position, in.velocity, force, std::monostate{}}, shown_force_};
+  const double force = damp(shown_force_, depth_, speed) + brake_;
+  return {force,
+          {in.position, in.velocity, force, std::monostate{}},
+          shown_force_,
+          std::max(0.0, shown_.force(depth_at(in.position)) - shown_force_)};
 }
 
 MmtPatient::MmtPatient(const MmtConfig& config, const PatientDevices& devices) noexcept

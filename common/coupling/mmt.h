@@ -30,6 +30,10 @@ struct MmtConfig {
   double slew_rest{0.1};    ///< [-], share of it under a hand at rest; none a little faster out
   double slew_beside{1};    ///< [N/s], of a new model beside what motion alone does
   Duration round_trip_short{std::chrono::milliseconds{8}};
+  /// [N/m], steepest that the shown force lets go while the tank is short. The steeper, the less a
+  /// held force has to store, and the less quietly a hand holds.
+  double release_max{1000};
+  double release_play{60e-6};   ///< [m], that a holding hand trembles and its encoder counts
   double blend{0.05};           ///< [s], time constant of changes of the model
   double brake{2};              ///< [N s/m], on the way in, while a force is still to come in
   double contact_damping{0.2};  ///< [N s/m], on the way out: the way in is what a finger judges
@@ -60,9 +64,8 @@ class MmtSurgeon {
   [[nodiscard]] double tank() const noexcept { return tank_; }      ///< [J]
   [[nodiscard]] double stored() const noexcept { return stored_; }  ///< [J], in the shown model
   [[nodiscard]] const RelaxingContact& shown() const noexcept { return shown_; }
-  [[nodiscard]] double offset() const noexcept {
-    return offset_;
-  }  ///< [m], shown surface above x_c
+  /// [m], below the shown surface; less than the hand's depth while force is missing.
+  [[nodiscard]] double shown_depth() const noexcept { return depth_; }
   [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }  ///< models
 
  private:
@@ -74,7 +77,10 @@ class MmtSurgeon {
     return position - shown_.elastic().surface;
   }
   [[nodiscard]] double slew_for(double position, Duration round_trip) const noexcept;
-  void choose_offset(double position, double energy_max, double force_max) noexcept;
+  void give_way(double moved) noexcept;
+  [[nodiscard]] double force_now() const noexcept;
+  [[nodiscard]] double energy_now() const noexcept;
+  void choose_depth(double position, double energy_max, double force_max) noexcept;
   void brake(double missing, double speed, double rise_max) noexcept;
   [[nodiscard]] double debt() const noexcept;
   [[nodiscard]] double damp(double force, double depth, double speed) const noexcept;
@@ -85,7 +91,10 @@ class MmtSurgeon {
   double tank_;               ///< [J]
   double stored_{};           ///< [J]
   double shown_force_{};      ///< [N], of the shown model, last tick
-  double offset_{};           ///< [m]
+  double depth_{};            ///< [m], of the shown model
+  double release_{};          ///< [N/m], along which the force lets go; 0: along the model
+  double released_{};         ///< [N], with `release_`: the force
+  double slack_{};            ///< [m], 0 to `release_play`: the hand gave way, the force did not
   double brake_{};            ///< [N]
   RelaxingContact shown_;
   bool showing_{};

@@ -28,10 +28,11 @@ struct SiteTick {
   double velocity{};  ///< [m/s]
   double force{};     ///< [N]; surgeon: as applied last tick, patient: contact force measured
   Place place;
-  double command{};       ///< [N] to the hand or [m] to the stage, behind the gate
-  bool gate_acted{};      ///< the gate changed what the law asked for
-  Duration round_trip{};  ///< as given to the law
-  PortSample sent;        ///< to the peer
+  double command{};        ///< [N] to the hand or [m] to the stage, behind the gate
+  bool gate_acted{};       ///< the gate changed what the law asked for
+  Duration round_trip{};   ///< as given to the law
+  PortSample sent;         ///< to the peer
+  double force_missing{};  ///< [N], surgeon: of what the law believes in, what it cannot give
 };
 
 /// Each sample that arrived: a replay needs them all.
@@ -127,7 +128,8 @@ inline constexpr auto fields<S> = list({.log = "SurgeonTick", .log_patient = "Pa
                                        field<8, &S::gate_acted>("gate_acted"),
                                        field<9, &S::round_trip>("round_trip_ns"),
                                        spread<9, &S::sent>("sent_"),
-                                       field<16, &S::place, &Place::y>("y_m"));
+                                       field<16, &S::place, &Place::y>("y_m"),
+                                       field<18, &S::force_missing>("force_missing_n"));
 
 template <std::same_as<Arrived> S>
 inline constexpr auto fields<S> = list({.log = "ArrivedSample"},

@@ -45,6 +45,8 @@ constexpr std::array kTexts{
     Text{NoteCode::KeysReplaced, "telegrams come under new keys"},
     Text{NoteCode::DragRefused, "the stage cannot drag: it keeps its place while pressed"},
     Text{NoteCode::PlaceBeyondTravel, "a place beyond the stage's travel"},
+    Text{NoteCode::ForceIncomplete, "the force is incomplete: lift once"},
+    Text{NoteCode::ForceComplete, "the force is complete again"},
     Text{NoteCode::DiskNearlyFull, "the disk of the session file is nearly full"},
 };
 

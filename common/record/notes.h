@@ -45,6 +45,8 @@ enum class NoteCode : std::uint16_t {
   KeysReplaced = 44,        ///< telegrams come under other keys; detail: their id
   DragRefused = 45,         ///< the stage cannot; detail: distance to the place asked for [m]
   PlaceBeyondTravel = 46,   ///< detail: likewise
+  ForceIncomplete = 47,     ///< the hand feels less than the tissue; detail: missing [N]
+  ForceComplete = 48,       ///< again all of it
   // Of the recording itself, written by the record thread.
   DiskNearlyFull = 64,  ///< detail: time left [s] at the rate of late
 };

@@ -44,6 +44,14 @@ TEST(DisplayTest, SaysStateLinkForceDepthAndProgressInOneLine) {
             "  [######----] 62 %  taps B");
 }
 
+TEST(DisplayTest, SaysThatTheHandFeelsLessThanTheTissue) {
+  SurgeonStatus status = engaged();
+  status.force_missing = 0.31;
+  EXPECT_THAT(status_line(status), Not(HasSubstr("lift"))) << "the model is coming in";
+  status.force_incomplete = true;
+  EXPECT_THAT(status_line(status), HasSubstr("LESS THAN THE TISSUE'S BY 0.31 N: lift once"));
+}
+
 TEST(DisplayTest, SaysWhereTheStageIsWhereItDoesNotGoAlong) {
   SurgeonStatus status = engaged();
   status.peer_heard = true;

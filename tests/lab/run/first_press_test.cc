@@ -1,0 +1,76 @@
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "lab/plan/scenario_file.h"
+#include "lab/run/run.h"
+#include "surgeon_site/script_reader.h"
+
+/// Goal: a first press that stays in contact is felt whole as soon as the tank can pay for holding
+/// it, and for as long as it lasts; the bound of energy stands all the same.
+/// Method: one press at a place that nobody touched, in virtual time; felt force over the tissue's
+/// at the hand's position.
+namespace palp::lab {
+namespace {
+
+struct Press {
+  double share{};   ///< [-], felt over true, 2 s and a round trip after contact
+  double later{};   ///< [-], the same at the end of the press
+  double energy{};  ///< [J], most that the hand got
+  bool unstable{};
+};
+
+Press first_press(const std::string& tissue, const std::string& grip, int round_trip_ms) {
+  config::Document document = load_scenario("standard").value();
+  const std::string way = std::to_string(round_trip_ms / 2);
+  for (const std::string& setting : {"patient.simulated_phantom.phantom=" + tissue,
+                                     "surgeon.hand.grip=" + grip,
+                                     "up.delay_ms=" + way,
+                                     "down.delay_ms=" + way}) {
+    EXPECT_TRUE(document.set(setting)) << setting;
+  }
+  Scenario scenario = make_scenario("first press", document).value();
+  scenario.bare = true;
+  scenario.depths = false;
+  scenario.script = surgeon::parse_script("hold 1\nmove to B\nhold 0.5\npress 4 1 6\nlift 1 1\n",
+                                          scenario.hand.plant.grip.stiffness)
+                        .value();
+  const RunResult result = simulate(scenario);
+  const auto share = [&](double from, double to) {
+    double began_at = -1;
+    double felt = 0;
+    double truth = 0;
+    for (const judge::RunTick& tick : result.ticks) {
+      if (began_at < 0 && tick.contact_force > 0.05) began_at = tick.at;
+      if (began_at < 0 || tick.at < began_at + from || tick.at > began_at + to) continue;
+      felt += tick.hand_force;
+      truth += tick.force_true;
+    }
+    return felt / truth;
+  };
+  const double since = 2 + 1e-3 * round_trip_ms;
+  return {share(since, since + 0.3),
+          share(5, 5.5),
+          result.metrics.energy_operator,
+          result.metrics.unstable};
+}
+
+TEST(FirstPressTest, IsFeltWholeWhereTheEnergyOfHoldingItIsThere) {
+  for (const char* grip : {"mid", "firm"}) {
+    const Press press = first_press("closed-form", grip, 200);
+    EXPECT_NEAR(press.share, 1, 0.03) << grip;
+    EXPECT_NEAR(press.later, 1, 0.03) << grip;
+    EXPECT_LE(press.energy, 1e-3) << grip;
+    EXPECT_FALSE(press.unstable) << grip;
+  }
+}
+
+TEST(FirstPressTest, OfALightHandIsShortAndWithinTheBound) {
+  const Press press = first_press("closed-form", "light", 500);
+  EXPECT_LT(press.share, 0.5) << "the bound could not pay for throwing this hand back";
+  EXPECT_LE(press.energy, 1e-3);
+  EXPECT_FALSE(press.unstable);
+}
+
+}  // namespace
+}  // namespace palp::lab
