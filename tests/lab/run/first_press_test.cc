@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/record/notes.h"
+#include "common/record/session_reader.h"
 #include "lab/plan/scenario_file.h"
 #include "lab/run/run.h"
 #include "surgeon_site/script_reader.h"
@@ -18,7 +20,26 @@ struct Press {
   double later{};   ///< [-], the same at the end of the press
   double energy{};  ///< [J], most that the hand got
   bool unstable{};
+  bool told_short{};     ///< the last word of it before the hand lifted: the force is incomplete
+  double missing_max{};  ///< [N], in the log
 };
+
+constexpr double kLift = 5;  // phase of the script
+
+/// What the surgeon's file says of the force, up to the end of the press.
+void read_log(std::span<const std::byte> file, Press& press) {
+  record::SessionReader reader{file};
+  while (const auto entry = reader.next()) {
+    if (const auto* note = std::get_if<Note>(&entry->record)) {
+      const auto code = static_cast<record::NoteCode>(note->code);
+      if (code == record::NoteCode::ScriptPhase && note->detail >= kLift) return;
+      if (code == record::NoteCode::ForceIncomplete) press.told_short = true;
+      if (code == record::NoteCode::ForceComplete) press.told_short = false;
+    } else if (const auto* tick = std::get_if<SiteTick>(&entry->record)) {
+      press.missing_max = std::max(press.missing_max, tick->force_missing);
+    }
+  }
+}
 
 Press first_press(const std::string& tissue, const std::string& grip, int round_trip_ms) {
   config::Document document = load_scenario("standard").value();
@@ -30,12 +51,12 @@ Press first_press(const std::string& tissue, const std::string& grip, int round_
     EXPECT_TRUE(document.set(setting)) << setting;
   }
   Scenario scenario = make_scenario("first press", document).value();
-  scenario.bare = true;
   scenario.depths = false;
   scenario.script = surgeon::parse_script("hold 1\nmove to B\nhold 0.5\npress 4 1 6\nlift 1 1\n",
                                           scenario.hand.plant.grip.stiffness)
                         .value();
-  const RunResult result = simulate(scenario);
+  record::MemorySink surgeon;
+  const RunResult result = simulate(scenario, {.surgeon = &surgeon});
   const auto share = [&](double from, double to) {
     double began_at = -1;
     double felt = 0;
@@ -49,19 +70,22 @@ Press first_press(const std::string& tissue, const std::string& grip, int round_
     return felt / truth;
   };
   const double since = 2 + 1e-3 * round_trip_ms;
-  return {share(since, since + 0.3),
-          share(5, 5.5),
-          result.metrics.energy_operator,
-          result.metrics.unstable};
+  Press press{.share = share(since, since + 0.3),
+              .later = share(5, 5.5),
+              .energy = result.metrics.energy_operator,
+              .unstable = result.metrics.unstable};
+  read_log(surgeon.bytes(), press);
+  return press;
 }
 
 TEST(FirstPressTest, IsFeltWholeWhereTheEnergyOfHoldingItIsThere) {
   for (const char* grip : {"mid", "firm"}) {
-    const Press press = first_press("closed-form", grip, 200);
+    const Press press = first_press("closed-form", grip, 100);
     EXPECT_NEAR(press.share, 1, 0.03) << grip;
     EXPECT_NEAR(press.later, 1, 0.03) << grip;
     EXPECT_LE(press.energy, 1e-3) << grip;
     EXPECT_FALSE(press.unstable) << grip;
+    EXPECT_FALSE(press.told_short) << grip;
   }
 }
 
@@ -70,6 +94,8 @@ TEST(FirstPressTest, OfALightHandIsShortAndWithinTheBound) {
   EXPECT_LT(press.share, 0.5) << "the bound could not pay for throwing this hand back";
   EXPECT_LE(press.energy, 1e-3);
   EXPECT_FALSE(press.unstable);
+  EXPECT_TRUE(press.told_short);
+  EXPECT_GT(press.missing_max, 0.5);
 }
 
 }  // namespace
