@@ -1,6 +1,5 @@
 #include "common/io/process/diagnostics.h"
 
-#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <string>
@@ -35,9 +34,15 @@ TEST(DiagnosticsTest, NoColorIsHeededOnATerminal) {
     start_diagnostics("palp-test");
     warn("mind the step");
     ::dup2(kept, STDERR_FILENO);
+    // A terminal hands out what was written in pieces.
+    std::string said;
     std::array<char, 512> bytes{};
-    const ssize_t size = ::read(terminal, bytes.data(), bytes.size());
-    return std::string(bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+    while (said.find('\n') == std::string::npos) {
+      const ssize_t size = ::read(terminal, bytes.data(), bytes.size());
+      if (size <= 0) break;
+      said.append(bytes.data(), static_cast<std::size_t>(size));
+    }
+    return said;
   };
   EXPECT_THAT(said_with(""), testing::HasSubstr("\x1b["));
   EXPECT_THAT(said_with("1"), testing::Not(testing::HasSubstr("\x1b[")));
