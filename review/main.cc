@@ -1,16 +1,16 @@
 // palp-review: reads session files. It is linked into no site.
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <limits>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "common/config/command_line.h"
 #include "common/config/exit_code.h"
 #include "common/config/program_run.h"
 #include "common/config/report.h"
 #include "common/core/printable.h"
+#include "common/core/whole_file.h"
 #include "common/record/mapped_file.h"
 #include "common/record/mcap_reader.h"
 #include "review/check.h"
@@ -99,12 +99,12 @@ std::string optional_text(const std::string& path) {
   if (path.empty()) {
     return {};
   }
-  std::ifstream file{path, std::ios::binary};
-  if (!file) {
+  auto text = read_whole_file(path);
+  if (!text) {
     std::cerr << "palp-review: report " << harmless_line(path)
               << " cannot be read; its values are null\n";
   }
-  return {std::istreambuf_iterator<char>{file}, {}};
+  return std::move(text).value_or("");
 }
 
 Result<SessionPair> load_pair(const SessionPaths& paths) {

@@ -64,8 +64,6 @@ class MmtSurgeon {
   [[nodiscard]] double tank() const noexcept { return tank_; }      ///< [J]
   [[nodiscard]] double stored() const noexcept { return stored_; }  ///< [J], in the shown model
   [[nodiscard]] const RelaxingContact& shown() const noexcept { return shown_; }
-  /// [m], below the shown surface; less than the hand's depth while force is missing.
-  [[nodiscard]] double shown_depth() const noexcept { return depth_; }
   [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }  ///< models
 
  private:
@@ -91,11 +89,11 @@ class MmtSurgeon {
   double tank_;               ///< [J]
   double stored_{};           ///< [J]
   double shown_force_{};      ///< [N], of the shown model, last tick
-  double depth_{};            ///< [m], of the shown model
-  double release_{};          ///< [N/m], along which the force lets go; 0: along the model
-  double released_{};         ///< [N], with `release_`: the force
-  double slack_{};            ///< [m], 0 to `release_play`: the hand gave way, the force did not
-  double brake_{};            ///< [N]
+  double depth_{};     ///< [m], of the shown model; less than the hand's while force is missing
+  double release_{};   ///< [N/m], along which the force lets go; 0: along the model
+  double released_{};  ///< [N], with `release_`: the force
+  double slack_{};     ///< [m], 0 to `release_play`: the hand gave way, the force did not
+  double brake_{};     ///< [N]
   RelaxingContact shown_;
   bool showing_{};
   Swing swing_;                                   ///< of the newest model, when it was sent
