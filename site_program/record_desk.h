@@ -26,9 +26,9 @@ struct RecordAccount {
 
 /// What the record thread does: it takes records from their queues to the session file and watches
 /// the disk. Where files of sessions are asked for, each session after the first begins the next
-/// file, at the first record of its first tick. A disk that does not answer may hold its thread longer
-/// than anybody waits: the thread has it to itself then. Thread: record, but for what says
-/// otherwise.
+/// file, at the first record of its first tick. A disk that does not answer may hold its thread
+/// longer than anybody waits: the thread has it to itself then.
+/// Thread: record, but for what says otherwise.
 class RecordDesk {
  public:
   struct News {
