@@ -14,7 +14,8 @@ struct HandFacts {
   std::uint32_t axes{3};         ///< 1 to 6; the first is that of the force, then x and y
   double force_peak{8.5};        ///< [N], 0.01 to 1000
   double force_continuous{1.4};  ///< [N], 0.01 to the peak; for i^2 t
-  double rate{1000};             ///< [Hz], 1 to 100,000; of new readings
+  double rate{1000};             ///< [Hz], 1 to 100,000; of new readings and forces
+  double lag{};                  ///< [s], 0 to 10; from a command that is taken to its force
 };
 
 /// Of a stage. Travel is that along the normal where nothing else is said, speed and acceleration
