@@ -42,6 +42,14 @@ struct ForceSensorFacts {
   double lag{8e-3};     ///< [s], 0 to 10; of a reading behind the force, its pole included
 };
 
+/// [s], from a hand's move to the force that answers it, beside that of a device of 1 kHz: a
+/// reading waits for its turn, its answer for the next, and stands for a period.
+[[nodiscard]] constexpr double answer_delay(const HandFacts& hand) noexcept {
+  constexpr double kUsual = 1e-3;
+  const double wait = 1 / hand.rate - kUsual;
+  return hand.lag + (wait > 0 ? 1.5 * wait : 0);
+}
+
 /// [N], no less is felt as contact: two steps of the sensor, and no less than two of the paper's.
 [[nodiscard]] constexpr double felt_as_contact(const ForceSensorFacts& sensor) noexcept {
   constexpr double kLeast = 0.1;

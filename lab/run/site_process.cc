@@ -21,9 +21,9 @@ std::unique_ptr<link::Codec> patient_codec(const Scenario& scenario) {
 }
 
 // Streams of chance.
-constexpr std::uint64_t kHandPolls = 0x68616e64;     // "hand"
-constexpr std::uint64_t kStagePolls = 0x73746167;    // "stag"
-constexpr std::uint64_t kSensorPolls = 0x73656e73;   // "sens"
+constexpr std::uint64_t kHandPolls = 0x68616e64;    // "hand"
+constexpr std::uint64_t kStagePolls = 0x73746167;   // "stag"
+constexpr std::uint64_t kSensorPolls = 0x73656e73;  // "sens"
 
 }  // namespace
 
@@ -141,7 +141,8 @@ std::optional<patient::ForceSample> PhantomAtClock::sample(TimePoint now) noexce
 
 SurgeonProcess::Running::Running(SurgeonProcess& owner)
     : link{owner.scenario_.link, make_codec(owner.scenario_)},
-      law{coupling::make_surgeon_coupling(owner.scenario_.coupling).value()},
+      law{coupling::make_surgeon_coupling(owner.scenario_.coupling, hand_facts_of(owner.scenario_))
+              .value()},
       node{owner.scenario_.surgeon, {owner.device_, law, link, owner.recorder_}} {}
 
 SurgeonProcess::SurgeonProcess(const Scenario& scenario,
