@@ -70,7 +70,7 @@ struct LoggedTick {
 class LoggedTicks {
  public:
   explicit LoggedTicks(const RunBytes& files) : files_{files} {}
-  /// Without what the estimator's thread said; nullopt: the end.
+  /// Without what the estimator's thread and the lab said; nullopt: the end.
   std::optional<LoggedTick> next();
   /// Chunks that could not be read, so far: their ticks are missing.
   [[nodiscard]] std::uint64_t damaged() const noexcept {

@@ -42,6 +42,7 @@ struct Collector {
   void operator()(const Transition& transition) const { data.transitions.push_back(transition); }
   void operator()(const DepthEstimate& estimate) const { data.estimates.push_back(estimate); }
   void operator()(const DepthArrived& arrived) const { data.reports.push_back(arrived); }
+  void operator()(const PlantTruth& truth) const { data.truths.push_back(truth); }
   template <class Other>
   void operator()(const Other& /*is of no use here*/) const {}
 };

@@ -40,6 +40,7 @@ struct SiteData {
   std::optional<LinkStatus> last_link;
   std::vector<LinkStatus> links;               ///< all of them
   std::vector<DepthArrived> reports;           ///< surgeon: each estimate as it arrived
+  std::vector<PlantTruth> truths;              ///< surgeon: of a simulation of both sites
   record::McapMap metadata;                    ///< of the record `palp`
   std::optional<std::string> tissue_csv;       ///< attachment tissue.csv
   std::optional<std::string> settings;         ///< attachment config.textproto
