@@ -13,7 +13,7 @@
 namespace palp::review {
 
 /// The session files of one run of a site's program, in order; the first begins with the run.
-using RunBytes = std::vector<std::span<const std::byte>>;
+using RunBytes = std::vector<record::FileBytes>;
 
 /// The site's records of one tick, with what it was given sorted out.
 struct LoggedTick {

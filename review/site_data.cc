@@ -73,7 +73,7 @@ Result<SiteData> load_site(const std::string& path, link::Role site) {
   return load_site(file->bytes(), path, site);
 }
 
-Result<SiteData> load_site(std::span<const std::byte> file,
+Result<SiteData> load_site(const record::FileBytes& file,
                            const std::string& name,
                            link::Role site) {
   SiteData data;

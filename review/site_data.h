@@ -55,7 +55,7 @@ struct SiteData {
 
 /// Fails if the file cannot be opened, is none, or is the other site's.
 [[nodiscard]] Result<SiteData> load_site(const std::string& path, link::Role site);
-[[nodiscard]] Result<SiteData> load_site(std::span<const std::byte> file,
+[[nodiscard]] Result<SiteData> load_site(const record::FileBytes& file,
                                          const std::string& name,
                                          link::Role site);
 

@@ -153,7 +153,7 @@ double surface_of(const record::SessionReader& reader) {
 
 }  // namespace
 
-Result<GestureScript> parse_recording(std::span<const std::byte> file, double hand_stiffness) {
+Result<GestureScript> parse_recording(const record::FileBytes& file, double hand_stiffness) {
   record::SessionReader reader{file};
   std::optional<HandMeans> means;
   while (const auto entry = reader.next()) {

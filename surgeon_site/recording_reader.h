@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/core/result.h"
+#include "common/record/file_bytes.h"
 #include "surgeon_site/gesture_script.h"
 
 namespace palp::surgeon {
@@ -15,7 +16,7 @@ namespace palp::surgeon {
 /// is the mean of each 20 ms, a point every 10 ms, the recorded tremor in it; while the session was
 /// broken off, a straight line. Each time in the tissue is a tap or a press, with a phase of its
 /// own. A sentence where the file is no such recording. Not for rt.
-[[nodiscard]] Result<GestureScript> parse_recording(std::span<const std::byte> file,
+[[nodiscard]] Result<GestureScript> parse_recording(const record::FileBytes& file,
                                                     double hand_stiffness);
 /// The same of a file's path.
 [[nodiscard]] Result<GestureScript> load_recording(const std::string& path, double hand_stiffness);
