@@ -1,6 +1,6 @@
 # Sourced by routers, after common.sh: two sites, each behind a router of its own, and a host that
 # all can reach, in network namespaces.
-#   s --- ns --- w --- np --- p      surgeon, its router, the wide area, the patient's router, patient
+#   s --- ns --- w --- np --- p      surgeon, its router, wide area, router, patient
 #                |
 #                r                   relay, and hub of a VPN
 net=palp$$
@@ -14,7 +14,9 @@ inside() { # namespace command...
 }
 stop_all() { # what runs inside, not the shells that started it
   local one
-  for one in s ns w np p r; do ip netns pids "$net-$one" 2>/dev/null | xargs -r kill 2>/dev/null; done
+  for one in s ns w np p r; do
+    ip netns pids "$net-$one" 2>/dev/null | xargs -r kill 2>/dev/null
+  done
   wait 2>/dev/null
   for one in s ns w np p r; do ip netns del "$net-$one" 2>/dev/null; done
 }
