@@ -59,7 +59,7 @@ class SurgeonAgain {
   SurgeonAgain(const surgeon::SurgeonConfig& config,
                const coupling::CouplingConfig& coupling,
                const HandFacts& hand)
-      : law_{coupling::make_surgeon_coupling(coupling).value()},
+      : law_{coupling::make_surgeon_coupling(coupling, hand).value()},
         control_{config, hand, {law_, recorder_}} {}
 
   const std::vector<Record>& step(const LoggedTick& tick) {

@@ -248,7 +248,7 @@ struct PatientEnd {
         file{writer},
         recorder{digest, &file},
         process{scenario, {tissue, recorder, contact, depth}, std::move(path)},
-        estimator{depth::with_sensor(scenario.estimator, tissue.sensor_facts()),
+        estimator{depth::with_sensor(scenario.estimator, patient_devices_of(scenario).sensor),
                   {contact, depth, recorder}} {}
 
   patient::SimulatedPhantom tissue;
