@@ -282,16 +282,16 @@ void Program::stop(site_program::SiteReport& report) {
   runner_.stop("the patient site has ended");
   estimator_.stop();
   const PatientStatus& status = node_.status().get();
-  report.records = recording_.stop();
-  recording_.tell_news(line_);
-  line_.show(recording_.alarm() + status_line(status), clock_.now());
-  line_.end();
   report.link = status.link;
   report.round_trips = round_trips_;
   report.estimates = worker_.strokes();
   report.estimate_p50 = latencies_.quantile(0.5);
   report.estimate_max = latencies_.max();
   runner_.account(report);
+  report.records = recording_.stop(figures_of(report));
+  recording_.tell_news(line_);
+  line_.show(recording_.alarm() + status_line(status), clock_.now());
+  line_.end();
 }
 
 }  // namespace

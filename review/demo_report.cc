@@ -149,6 +149,9 @@ Json rejected_json(const SiteData& site, const Json& report) {
   return json;
 }
 
+/// What the site's program reported in its file.
+Json told_by(const SiteData& site) { return parsed(site.program_report.value_or("")); }
+
 Json site_json(const SiteData& site, const Json& report, const std::string& path) {
   Json json;
   json["session_file"] = first_known({member(report, "session_file"), path});
@@ -157,7 +160,7 @@ Json site_json(const SiteData& site, const Json& report, const std::string& path
   json["ticks"] = first_known({member(report, "ticks"), site.motion.size()});
   json["missed_ticks"] = member(report, "missed_ticks");
   json["lateness_p999_us"] = member(report, "lateness_p999_us");
-  json["records_written"] = first_known({member(report, "records_written"), site.report.messages});
+  json["records_written"] = first_known({member(report, "records_written"), site.records});
   json["records_dropped"] =
       first_known({member(report, "records_dropped"), whole_number(site.records_dropped)});
   json["rejected"] = rejected_json(site, report);
@@ -206,8 +209,8 @@ std::string demo_report(const SiteData& surgeon,
                         const ProgramReports& reports,
                         const SessionPaths& paths,
                         const config::Json& metrics) {
-  const Json surgeon_report = parsed(reports.surgeon);
-  const Json patient_report = parsed(reports.patient);
+  const Json surgeon_report = first_known({parsed(reports.surgeon), told_by(surgeon)});
+  const Json patient_report = first_known({parsed(reports.patient), told_by(patient)});
   Json json;
   json["schema"] = "palp.demo/1";
   json["outcome"] = first_known({text_or_null(asked.outcome),

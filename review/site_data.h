@@ -44,6 +44,7 @@ struct SiteData {
   record::McapMap metadata;                    ///< of the record `palp`
   std::optional<std::string> tissue_csv;       ///< attachment tissue.csv
   std::optional<std::string> settings;         ///< attachment config.textproto
+  std::optional<std::string> program_report;   ///< of the program, as JSON, where it was closed
   std::uint64_t records{};                     ///< decoded
   std::optional<std::string> records_dropped;  ///< from the summary
   record::McapReadReport report;

@@ -132,6 +132,10 @@ void RecordDesk::work(TimePoint now) {
   if (!last) return;
   for (const Record& one : tick_) write(one);
   tick_.clear();
+  // A file of one session of many knows nothing of the run.
+  if (writer_ && prefix_.empty() && !figures_.empty()) {
+    writer_->add_metadata(record::kReportRecord, {{record::kReportKey, figures_}});
+  }
   close_file();
   account_.fault = file_fault_;
   account_.dropped = dropped_ + lost_;

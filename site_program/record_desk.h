@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/mailbox.h"
@@ -49,8 +50,11 @@ class RecordDesk {
 
   /// Writes what waits; once close() was said, the last of it, and closes the file.
   void work(TimePoint now);
-  /// All writers have ended. Thread: the maker's.
-  void close() noexcept { closing_ = true; }
+  /// All writers have ended. `figures`: as Recording::stop(). Thread: the maker's.
+  void close(std::string figures) {
+    figures_ = std::move(figures);
+    closing_ = true;
+  }
   /// Once work() has come back from that. Thread: the maker's.
   [[nodiscard]] const RecordAccount& account() const noexcept { return account_; }
 
@@ -92,6 +96,7 @@ class RecordDesk {
   std::uint64_t dropped_{};  ///< by full queues
   std::uint64_t lost_{};     ///< in no file, and not for a full queue
   RecordAccount account_;
+  std::string figures_;  ///< written before closing_, read behind it
   std::atomic<bool> closing_{};
 };
 

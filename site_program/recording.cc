@@ -57,9 +57,9 @@ void Recording::tell_news(StatusLine& line) {
   }
 }
 
-const RecordAccount& Recording::stop() {
+const RecordAccount& Recording::stop(std::string figures) {
   if (!loop_) return account_;
-  desk_->close();
+  desk_->close(std::move(figures));
   if (loop_->stop_within(kPatience)) {
     account_ = desk_->account();
   } else {

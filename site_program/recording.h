@@ -32,8 +32,9 @@ class Recording {
   /// What stands at the head of the status line while the recording is in need, with a space behind
   /// it; empty: it is well.
   [[nodiscard]] std::string alarm();
-  /// Once all writers have ended: writes what waits and closes the file. Idempotent.
-  const RecordAccount& stop();
+  /// Once all writers have ended: writes what waits, and `figures`, what the program reports of its
+  /// run, and closes the file. Idempotent.
+  const RecordAccount& stop(std::string figures = {});
 
  private:
   [[nodiscard]] Duration silent_for();

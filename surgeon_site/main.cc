@@ -215,12 +215,12 @@ void Program::stop(site_program::SiteReport& report) {
                    : "the surgeon site has ended: " + report.exit_status.reason);
   const SurgeonStatus& status = node_.status().get();
   line_.show(recording_.alarm() + status_line(status), clock_.now());
-  report.records = recording_.stop();
-  recording_.tell_news(line_);
-  line_.end();
   report.link = status.link;
   report.round_trips = round_trips_;
   runner_.account(report);
+  report.records = recording_.stop(figures_of(report));
+  recording_.tell_news(line_);
+  line_.end();
 }
 
 }  // namespace

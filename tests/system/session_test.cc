@@ -56,6 +56,37 @@ class SessionTest : public ::testing::Test {
     EXPECT_EQ(file.arrivals.size(), account["records"]["arrived"]);
   }
 
+  /// What palp-review finds in the files alone equals the programs' reports to the last digit.
+  void expect_what_the_programs_said() const {
+    Process metrics{"palp-review",
+                    {"metrics",
+                     "--surgeon",
+                     path("surgeon.mcap"),
+                     "--patient",
+                     path("patient.mcap"),
+                     "--report",
+                     path("review.json")},
+                    path("review.log")};
+    ASSERT_EQ(metrics.wait(seconds{60}), 0) << metrics.output();
+    const nlohmann::json review = report(path("review.json"));
+    for (const std::string site : {"surgeon", "patient"}) {
+      const nlohmann::json program = report(path(site + ".json"));
+      for (const char* key : {"ticks",
+                              "missed_ticks",
+                              "lateness_p999_us",
+                              "messages",
+                              "records_written",
+                              "records_dropped",
+                              "rejected",
+                              "late",
+                              "repaired"}) {
+        EXPECT_EQ(review["sites"][site][key], program[key]) << site << ' ' << key;
+      }
+    }
+    EXPECT_EQ(review["link"]["achieved"]["rtt_p50_ms"],
+              report(path("surgeon.json"))["round_trip_p50_ms"]);
+  }
+
   std::string folder_{make_folder("session")};
 };
 
@@ -100,6 +131,7 @@ TEST_F(SessionTest, EndsInOrderAndLeavesSoundFiles) {
 
   expect_sound_file("surgeon");
   expect_sound_file("patient");
+  expect_what_the_programs_said();
   const nlohmann::json link = report(path("relay.json"));
   ASSERT_TRUE(link.is_object());
   EXPECT_EQ(link["schema"], "palp.relay/1");
