@@ -96,6 +96,7 @@ Result<SiteData> load_site(std::span<const std::byte> file,
   data.began_at = reader.began_at().value_or(TimePoint{});
   data.clock = reader.clock();
   data.metadata = reader.metadata("palp");
+  data.peer = reader.metadata("palp.peer");
   data.records_dropped = reader.metadata("palp.summary", "records_dropped");
   if (const auto text = reader.attachment("config.textproto")) {
     data.settings = std::string{*text};

@@ -41,6 +41,7 @@ struct SiteData {
   std::vector<LinkStatus> links;               ///< all of them
   std::vector<DepthArrived> reports;           ///< surgeon: each estimate as it arrived
   record::McapMap metadata;                    ///< of the record `palp`
+  record::McapMap peer;                        ///< of the record `palp.peer`
   std::optional<std::string> tissue_csv;       ///< attachment tissue.csv
   std::optional<std::string> settings;         ///< attachment config.textproto
   std::uint64_t records{};                     ///< decoded

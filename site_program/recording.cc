@@ -70,7 +70,7 @@ Recording::Recording(const settings::RecordSettings& settings,
     if (!sink_) throw std::runtime_error{file_fault_};
   }
   tick_.reserve(kTickRecords);
-  for (std::size_t i = 0; i < writer_count; ++i) {
+  for (std::size_t i = 0; i <= writer_count; ++i) {  // the last is the maker's, for marks
     queues_.push_back(std::make_unique<record::QueueRecorder>(settings.queue_records));
   }
   loop_.emplace("palp-record", kPause, [this](TimePoint now) { drain(now); });
@@ -137,6 +137,7 @@ void Recording::drain(TimePoint now) {
     dropped += queue->dropped();
   }
   account_.dropped = dropped;
+  write_peer();
   if (!writer_) {
     keep_watch(now);
     return;
@@ -144,6 +145,28 @@ void Recording::drain(TimePoint now) {
   writer_->set_dropped(dropped);
   writer_->flush_if_due(now);
   keep_watch(now);
+}
+
+void Recording::mark(std::uint32_t count, TimePoint now) {
+  constexpr auto kCode = static_cast<std::uint16_t>(record::NoteCode::Marked);
+  while (marks_ < count) {
+    ++marks_;
+    (void)queues_.back()->record(
+        Note{.at = now, .code = kCode, .detail = static_cast<double>(marks_)});
+  }
+}
+
+/// The peer may be known before the first tick of its session is here.
+void Recording::write_peer() {
+  for (io::PeerIdentity next; peers_.try_dequeue(next);) peer_ = next;
+  const bool begun = prefix_.empty() || session_id_ == (peer_ ? peer_->session_id : 0);
+  if (!peer_ || !writer_ || !begun) return;
+  writer_->add_facts("palp.peer",
+                     {{"session_id", record::session_id_text(peer_->session_id)},
+                      {"identity", peer_->name},
+                      {"certificate_sha256", peer_->fingerprint},
+                      {"git_commit", peer_->build}});
+  peer_.reset();
 }
 
 void Recording::keep_watch(TimePoint now) {
@@ -236,6 +259,7 @@ const RecordAccount& Recording::stop() {
   loop_.reset();
   for (const Record& one : tick_) write(one);
   tick_.clear();
+  write_peer();
   close_file();
   account_.fault = file_fault_;
   account_.dropped += lost_;

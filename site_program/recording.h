@@ -9,6 +9,7 @@
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
 #include "common/io/realtime/background_loop.h"
+#include "common/io/secure/session_news.h"
 #include "common/record/queue_recorder.h"
 #include "common/record/session_writer.h"
 #include "common/settings/site_settings.h"
@@ -44,6 +45,10 @@ class Recording {
   Recording& operator=(const Recording&) = delete;
 
   [[nodiscard]] record::Recorder& recorder(std::size_t writer) { return *queues_.at(writer); }
+  /// Notes a moment for each mark that is new of `count`. Thread: its maker's.
+  void mark(std::uint32_t count, TimePoint now);
+  /// Into the file of that session: who the peer is (metadata `palp.peer`). Thread: its maker's.
+  void tell_of_peer(const io::PeerIdentity& peer) { (void)peers_.try_enqueue(peer); }
   /// Tells people of changes of state and of notes; what repeats itself once.
   void tell_news(StatusLine& line);
   /// What stands at the head of the status line while the recording is in need, with a space behind
@@ -64,7 +69,10 @@ class Recording {
   void keep_watch(TimePoint now);
   [[nodiscard]] std::string fault() const;
 
+  void write_peer();
+
   static constexpr std::size_t kNewsMax = 256;
+  static constexpr std::size_t kPeersMax = 16;
   /// Less than so much recording left is told.
   static constexpr Duration kNearlyFull = std::chrono::minutes{5};
   struct News {
@@ -85,9 +93,12 @@ class Recording {
   std::optional<record::FileSink> sink_;
   std::optional<record::SessionWriter> writer_;
   std::vector<std::unique_ptr<record::QueueRecorder>> queues_;
-  SpscQueue<News> news_{kNewsMax};  ///< writer: record, reader: the maker
-  std::string told_last_;           ///< the maker's
-  DiskForecast forecast_;           ///< record's, as are the next three
+  SpscQueue<News> news_{kNewsMax};                ///< writer: record, reader: the maker
+  SpscQueue<io::PeerIdentity> peers_{kPeersMax};  ///< writer: the maker, reader: record
+  std::optional<io::PeerIdentity> peer_;          ///< record's: in no file yet
+  std::uint32_t marks_{};                         ///< the maker's
+  std::string told_last_;                         ///< the maker's
+  DiskForecast forecast_;                         ///< record's, as are the next three
   TimePoint looked_at_{};
   bool told_of_nearly_full_{};
   std::string told_fault_;
