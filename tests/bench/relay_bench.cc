@@ -1,7 +1,8 @@
 // What palp-relay adds beside the plainest relay of two addresses, alternating in one run:
 //   relay_bench PALP_RELAY [ROUNDS [SECONDS]]
 // Times are the kernel's receive stamps against the sender's clock before its send call, less the
-// median of the direct way. Both relays wait with poll and have no real-time priority.
+// median of the direct way. Both relays are processes that wait with poll, without real-time
+// priority.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -93,13 +94,13 @@ class Port {
   int number_;
 };
 
-/// What comes from one of two addresses goes to the other: nothing else.
-void relay_plainly(int port,
-                   const Endpoint& one,
-                   const Endpoint& other,
-                   const std::atomic<bool>& stop) {
+/// A process, as palp-relay is one: what comes from one of two addresses goes to the other, until
+/// it is killed.
+pid_t relay_plainly(int port, const Endpoint& one, const Endpoint& other) {
+  const pid_t process = ::fork();
+  if (process != 0) return process;
   std::array<char, 2048> bytes{};
-  while (!stop) {
+  while (true) {
     pollfd ready{port, POLLIN, 0};
     if (::poll(&ready, 1, kWaitMs) <= 0) continue;
     sockaddr_storage address{};
@@ -210,12 +211,10 @@ void compare(const char* program, int rounds, Duration span) {
     enter(surgeon, link::Role::Surgeon, product.address());
     enter(patient, link::Role::Patient, product.address());
     const double direct = quantile(round(surgeon, patient, patient.local(), span), 0.5);
-    std::atomic<bool> stop{false};
-    std::thread plain{
-        [&] { relay_plainly(between.number(), surgeon.local(), patient.local(), stop); }};
+    const pid_t plain = relay_plainly(between.number(), surgeon.local(), patient.local());
     const auto raw = round(surgeon, patient, between.local(), span);
-    stop = true;
-    plain.join();
+    ::kill(plain, SIGKILL);
+    ::waitpid(plain, nullptr, 0);
     const auto ours = round(surgeon, patient, product.address(), span);
     ratios.push_back((quantile(ours, 0.5) - direct) / (quantile(raw, 0.5) - direct));
     std::printf(
