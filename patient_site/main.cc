@@ -190,6 +190,7 @@ class Program {
   [[nodiscard]] std::optional<ExitStatus> await_devices(io::Terminal& terminal);
   void tell_of_devices();
   void look(TimePoint now);
+  void show(const PatientStatus& status, TimePoint now);
   void listen();  ///< Thread: estimator
   [[nodiscard]] ExitStatus end(std::string outcome);
 
@@ -265,7 +266,7 @@ void Program::look(TimePoint now) {
   if (const auto peer = runner_.take_peer()) recording_.tell_of_peer(*peer);
   recording_.tell_news(line_);
   tell_of_devices();
-  line_.show(recording_.alarm() + status_line(status), now);
+  show(status, now);
 }
 
 void Program::listen() {
@@ -288,6 +289,11 @@ ExitStatus Program::end(std::string outcome) {
   return {ExitCode::Done, std::move(outcome), ""};
 }
 
+void Program::show(const PatientStatus& status, TimePoint now) {
+  const std::string alarm = recording_.alarm();
+  line_.show(alarm + status_line(status, line_.room_behind(alarm)), now);
+}
+
 void Program::stop(site_program::SiteReport& report) {
   runner_.stop("the patient site has ended");
   estimator_.stop();
@@ -300,7 +306,7 @@ void Program::stop(site_program::SiteReport& report) {
   runner_.account(report);
   report.records = recording_.stop(figures_of(report));
   recording_.tell_news(line_);
-  line_.show(recording_.alarm() + status_line(status), clock_.now());
+  show(status, clock_.now());
   line_.end();
 }
 

@@ -158,6 +158,7 @@ class Program {
 
  private:
   [[nodiscard]] std::optional<ExitStatus> look(TimePoint now);
+  void show(const SurgeonStatus& status, TimePoint now);
 
   [[nodiscard]] record::SessionInfo proven(record::SessionInfo info) const {
     runner_.describe_identity(info);
@@ -206,7 +207,7 @@ std::optional<ExitStatus> Program::look(TimePoint now) {
     if (advice) line_.warn(*advice);
     advised_ = advice.has_value();
   }
-  line_.show(recording_.alarm() + status_line(status), now);
+  show(status, now);
   if (hopeless) return ExitStatus{ExitCode::CannotOpen, "refused", *hopeless};
   if (auto exit_status = end_of_script(status)) return exit_status;
   if (auto exit_status = watch_.judge(status.link, now)) return exit_status;
@@ -217,12 +218,17 @@ std::optional<ExitStatus> Program::look(TimePoint now) {
                               : watch_.unreachable(status.link, settings_.duration);
 }
 
+void Program::show(const SurgeonStatus& status, TimePoint now) {
+  const std::string alarm = recording_.alarm();
+  line_.show(alarm + status_line(status, line_.room_behind(alarm)), now);
+}
+
 void Program::stop(site_program::SiteReport& report) {
   runner_.stop(report.exit_status.reason.empty()
                    ? "the surgeon site has ended"
                    : "the surgeon site has ended: " + report.exit_status.reason);
   const SurgeonStatus& status = node_.status().get();
-  line_.show(recording_.alarm() + status_line(status), clock_.now());
+  show(status, clock_.now());
   report.link = status.link;
   report.round_trips = round_trips_;
   runner_.account(report);
