@@ -39,6 +39,8 @@ record::SessionInfo info_of(const Scenario& scenario, link::Role site, TimePoint
 SessionFiles::SessionFiles(const Scenario& scenario, const RunFiles& files, TimePoint start) {
   if (scenario.bare) return;
   record::SessionInfo surgeon = info_of(scenario, link::Role::Surgeon, start);
+  surgeon.metadata.emplace_back("surface_offset_mm",
+                                config::number_text(scenario.hand.person.surface_offset * 1e3));
   surgeon.metadata.emplace_back("hand", describe(hand_facts_of(scenario)));
   surgeon.metadata.emplace_back(
       "script_round_trip_s",
