@@ -19,7 +19,7 @@ struct SurgeonInput {
   SiteState state{};                  ///< laws fade and freeze by it
   double position{};                  ///< [m], hand, clutched to the patient's axis
   double velocity{};                  ///< [m/s]
-  double force_applied{};             ///< [N], behind the gate, last tick: energy is booked with it
+  double force_applied{};             ///< [N], behind the gate, while it moved so: to book energy
   std::span<const Incoming> arrived;  ///< since the last tick, by number; often none or several
   Duration round_trip{};              ///< smoothed; for tuning only, never for safety
 };

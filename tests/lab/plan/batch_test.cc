@@ -206,7 +206,8 @@ TEST(PlanTest, EverySetCanBeMadeIntoScenarios) {
                            "long",
                            "faults",
                            "pauses",
-                           "device-faults"}) {
+                           "device-faults",
+                           "devices"}) {
     const auto plan = make_set(name, {.count = 3});
     ASSERT_TRUE(plan) << name;
     EXPECT_TRUE(make_case(*plan, plan->cases.back())) << name;
