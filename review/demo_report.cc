@@ -87,6 +87,12 @@ Json link_json(const Asked& asked, const SiteData& surgeon, const Json& report, 
                    {"loss", value(asked.loss)}};
   link["achieved"]["rtt_p50_ms"] =
       first_known({member(report, "round_trip_p50_ms"), value(round_trip_median_ms(surgeon))});
+  link["achieved"]["telegrams_lost"] = nullptr;
+  link["achieved"]["telegrams_accepted"] = nullptr;
+  if (surgeon.last_link) {
+    link["achieved"]["telegrams_lost"] = surgeon.last_link->health.lost;
+    link["achieved"]["telegrams_accepted"] = surgeon.last_link->health.accepted;
+  }
   link["achieved"]["up"] = direction_json(relay, "up");
   link["achieved"]["down"] = direction_json(relay, "down");
   return link;
@@ -200,6 +206,20 @@ Json transitions_json(const SiteData& surgeon, const SiteData& patient) {
   return list;
 }
 
+/// The moments that the operators marked, each site's on its own line of time.
+Json marks_json(const SiteData& surgeon, const SiteData& patient) {
+  Json list = Json::array();
+  for (const SiteData* site : {&surgeon, &patient}) {
+    for (const Note& note : site->notes) {
+      if (note.code != static_cast<std::uint16_t>(record::NoteCode::Marked)) continue;
+      list.push_back({{"site", record::site_name(site->site)},
+                      {"t_s", value(seconds(elapsed(site->began_at, note.at)))},
+                      {"number", value(note.detail)}});
+    }
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string demo_report(const SiteData& surgeon,
@@ -232,6 +252,7 @@ std::string demo_report(const SiteData& surgeon,
   json["sites"]["surgeon"] = site_json(surgeon, surgeon_report, paths.surgeon);
   json["sites"]["patient"] = site_json(patient, patient_report, paths.patient);
   json["transitions"] = transitions_json(surgeon, patient);
+  json["marks"] = marks_json(surgeon, patient);
   return json.dump(2) + '\n';
 }
 

@@ -99,6 +99,7 @@ Result<SiteData> load_site(const record::FileBytes& file,
   data.clock = reader.clock();
   data.metadata = reader.metadata("palp");
   data.program_report = reader.metadata(record::kReportRecord, record::kReportKey);
+  data.peer = reader.metadata("palp.peer");
   data.records_dropped = reader.metadata("palp.summary", "records_dropped");
   if (const auto text = reader.attachment("config.textproto")) {
     data.settings = std::string{*text};

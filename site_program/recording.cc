@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/io/realtime/steady_clock.h"
+#include "common/record/notes.h"
 
 namespace palp::site_program {
 namespace {
@@ -33,6 +34,14 @@ Recording::~Recording() {
 
 Duration Recording::silent_for() {
   return io::SteadyClock{}.now() - std::max(began_, desk_->need().at);
+}
+
+void Recording::mark(std::uint32_t count, TimePoint now) {
+  constexpr auto kCode = static_cast<std::uint16_t>(record::NoteCode::Marked);
+  while (marks_ < count) {
+    ++marks_;
+    desk_->note(Note{.at = now, .code = kCode, .detail = static_cast<double>(marks_)});
+  }
 }
 
 std::string Recording::alarm() {

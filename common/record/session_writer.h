@@ -62,6 +62,8 @@ class SessionWriter {
 
   /// @returns false: not written, and counted.
   bool write(const Record& record);
+  /// Facts that become known while it runs: a metadata record of that name.
+  void add_facts(const std::string& name, const McapMap& facts);
   /// Total of records that a full queue dropped; shown in the next link status and the summary.
   void set_dropped(std::uint64_t total) noexcept { dropped_ = total; }
   /// Of the session as a whole; the names `palp...` of summary and sessions are taken.
