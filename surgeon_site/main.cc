@@ -137,7 +137,7 @@ class Program {
         law_{std::move(plan.law)},
         link_{settings_.link, std::make_unique<link::WireCodec>()},
         runner_{plan.runner},
-        recording_{settings_.record, std::move(plan.info), 1},
+        recording_{settings_.record, proven(std::move(plan.info)), 1},
         node_{settings_.node, {device_, law_, link_, recording_.recorder(0)}},
         began_at_{clock_.now()},
         watch_{{.peer = settings_.peer,
@@ -160,6 +160,11 @@ class Program {
   [[nodiscard]] std::optional<ExitStatus> look(TimePoint now);
   void show(const SurgeonStatus& status, TimePoint now);
 
+  [[nodiscard]] record::SessionInfo proven(record::SessionInfo info) const {
+    runner_.describe_identity(info);
+    return info;
+  }
+
   const Settings settings_;
   SimulatedHand device_;
   coupling::SurgeonCoupling law_;
@@ -177,10 +182,12 @@ class Program {
 
 ExitStatus Program::run(io::Terminal& terminal) {
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
-  line_.info("calling " + settings_.peer +
-             (terminal.reads_keys() ? "; r resets a stop, any other key ends" : ""));
+  line_.info(
+      "calling " + settings_.peer +
+      (terminal.reads_keys() ? "; r resets a stop, m marks a moment, any other key ends" : ""));
   while (true) {
     const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
+    recording_.mark(terminal.marks(), clock_.now());
     node_.commands().put({.emergency_stop = false, .resets = terminal.resets()});
     if (const auto exit_status = look(clock_.now())) return *exit_status;
     if (stop) return {ExitCode::CutShort, "aborted", "aborted by the user"};
@@ -192,6 +199,7 @@ std::optional<ExitStatus> Program::look(TimePoint now) {
   round_trips_.add(status.link);
   const std::optional<std::string> hopeless = runner_.tell_news(line_);
   watch_.note_refusal(runner_.refusal());
+  if (const auto peer = runner_.take_peer()) recording_.tell_of_peer(*peer);
   recording_.tell_news(line_);
   if (!advised_ && settings_.coupling.name == "direct") {
     const auto advice =
@@ -221,12 +229,12 @@ void Program::stop(site_program::SiteReport& report) {
                    : "the surgeon site has ended: " + report.exit_status.reason);
   const SurgeonStatus& status = node_.status().get();
   show(status, clock_.now());
-  report.records = recording_.stop();
-  recording_.tell_news(line_);
-  line_.end();
   report.link = status.link;
   report.round_trips = round_trips_;
   runner_.account(report);
+  report.records = recording_.stop(figures_of(report));
+  recording_.tell_news(line_);
+  line_.end();
 }
 
 }  // namespace
