@@ -45,7 +45,7 @@ class Port {
     const int on = 1;
     ::setsockopt(number_, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
     const Endpoint any = *io::resolve_endpoint("127.0.0.1:0");
-    ::bind(number_, any.address(), any.size());
+    if (::bind(number_, any.address(), any.size()) != 0) std::abort();
   }
   ~Port() { ::close(number_); }
   Port(const Port&) = delete;
@@ -80,10 +80,11 @@ class Port {
     header.msg_control = control.data();
     header.msg_controllen = control.size();
     const ssize_t got = ::recvmsg(number_, &header, MSG_DONTWAIT);
-    if (got < 0) return std::nullopt;
+    const cmsghdr* told = CMSG_FIRSTHDR(&header);
+    if (got < 0 || told == nullptr) return std::nullopt;
     heard.bytes.resize(static_cast<std::size_t>(got));
     timespec stamp{};
-    std::memcpy(&stamp, CMSG_DATA(CMSG_FIRSTHDR(&header)), sizeof stamp);
+    std::memcpy(&stamp, CMSG_DATA(told), sizeof stamp);
     heard.at_ns = stamp.tv_sec * 1'000'000'000 + stamp.tv_nsec;
     heard.from = {&from, header.msg_namelen};
     return heard;
