@@ -2,11 +2,18 @@
 
 #include <variant>
 
+#include "common/record/notes.h"
+
 namespace palp::review {
 namespace {
 
-/// Said by the estimator's thread, or by the lab.
+/// Said by the estimator's thread, by the lab, by the recording itself, or by who sat there.
 bool of_no_tick(const Record& record) {
+  using palp::record::NoteCode;
+  if (const auto* note = std::get_if<Note>(&record)) {
+    const auto code = static_cast<NoteCode>(note->code);
+    return code == NoteCode::Marked || code == NoteCode::DiskNearlyFull;
+  }
   return std::holds_alternative<ContactSample>(record) ||
          std::holds_alternative<DepthEstimate>(record) ||
          std::holds_alternative<PlantTruth>(record);
