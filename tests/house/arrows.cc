@@ -223,6 +223,7 @@ const std::vector<std::string_view>& protobuf_files() {
 const std::vector<Fence>& fences() {
   static const std::vector<Fence> table{
       {"modbus/", {"common/io/device/modbus_port.cc"}},
+      {"hidapi/", {"common/io/device/hid_port.cc"}},
       {"boost/", {"common/io/net/*.cc", "common/io/secure/*.cc"}},
       {"google/protobuf/", protobuf_files()},
       {"zstd", {"common/record/mcap_*.cc"}},
