@@ -190,9 +190,10 @@ void judge_taps(std::span<const std::span<const RunTick>> phases, RunMetrics& me
     metrics.taps.push_back({.site = tag.site,
                             .place = tag.place,
                             .index = tag.index,
+                            .began_at = phase.front().at,
+                            .ended_at = phase.back().at,
                             .hand_max = deepest,
-                            .stiffness_felt = own.felt().value_or(kUndefined),
-                            .stiffness_true = own.truth().value_or(kUndefined)});
+                            .stiffness = own});
     if (tag.site == Site::Other) continue;
     if (tag.index == 1) metrics.tap1_error[site] = own.error().value_or(kUndefined);
     if (tag.index == 2) metrics.tap2_error[site] = own.error().value_or(kUndefined);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/core/place.h"
+#include "judge/felt_stiffness.h"
 
 /// Judges a run from the plant's true states: how stiff the tissue felt, how much energy came out
 /// of the operator's port, what drifted. Pure functions of the recorded ticks.
@@ -57,9 +58,10 @@ struct TapMetrics {
   Site site{};
   Place place;
   int index{};
+  double began_at{};        ///< [s], as RunTick::at
+  double ended_at{};        ///< [s]
   double hand_max{};        ///< [m]
-  double stiffness_felt{};  ///< [N/m], slope of F_h on x_m while loading; NaN: undefined
-  double stiffness_true{};  ///< [N/m], slope of the static law at the same positions
+  FeltStiffness stiffness;  ///< F_h on x_m while loading, beside the static law at the same places
 };
 
 /// Of the whole run, also while the operator waits or aligns: as long as the surgeon's process

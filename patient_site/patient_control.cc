@@ -139,6 +139,8 @@ coupling::PatientInput PatientControl::law_input(const link::Arrivals& arrived) 
   in.position = now_.position;
   in.velocity = now_.velocity;
   in.contact_force = now_.contact_force;
+  in.position_age = elapsed(stage_sampled_at_, now_.at);
+  in.force_age = elapsed(force_sampled_at_, now_.at);
   in.place = now_.place;
   if (now_.state == SiteState::Engaged) in.arrived = arrived.samples;
   in.round_trip = now_.link.round_trip;

@@ -5,7 +5,7 @@
 
 namespace palp::review {
 
-std::optional<std::string> first_fault(std::span<const std::byte> file) {
+std::optional<std::string> first_fault(const record::FileBytes& file) {
   record::SessionReader reader{file};
   while (reader.next()) {
   }

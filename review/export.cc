@@ -24,7 +24,7 @@ using OutFile = std::unique_ptr<std::FILE, CloseFile>;
 /// Over the entries of a file's topics in the interval.
 class Selection {
  public:
-  Selection(std::span<const std::byte> file, const ExportAsk& ask) : file_{file}, ask_{ask} {}
+  Selection(const record::FileBytes& file, const ExportAsk& ask) : file_{file}, ask_{ask} {}
 
   /// act(topic, record, instant, reader) for each.
   void for_each(const auto& act) const {
@@ -52,7 +52,7 @@ class Selection {
     return std::ranges::find(topics, topic, &record::TopicFormat::topic)->name;
   }
 
-  std::span<const std::byte> file_;
+  record::FileBytes file_;
   const ExportAsk& ask_;
 };
 
@@ -206,7 +206,7 @@ Result<void> check_topics(const Survey& found, const ExportAsk& ask) {
 
 }  // namespace
 
-Result<std::uint64_t> export_file(std::span<const std::byte> file,
+Result<std::uint64_t> export_file(const record::FileBytes& file,
                                   const ExportAsk& ask,
                                   const std::string& path) {
   const Selection selection{file, ask};

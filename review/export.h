@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/core/result.h"
+#include "common/record/file_bytes.h"
 
 namespace palp::review {
 
@@ -27,7 +28,7 @@ struct ExportAsk {
 /// their names and begin with `t_s`, since the file's first sample, and `stamp_ns` or, in MAT files
 /// whose numbers are doubles, `utc_s`. @returns how many messages were written; a sentence where a
 /// topic is not in the file, or the file cannot be made.
-[[nodiscard]] Result<std::uint64_t> export_file(std::span<const std::byte> file,
+[[nodiscard]] Result<std::uint64_t> export_file(const record::FileBytes& file,
                                                 const ExportAsk& ask,
                                                 const std::string& path);
 

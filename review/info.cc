@@ -37,7 +37,7 @@ std::string describe_end(const record::SessionReader& reader) {
 
 }  // namespace
 
-std::string describe(std::span<const std::byte> file) {
+std::string describe(const record::FileBytes& file) {
   record::SessionReader reader{file};
   std::uint64_t records = 0;
   while (reader.next()) {

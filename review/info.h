@@ -4,9 +4,11 @@
 #include <span>
 #include <string>
 
+#include "common/record/file_bytes.h"
+
 namespace palp::review {
 
 /// Several lines for people: duration, topics with counts and rates, drops, closed or not.
-[[nodiscard]] std::string describe(std::span<const std::byte> file);
+[[nodiscard]] std::string describe(const record::FileBytes& file);
 
 }  // namespace palp::review

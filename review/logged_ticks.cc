@@ -5,9 +5,11 @@
 namespace palp::review {
 namespace {
 
-bool of_estimator(const Record& record) {
+/// Said by the estimator's thread, or by the lab.
+bool of_no_tick(const Record& record) {
   return std::holds_alternative<ContactSample>(record) ||
-         std::holds_alternative<DepthEstimate>(record);
+         std::holds_alternative<DepthEstimate>(record) ||
+         std::holds_alternative<PlantTruth>(record);
 }
 
 }  // namespace
@@ -15,7 +17,7 @@ bool of_estimator(const Record& record) {
 std::optional<LoggedTick> LoggedTicks::next() {
   LoggedTick tick;
   while (const auto entry = next_entry()) {
-    if (of_estimator(entry->record)) continue;
+    if (of_no_tick(entry->record)) continue;
     tick.add(entry->record);
     if (!tick.heard) continue;
     began_at_ = began_at_.value_or(tick.heard->at);

@@ -13,7 +13,7 @@
 namespace palp::review {
 
 /// The session files of one run of a site's program, in order; the first begins with the run.
-using RunBytes = std::vector<std::span<const std::byte>>;
+using RunBytes = std::vector<record::FileBytes>;
 
 /// The site's records of one tick, with what it was given sorted out.
 struct LoggedTick {
@@ -70,7 +70,7 @@ struct LoggedTick {
 class LoggedTicks {
  public:
   explicit LoggedTicks(const RunBytes& files) : files_{files} {}
-  /// Without what the estimator's thread said; nullopt: the end.
+  /// Without what the estimator's thread and the lab said; nullopt: the end.
   std::optional<LoggedTick> next();
   /// Chunks that could not be read, so far: their ticks are missing.
   [[nodiscard]] std::uint64_t damaged() const noexcept {

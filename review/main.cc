@@ -264,7 +264,9 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
   const auto tissue_told = tissue_of(*patient, flags.sessions.patient);
   if (!tissue_told) return exit_status_of(tissue_told.error());
   const std::optional<judge::TissueTable>& tissue = *tissue_told;
-  const auto taps = match_taps(*surgeon, *patient, session->time_line, tissue ? &*tissue : nullptr);
+  auto taps = match_taps(*surgeon, *patient, session->time_line, tissue ? &*tissue : nullptr);
+  const SessionTicks ticks = session_ticks(*session, tissue ? &*tissue : nullptr);
+  if (ticks.of_truth) take_truth(taps, *session, ticks.run_began, ticks.of_truth->taps);
   if (!flags.json && flags.page.empty()) std::cout << tap_table(taps, overall_depth(taps));
   if (flags.report.empty() && flags.page.empty() && !flags.json) {
     return {};
@@ -272,7 +274,6 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
   const ProgramReports reports{.surgeon = optional_text(flags.reports.surgeon),
                                .patient = optional_text(flags.reports.patient),
                                .relay = optional_text(flags.relay)};
-  const SessionTicks ticks = session_ticks(*session, tissue ? &*tissue : nullptr);
   const auto document = demo_report(
       *surgeon, *patient, taps, flags.asked, reports, flags.sessions, metrics_json(ticks));
   if (flags.json) std::cout << document;

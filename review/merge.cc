@@ -15,7 +15,7 @@ namespace {
 /// One of the files on its way into the new one; knows its next message.
 class MergeSource {
  public:
-  MergeSource(std::span<const std::byte> file, std::string site, record::McapWriter& writer)
+  MergeSource(const record::FileBytes& file, std::string site, record::McapWriter& writer)
       : reader_{file}, site_{std::move(site)}, writer_{writer} {}
   MergeSource(const MergeSource&) = delete;
   MergeSource& operator=(const MergeSource&) = delete;

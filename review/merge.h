@@ -6,14 +6,15 @@
 
 #include "common/core/result.h"
 #include "common/record/byte_sink.h"
+#include "common/record/file_bytes.h"
 #include "review/time_line.h"
 
 namespace palp::review {
 
 /// The two files of a session.
 struct PairBytes {
-  std::span<const std::byte> surgeon;
-  std::span<const std::byte> patient;
+  record::FileBytes surgeon;
+  record::FileBytes patient;
 };
 
 /// Writes both files of a session as one: all topics of both sites, stamped by the surgeon's wall

@@ -39,13 +39,14 @@ PhaseFinder::PhaseFinder(const surgeon::GestureScript& script) {
   }
 }
 
-judge::PhaseTag PhaseFinder::at(Duration script_time) noexcept {
+PhaseFinder::Found PhaseFinder::find(Duration script_time) noexcept {
   if (entries_.empty()) return {};
   if (script_time < entries_[present_].began_at) present_ = 0;
   while (present_ + 1 < entries_.size() && script_time >= entries_[present_].ends_at) ++present_;
-  judge::PhaseTag tag = entries_[present_].tag;
-  tag.elapsed = seconds(script_time - entries_[present_].began_at);
-  return tag;
+  const Entry& entry = entries_[present_];
+  Found found{entry.tag, entry.began_at, entry.ends_at - entry.began_at};
+  found.tag.elapsed = seconds(script_time - entry.began_at);
+  return found;
 }
 
 }  // namespace palp::review

@@ -12,7 +12,14 @@ class PhaseFinder {
  public:
   /// The script outlives the finder.
   explicit PhaseFinder(const surgeon::GestureScript& script);
-  [[nodiscard]] judge::PhaseTag at(Duration script_time) noexcept;
+  [[nodiscard]] judge::PhaseTag at(Duration script_time) noexcept { return find(script_time).tag; }
+  /// The same with its exact times.
+  struct Found {
+    judge::PhaseTag tag;
+    Duration began_at{};  ///< script time
+    Duration duration{};
+  };
+  [[nodiscard]] Found find(Duration script_time) noexcept;
 
  private:
   struct Entry {

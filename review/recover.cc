@@ -71,7 +71,7 @@ class Copy {
 
 }  // namespace
 
-Result<Recovery> recover(std::span<const std::byte> file, record::ByteSink& out) {
+Result<Recovery> recover(const record::FileBytes& file, record::ByteSink& out) {
   record::McapReader reader{file};
   Copy copy{out};
   while (const auto item = reader.next()) {

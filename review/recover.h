@@ -8,6 +8,7 @@
 
 #include "common/core/result.h"
 #include "common/record/byte_sink.h"
+#include "common/record/file_bytes.h"
 #include "common/record/mcap_reader.h"
 
 namespace palp::review {
@@ -25,7 +26,7 @@ struct Recovery {
 };
 
 /// Writes all that can be read of `file` again, with index and summary.
-[[nodiscard]] Result<Recovery> recover(std::span<const std::byte> file, record::ByteSink& out);
+[[nodiscard]] Result<Recovery> recover(const record::FileBytes& file, record::ByteSink& out);
 
 /// For people.
 [[nodiscard]] std::string describe(const Recovery& recovery);

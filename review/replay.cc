@@ -42,7 +42,7 @@ using Estimates = std::map<std::uint32_t, DepthEstimate>;
 
 Estimates estimates_of(const RunBytes& files) {
   Estimates found;
-  for (const std::span<const std::byte> file : files) {
+  for (const record::FileBytes& file : files) {
     record::SessionReader reader{file};
     while (const auto entry = reader.next()) {
       if (const auto* estimate = std::get_if<DepthEstimate>(&entry->record)) {
@@ -59,7 +59,7 @@ class SurgeonAgain {
   SurgeonAgain(const surgeon::SurgeonConfig& config,
                const coupling::CouplingConfig& coupling,
                const HandFacts& hand)
-      : law_{coupling::make_surgeon_coupling(coupling).value()},
+      : law_{coupling::make_surgeon_coupling(coupling, hand).value()},
         control_{config, hand, {law_, recorder_}} {}
 
   const std::vector<Record>& step(const LoggedTick& tick) {

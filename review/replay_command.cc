@@ -33,7 +33,7 @@ struct FileFacts {
   std::string travel_max;
 };
 
-Result<FileFacts> facts_of_file(std::span<const std::byte> file) {
+Result<FileFacts> facts_of_file(const record::FileBytes& file) {
   record::SessionReader reader{file};
   (void)reader.next();
   const auto entry = [&](const char* key) { return reader.metadata("palp", key).value_or(""); };

@@ -7,6 +7,7 @@
 
 #include "common/config/document.h"
 #include "judge/metric_table.h"
+#include "judge/truth_judge.h"
 #include "review/phase_finder.h"
 #include "surgeon_site/script_reader.h"
 #include "surgeon_site/settings.h"
@@ -14,13 +15,18 @@
 namespace palp::review {
 namespace {
 
-/// The script that the surgeon's settings name; nothing: there is none, or it cannot be had.
-std::optional<surgeon::GestureScript> script_of(const SiteData& surgeon) {
+std::optional<surgeon::Settings> settings_of(const SiteData& surgeon) {
   if (!surgeon.settings) return std::nullopt;
   config::Document document = config::surgeon_document();
   if (!document.merge(*surgeon.settings, "config.textproto")) return std::nullopt;
-  const auto settings = surgeon::make_settings(document);
-  if (!settings || !settings->master.starts_with("script:")) return std::nullopt;
+  auto settings = surgeon::make_settings(document);
+  return settings ? std::optional{std::move(*settings)} : std::nullopt;
+}
+
+/// The script that the surgeon's settings name; nothing: there is none, or it cannot be had.
+std::optional<surgeon::GestureScript> script_of(const SiteData& surgeon) {
+  const auto settings = settings_of(surgeon);
+  if (!settings || settings->master.starts_with("replay:")) return std::nullopt;
   const double round_trip = surgeon.number("script_round_trip_s").value_or(0);
   auto script =
       surgeon::load_script(settings->master,
@@ -110,11 +116,28 @@ double truth_of(const judge::TissueTable* tissue, const Place& place, double ind
 
 constexpr double kPeriod = 1e-3;  ///< [s], of a tick
 
+/// Of a session of the lab, from what it wrote down of the true states.
+SessionTicks true_ticks(const SiteData& surgeon) {
+  judge::TruthJudge judge;
+  for (const PlantTruth& truth : surgeon.truths) judge.look(truth);
+  const auto settings = settings_of(surgeon);
+  const judge::MetricsConfig usual;
+  SessionTicks made;
+  made.phases = true;
+  made.of_truth = settings ? judge.metrics(settings->hand.force_max, seconds(settings->link.period))
+                           : judge.metrics(usual.force_cap, usual.period);
+  made.ticks = judge.take_ticks();
+  const PlantTruth& first = surgeon.truths.front();
+  made.run_began = first.at - first.run_time;
+  return made;
+}
+
 }  // namespace
 
 SessionTicks session_ticks(const SessionPair& session, const judge::TissueTable* tissue) {
-  SessionTicks made;
   const SiteData& surgeon = session.surgeon;
+  if (!surgeon.truths.empty()) return true_ticks(surgeon);
+  SessionTicks made;
   const double surface = session.patient.number("surface_offset_mm").value_or(0) * 1e-3;
   ScriptFollower script{surgeon};
   TipFollower tips{session};
@@ -149,6 +172,7 @@ SessionTicks session_ticks(const SessionPair& session, const judge::TissueTable*
 }
 
 judge::RunMetrics session_metrics(const SessionTicks& session) {
+  if (session.of_truth) return *session.of_truth;
   judge::RunMetrics metrics = judge::metrics_of(session.ticks, {});
   // Whoever knows when a process stood still says these.
   metrics.whole = {.force_step = judge::kUndefined,
@@ -162,6 +186,7 @@ config::Json metrics_json(const SessionTicks& session) {
   const judge::RunMetrics metrics = session_metrics(session);
   config::Json json;
   json["phases_known"] = session.phases;
+  json["by_true_states"] = session.of_truth.has_value();
   json["unstable"] = metrics.unstable;
   json["unstable_reason"] = metrics.unstable_reason;
   for (const judge::Metric& metric : judge::metric_table()) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,14 @@
 
 namespace palp::review {
 
-/// A session as the judge of the lab's runs sees one: by what both sites wrote down, in place of
-/// the true states. What nobody wrote down is not a number.
+/// A session as the judge of the lab's runs sees one: by its true states, where the lab wrote them
+/// down, else by what both sites wrote down. What nobody wrote down is not a number.
 struct SessionTicks {
   std::vector<judge::RunTick> ticks;
   bool phases{};  ///< the script that the hand followed is known, and with it taps and holds
+  /// A session of the lab: judged by what is true in it, as are `ticks`, and as the lab judged it.
+  std::optional<judge::RunMetrics> of_truth;
+  TimePoint run_began{};  ///< of such a session, the surgeon's time
 };
 
 /// `tissue`: null: unknown, and with it what is true.

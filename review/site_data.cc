@@ -42,6 +42,7 @@ struct Collector {
   void operator()(const Transition& transition) const { data.transitions.push_back(transition); }
   void operator()(const DepthEstimate& estimate) const { data.estimates.push_back(estimate); }
   void operator()(const DepthArrived& arrived) const { data.reports.push_back(arrived); }
+  void operator()(const PlantTruth& truth) const { data.truths.push_back(truth); }
   template <class Other>
   void operator()(const Other& /*is of no use here*/) const {}
 };
@@ -72,7 +73,7 @@ Result<SiteData> load_site(const std::string& path, link::Role site) {
   return load_site(file->bytes(), path, site);
 }
 
-Result<SiteData> load_site(std::span<const std::byte> file,
+Result<SiteData> load_site(const record::FileBytes& file,
                            const std::string& name,
                            link::Role site) {
   SiteData data;

@@ -40,6 +40,7 @@ struct SiteData {
   std::optional<LinkStatus> last_link;
   std::vector<LinkStatus> links;               ///< all of them
   std::vector<DepthArrived> reports;           ///< surgeon: each estimate as it arrived
+  std::vector<PlantTruth> truths;              ///< surgeon: of a simulation of both sites
   record::McapMap metadata;                    ///< of the record `palp`
   std::optional<std::string> tissue_csv;       ///< attachment tissue.csv
   std::optional<std::string> settings;         ///< attachment config.textproto
@@ -54,7 +55,7 @@ struct SiteData {
 
 /// Fails if the file cannot be opened, is none, or is the other site's.
 [[nodiscard]] Result<SiteData> load_site(const std::string& path, link::Role site);
-[[nodiscard]] Result<SiteData> load_site(std::span<const std::byte> file,
+[[nodiscard]] Result<SiteData> load_site(const record::FileBytes& file,
                                          const std::string& name,
                                          link::Role site);
 

@@ -7,6 +7,7 @@
 #include "common/core/place_text.h"
 #include "judge/depth_summary.h"
 #include "judge/excursions.h"
+#include "judge/stroke_pairing.h"
 #include "review/text.h"
 
 namespace palp::review {
@@ -23,6 +24,13 @@ Duration way_out(const SiteData& surgeon) {
         seconds(health.delay_out > Duration{0} ? health.delay_out : health.round_trip / 2));
   }
   return from_seconds(std::clamp(median(ways).value_or(0), 0.0, 10.0));
+}
+
+/// An estimate's stroke as the hand made it, on the surgeon's line of time.
+judge::Stay at_hand(const DepthEstimate& estimate, const TimeLine& line, Duration way) {
+  return {TimePoint{elapsed(TimePoint{way}, line.surgeons(estimate.stroke_began_at))},
+          TimePoint{elapsed(TimePoint{way}, line.surgeons(estimate.stroke_ended_at))},
+          estimate.place};
 }
 
 /// The surgeon's excursions, each with its stiffness once it was asked for.
@@ -42,6 +50,11 @@ class Strokes {
     std::stable_sort(strokes_.begin(), strokes_.end(), [](const Stroke& a, const Stroke& b) {
       return a.excursion.began_at < b.excursion.began_at;
     });
+    stays_.reserve(strokes_.size());
+    for (const Stroke& stroke : strokes_) {
+      const judge::Excursion& excursion = stroke.excursion;
+      stays_.push_back({excursion.began_at, excursion.ended_at, excursion.place});
+    }
   }
 
   /// The one an estimate came from.
@@ -75,24 +88,8 @@ class Strokes {
     return static_cast<std::size_t>(later - strokes_.begin());
   }
 
-  /// The one at the estimate's place that shares most time with its stroke, as the hand's motion
-  /// reaches the tip.
   [[nodiscard]] std::optional<std::size_t> by_time(const DepthEstimate& estimate) const {
-    const TimePoint began{elapsed(TimePoint{way_}, line_.surgeons(estimate.stroke_began_at))};
-    const TimePoint ended{elapsed(TimePoint{way_}, line_.surgeons(estimate.stroke_ended_at))};
-    std::optional<std::size_t> best;
-    Duration most{};
-    for (std::size_t i = begun_before(ended); i-- > 0;) {
-      const judge::Excursion& excursion = strokes_[i].excursion;
-      if (excursion.ended_at <= began) break;  // as all before it
-      if (distance(excursion.place, estimate.place) > kSamePlace) continue;
-      const Duration shared =
-          elapsed(std::max(began, excursion.began_at), std::min(ended, excursion.ended_at));
-      if (shared <= most) continue;
-      most = shared;
-      best = i;
-    }
-    return best;
+    return judge::partner_of(at_hand(estimate, line_, way_), stays_);
   }
 
   /// Without knowing how the clocks lie: the last one that the surgeon began before the estimate
@@ -115,6 +112,7 @@ class Strokes {
   const judge::TissueTable* tissue_;
   std::map<std::uint32_t, TimePoint> arrived_at_;  ///< by the estimate's number
   std::vector<Stroke> strokes_;                    ///< in order of time
+  std::vector<judge::Stay> stays_;                 ///< the same
 };
 
 double surface_of(const SiteData& patient) {
@@ -160,6 +158,24 @@ std::vector<Tap> match_taps(const SiteData& surgeon,
     taps.push_back(tap);
   }
   return taps;
+}
+
+void take_truth(std::vector<Tap>& taps,
+                const SessionPair& session,
+                TimePoint run_began,
+                const std::vector<judge::TapMetrics>& judged) {
+  std::vector<judge::Stay> stays;
+  stays.reserve(judged.size());
+  for (const judge::TapMetrics& tap : judged) {
+    stays.push_back({run_began + from_seconds(tap.began_at),
+                     run_began + from_seconds(tap.ended_at),
+                     tap.place});
+  }
+  const Duration way = way_out(session.surgeon);
+  for (Tap& tap : taps) {
+    const auto partner = judge::partner_of(at_hand(tap.estimate, session.time_line, way), stays);
+    if (partner) tap.stiffness = judged[*partner].stiffness;
+  }
 }
 
 std::optional<judge::DepthStatement> overall_depth(const std::vector<Tap>& taps) {

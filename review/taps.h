@@ -8,6 +8,7 @@
 #include "common/core/place.h"
 #include "judge/depth_statement.h"
 #include "judge/felt_stiffness.h"
+#include "judge/metrics.h"
 #include "judge/tissue_table.h"
 #include "review/site_data.h"
 #include "review/time_line.h"
@@ -37,6 +38,13 @@ struct Tap {
                                           const SiteData& patient,
                                           const TimeLine& line,
                                           const judge::TissueTable* tissue);
+
+/// Gives each tap what was true of it, where a judge of the simulation said so: `judged` with times
+/// since `run_began`, the surgeon's.
+void take_truth(std::vector<Tap>& taps,
+                const SessionPair& session,
+                TimePoint run_began,
+                const std::vector<judge::TapMetrics>& judged);
 
 /// What all strokes over the inclusion say together, as the lab has it; nullopt: there is none.
 [[nodiscard]] std::optional<judge::DepthStatement> overall_depth(const std::vector<Tap>& taps);

@@ -1,244 +1,72 @@
 #include "site_program/recording.h"
 
-#include <array>
-#include <cstdio>
-#include <cstdlib>
-#include <stdexcept>
+#include <algorithm>
 #include <utility>
 
 #include "common/io/realtime/steady_clock.h"
-#include "common/io/realtime/wall_clock.h"
-#include "common/record/notes.h"
 
 namespace palp::site_program {
 namespace {
 
 constexpr Duration kPause = std::chrono::milliseconds{20};
-
-/// More than any tick has; what is more is written all the same.
-constexpr std::size_t kTickRecords = 256;
-
-std::string zone_text(Duration zone) {
-  const auto minutes = std::chrono::duration_cast<std::chrono::minutes>(zone).count();
-  std::array<char, 48> text{};
-  (void)std::snprintf(text.data(),
-                      text.size(),
-                      "%c%02lld:%02lld",
-                      minutes < 0 ? '-' : '+',
-                      static_cast<long long>(std::abs(minutes) / 60),
-                      static_cast<long long>(std::abs(minutes) % 60));
-  return text.data();
-}
-
-record::WallClock wall_clock() {
-  const io::WallClockReading reading = io::read_wall_clock();
-  record::WallClock clock;
-  clock.ahead = reading.ahead;
-  clock.source = "realtime";
-  clock.zone = zone_text(reading.zone);
-  clock.synchronised = reading.synchronised ? "yes" : "no";
-  if (reading.uncertainty) {
-    clock.uncertainty_us = std::to_string(*reading.uncertainty / std::chrono::microseconds{1});
-  }
-  return clock;
-}
-
-/// What the status line or another sentence says as well.
-bool shown_elsewhere(record::NoteCode code) {
-  switch (code) {
-    case record::NoteCode::ScriptPhase:
-    case record::NoteCode::SessionBegan:
-    case record::NoteCode::LinkIsDown:
-    case record::NoteCode::LinkIsLive:
-    case record::NoteCode::LinkHolds:
-    case record::NoteCode::LinkIsLost:
-    case record::NoteCode::KeysReplaced:
-      return true;
-    default:
-      return false;
-  }
-}
+/// A record thread that has not come back for so long stands before a disk that does not answer.
+constexpr Duration kSilence = std::chrono::seconds{2};
+/// What a good disk may need for the last of a session.
+constexpr Duration kPatience = std::chrono::seconds{10};
 
 }  // namespace
 
 Recording::Recording(const settings::RecordSettings& settings,
                      record::SessionInfo info,
                      std::size_t writer_count)
-    : prefix_{settings.files}, info_{std::move(info)} {
-  if (!prefix_.empty() || !settings.file.empty()) {
-    open(prefix_.empty() ? settings.file : next_path());
-    if (!sink_) throw std::runtime_error{file_fault_};
+    : desk_{std::make_unique<RecordDesk>(settings, std::move(info), writer_count)},
+      began_{io::SteadyClock{}.now()},
+      loop_{std::make_unique<io::BackgroundLoop>(
+          "palp-record", kPause, [desk = desk_.get()](TimePoint now) { desk->work(now); })} {}
+
+Recording::~Recording() {
+  try {
+    stop();
+  } catch (...) {  // who wants to know calls stop()
   }
-  tick_.reserve(kTickRecords);
-  for (std::size_t i = 0; i < writer_count; ++i) {
-    queues_.push_back(std::make_unique<record::QueueRecorder>(settings.queue_records));
-  }
-  loop_.emplace("palp-record", kPause, [this](TimePoint now) { drain(now); });
 }
 
-std::string Recording::next_path() const {
-  const std::string number = std::to_string(info_.files_before + 1);
-  return prefix_ + std::string(number.size() < 3 ? 3 - number.size() : 0, '0') + number + ".mcap";
-}
-
-/// Without a file at the end, `file_fault_` says why.
-void Recording::open(const std::string& path) {
-  Result<record::FileSink> sink = record::FileSink::create(path);
-  if (!sink) {
-    file_fault_ = sink.error().text;
-    return;
-  }
-  sink_.emplace(std::move(*sink));
-  info_.opened_at = io::SteadyClock{}.now();
-  info_.clock = wall_clock();
-  if (info_.files_before == 0) {
-    info_.metadata.emplace_back("run_began_utc",
-                                record::utc_text(info_.clock.stamp(info_.opened_at)));
-  }
-  writer_.emplace(*sink_, info_);
-  if (!writer_->failed()) return;
-  file_fault_ = sink_->fault();
-  writer_.reset();
-  sink_.reset();
-  (void)std::remove(path.c_str());  // ours, and of no use
-}
-
-void Recording::begin_next_file() {
-  close_file();
-  ++info_.files_before;
-  ++info_.sessions_before;
-  open(next_path());
-}
-
-/// What became of its records is added to the account.
-void Recording::close_file() {
-  if (!writer_) return;
-  writer_->close();
-  sink_->finish();
-  if (std::string sentence = fault(); !sentence.empty()) file_fault_ = std::move(sentence);
-  lost_ += writer_->lost();
-  if (sink_->removed()) {
-    lost_ += writer_->messages();
-  } else {
-    account_.counts += writer_->counts();
-    account_.messages += writer_->messages();
-  }
-  writer_.reset();
-  sink_.reset();
-}
-
-Recording::~Recording() = default;
-
-void Recording::drain(TimePoint now) {
-  std::uint64_t dropped = 0;
-  for (const auto& queue : queues_) {
-    const bool ticks = queue == queues_.front() && !prefix_.empty();
-    queue->drain([&](const Record& record) { ticks ? write_tick(record) : write(record); });
-    dropped += queue->dropped();
-  }
-  account_.dropped = dropped;
-  if (!writer_) {
-    keep_watch(now);
-    return;
-  }
-  writer_->set_dropped(dropped);
-  writer_->flush_if_due(now);
-  keep_watch(now);
-}
-
-void Recording::keep_watch(TimePoint now) {
-  if (sink_ && now - looked_at_ >= DiskForecast::kLookEvery) {
-    looked_at_ = now;
-    sink_->look();
-    if (const auto room = sink_->room()) forecast_.look(now, writer_->size(), *room);
-  }
-  const std::string wrong = fault();
-  if (!wrong.empty() && told_fault_.empty()) {
-    (void)news_.try_enqueue({"RECORDING FAILED, the session goes on: " + wrong, true});
-    told_fault_ = wrong;
-  }
-  const Duration left = forecast_.left().value_or(Duration::max());
-  const bool nearly_full = left < kNearlyFull;
-  if (nearly_full && wrong.empty() && !std::exchange(told_of_nearly_full_, true)) {
-    (void)news_.try_enqueue({"the disk of the session file is full in about " +
-                                 std::to_string(left / std::chrono::seconds{1}) + " s",
-                             true});
-    constexpr auto kCode = static_cast<std::uint16_t>(record::NoteCode::DiskNearlyFull);
-    if (writer_) (void)writer_->write(Note{.at = now, .code = kCode, .detail = seconds(left)});
-  }
-  need_.put({.failed = !wrong.empty(), .nearly_full = nearly_full, .left = left});
-}
-
-/// Why the file lacks something by now.
-std::string Recording::fault() const {
-  if (!file_fault_.empty() || !writer_) return file_fault_;
-  if (std::string sentence = sink_->fault(); !sentence.empty()) return sentence;
-  if (writer_->failed()) return "the session file could not be written any further";
-  if (account_.dropped > 0) return "records were lost: the session file was written too slowly";
-  return {};
+Duration Recording::silent_for() {
+  return io::SteadyClock{}.now() - std::max(began_, desk_->need().at);
 }
 
 std::string Recording::alarm() {
-  const Need& need = need_.get();
+  if (!desk_) return "RECORDING FAILED ";
+  const RecordDesk::Need& need = desk_->need();
   if (need.failed) return "RECORDING FAILED ";
+  if (loop_ && silent_for() > kSilence) return "THE DISK DOES NOT ANSWER ";
   if (!need.nearly_full) return {};
   return "DISK FULL IN " + std::to_string(need.left / std::chrono::seconds{1}) + " S ";
 }
 
-void Recording::write(const Record& record) {
-  tell_of(record);
-  if (writer_) {
-    (void)writer_->write(record);
-  } else if (!file_fault_.empty()) {
-    ++lost_;
-  }
-}
-
-/// A tick's records end with what the link said, and that says whether it is another session's.
-void Recording::write_tick(const Record& record) {
-  tick_.push_back(record);
-  const auto* heard = std::get_if<LinkHeard>(&record);
-  if (heard == nullptr && tick_.size() < kTickRecords) return;
-  if (heard != nullptr && heard->session_id != 0 && heard->session_id != session_id_) {
-    if (session_id_ != 0) begin_next_file();
-    session_id_ = heard->session_id;
-  }
-  for (const Record& one : tick_) write(one);
-  tick_.clear();
-}
-
-void Recording::tell_of(const Record& record) {
-  if (const auto* change = std::get_if<Transition>(&record)) {
-    const std::string_view reason = record::note_text(change->reason);
-    (void)news_.try_enqueue({std::string{to_string(change->from)} + " -> " +
-                                 std::string{to_string(change->to)} + ": " + std::string{reason},
-                             false});
-  } else if (const auto* note = std::get_if<Note>(&record)) {
-    const auto code = static_cast<record::NoteCode>(note->code);
-    if (!shown_elsewhere(code)) {
-      (void)news_.try_enqueue({std::string{record::to_string(code)}, false});
-    }
-  }
-}
-
 void Recording::tell_news(StatusLine& line) {
-  for (News news; news_.try_dequeue(news);) {
+  if (!desk_) return;
+  for (RecordDesk::News news; desk_->take(news);) {
     if (news.sentence != told_last_) {
       news.alarming ? line.warn(news.sentence) : line.info(news.sentence);
     }
     told_last_ = news.sentence;
   }
+  if (loop_ && silent_for() > kSilence && !std::exchange(told_of_silence_, true)) {
+    line.warn("the disk of the session file does not answer; the session goes on");
+  }
 }
 
 const RecordAccount& Recording::stop() {
   if (!loop_) return account_;
-  loop_->stop();
+  desk_->close();
+  if (loop_->stop_within(kPatience)) {
+    account_ = desk_->account();
+  } else {
+    (void)desk_.release();  // the thread's own now, whenever the disk lets it go
+    account_.fault = "the disk of the session file does not answer";
+  }
   loop_.reset();
-  for (const Record& one : tick_) write(one);
-  tick_.clear();
-  close_file();
-  account_.fault = file_fault_;
-  account_.dropped += lost_;
   return account_;
 }
 

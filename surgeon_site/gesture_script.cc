@@ -101,6 +101,16 @@ GestureScript::GestureScript(std::vector<ReplayPoint> points)
   stretches_.push_back(whole);
 }
 
+GestureScript::GestureScript(std::vector<ReplayPoint> points,
+                             std::vector<Stretch> stretches,
+                             std::vector<ScriptPhase> phases)
+    : GestureScript{std::move(stretches), std::move(phases)} {
+  GestureScript motion{std::move(points)};
+  PALP_CHECK(motion.length_ == length_, "the stretches are as long as the motion");
+  points_ = std::move(motion.points_);
+  has_tremor_ = true;
+}
+
 const Stretch& GestureScript::stretch_at(Duration script_time) const noexcept {
   const auto next = std::upper_bound(
       stretches_.begin() + 1, stretches_.end(), script_time, [](Duration at, const Stretch& s) {

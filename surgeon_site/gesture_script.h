@@ -69,6 +69,11 @@ class GestureScript {
   GestureScript(std::vector<Stretch> stretches, std::vector<ScriptPhase> phases);
   /// A recorded motion, interpolated linearly: at least two points, `at` strictly rising from 0.
   explicit GestureScript(std::vector<ReplayPoint> points);
+  /// The same with its taps and phases known; stretches as above, as long as the points. Such a
+  /// motion has the tremor of its hand in it.
+  GestureScript(std::vector<ReplayPoint> points,
+                std::vector<Stretch> stretches,
+                std::vector<ScriptPhase> phases);
 
   /// Before 0 and after the end: the ends, at rest.
   [[nodiscard]] Intent at(Duration script_time) const noexcept;
@@ -78,6 +83,7 @@ class GestureScript {
   [[nodiscard]] const ScriptPhase& phase(std::uint32_t number) const noexcept;
 
   [[nodiscard]] Duration length() const noexcept { return length_; }
+  [[nodiscard]] bool has_tremor() const noexcept { return has_tremor_; }
   [[nodiscard]] std::span<const Stretch> stretches() const noexcept { return stretches_; }
   [[nodiscard]] std::span<const ScriptPhase> phases() const noexcept { return phases_; }
 
@@ -89,6 +95,7 @@ class GestureScript {
   std::vector<ScriptPhase> phases_;
   std::vector<ReplayPoint> points_;
   Duration length_{};
+  bool has_tremor_{};
 };
 
 }  // namespace palp::surgeon

@@ -96,7 +96,7 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   if (!address) return tl::unexpected{address.error()};
   auto script = load_script(settings->master, {settings->hand.plant.grip.stiffness, {}});
   if (!script) return bad(script.error());
-  auto law = coupling::make_surgeon_coupling(settings->coupling);
+  auto law = coupling::make_surgeon_coupling(settings->coupling, facts_of(settings->hand));
   if (!law) return bad(law.error());
   auto wrap = site_program::impaired_reception(
       settings->impairment, netem::Direction::Down, settings->seed, io::SteadyClock{}.now());
@@ -117,6 +117,8 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   info.metadata.emplace_back("coupling", settings->coupling.name);
   info.metadata.emplace_back("master", settings->master);
   info.metadata.emplace_back("grip", settings->grip);
+  info.metadata.emplace_back("surface_offset_mm",
+                             config::number_text(settings->hand.person.surface_offset * 1e3));
   info.metadata.emplace_back("hand", describe(facts_of(settings->hand)));
   return Plan{std::move(*settings),
               std::move(*script),

@@ -12,6 +12,7 @@
 #include "common/core/byte_order_mark.h"
 #include "common/core/conventions.h"
 #include "common/core/whole_file.h"
+#include "surgeon_site/recording_reader.h"
 
 namespace palp::surgeon {
 namespace {
@@ -372,15 +373,19 @@ Result<GestureScript> parse_replay(std::string_view text) {
 Result<GestureScript> load_script(const std::string& source, const ScriptSetting& setting) {
   constexpr std::string_view kScript = "script:";
   constexpr std::string_view kReplay = "replay:";
+  constexpr std::string_view kRecording = "recording:";
   if (source == "script:standard") return standard_script(setting);
   if (source == "script:demo") return demo_script(setting);
   if (source == "script:breath") return breath_script(setting);
   if (source == "script:long") return long_script(setting);
+  if (source.starts_with(kRecording)) {
+    return load_recording(source.substr(kRecording.size()), setting.hand_stiffness);
+  }
   const bool replay = source.rfind(kReplay, 0) == 0;
   if (!replay && source.rfind(kScript, 0) != 0) {
     return fail("unknown master " + quoted(source) +
-                ", expected script:standard, script:demo, script:breath, script:long, script:FILE "
-                "or replay:FILE");
+                ", expected script:standard, script:demo, script:breath, script:long, "
+                "script:FILE, replay:FILE or recording:FILE");
   }
   const std::string path = source.substr(replay ? kReplay.size() : kScript.size());
   const Result<std::string> text = read_file(path);

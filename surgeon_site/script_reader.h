@@ -30,7 +30,8 @@ namespace palp::surgeon {
 /// surface. The first row is script time 0.
 [[nodiscard]] Result<GestureScript> parse_replay(std::string_view text);
 
-/// `script:standard`, `script:demo`, `script:FILE` or `replay:FILE`; a sentence if there is none.
+/// `script:standard`, `script:demo`, `script:FILE`, `replay:FILE` or `recording:FILE`; a sentence
+/// if there is none.
 [[nodiscard]] Result<GestureScript> load_script(const std::string& source,
                                                 const ScriptSetting& setting);
 

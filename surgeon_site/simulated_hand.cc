@@ -40,6 +40,7 @@ SimulatedHand::SimulatedHand(const SimulatedHandConfig& config, GestureScript sc
       plant_{config.plant, person_.intent().position},
       velocity_gain_{low_pass_gain(config.velocity_cut_off, kPeriod)} {
   PALP_CHECK(config.encoder_step > 0, "an encoder counts steps");
+  if (person_.script().has_tremor()) config_.tremor = 0;
   pull_ = pull();
   state_.position = config_.encoder_step * std::round(plant_.position() / config_.encoder_step);
   state_.place = person_.intent().place;

@@ -31,6 +31,7 @@ SurgeonControl::SurgeonControl(const SurgeonConfig& config,
                                Parts parts) noexcept
     : config_{config},
       facts_{hand},
+      at_hand_{hand, seconds(config.period)},
       parts_{parts},
       supervisor_{config.supervisor},
       gate_{within_device(config.gate, hand)},
@@ -120,7 +121,7 @@ coupling::SurgeonInput SurgeonControl::law_input(const link::Arrivals& arrived,
   in.state = now_.state;
   in.position = hand_.position - now_.offset;
   in.velocity = hand_.velocity;
-  in.force_applied = now_.force;
+  in.force_applied = at_hand_.over(in.position - now_.position);
   in.round_trip = now_.link.round_trip;
   if (now_.state == SiteState::Engaged && !engaged_now) in.arrived = arrived.samples;
   return in;
@@ -134,6 +135,7 @@ double SurgeonControl::pressing_force() const noexcept {
 SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
   const Lapse lapse = account_.begin_tick(in.now);
   now_.at = in.now;
+  at_hand_.give(now_.force, lapse.periods - 1);
   take_hand(in.hand);
   session_began_ = std::exchange(now_.link, in.link).session_id != in.link.session_id;
   if (session_began_) begin_session(in.peer_devices);
@@ -150,6 +152,7 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
   answer_ = gate_.pass({wanted.force, now_.state, hand_.pedal_held, cut, wanted.fade_max}, lapse);
   force_before_ = now_.force;
   now_.force = answer_.force;
+  at_hand_.give(answer_.force, 1);
   now_.gate_acted = answer_.acted;
   now_.position = given.position;
   now_.place = hand_.place;

@@ -9,6 +9,7 @@
 #include "common/link/telegram.h"
 #include "common/record/recorder.h"
 #include "common/record/site_account.h"
+#include "surgeon_site/force_at_hand.h"
 #include "surgeon_site/force_gate.h"
 #include "surgeon_site/haptic_device.h"
 #include "surgeon_site/supervisor.h"
@@ -87,6 +88,7 @@ class SurgeonControl {
 
   SurgeonConfig config_;
   HandFacts facts_;
+  ForceAtHand at_hand_;
   Parts parts_;
   SurgeonSupervisor supervisor_;
   ForceGate gate_;

@@ -14,7 +14,8 @@ struct HandFacts {
   std::uint32_t axes{3};         ///< 1 to 6; the first is that of the force, then x and y
   double force_peak{8.5};        ///< [N], 0.01 to 1000
   double force_continuous{1.4};  ///< [N], 0.01 to the peak; for i^2 t
-  double rate{1000};             ///< [Hz], 1 to 100,000; of new readings
+  double rate{1000};             ///< [Hz], 1 to 100,000; of new readings and forces
+  double lag{};                  ///< [s], 0 to 10; from a command that is taken to its force
 };
 
 /// Of a stage. Travel is that along the normal where nothing else is said, speed and acceleration
@@ -40,6 +41,14 @@ struct ForceSensorFacts {
   double rate{1000};    ///< [Hz], 1 to 100,000; of new readings
   double lag{8e-3};     ///< [s], 0 to 10; of a reading behind the force, its pole included
 };
+
+/// [s], from a hand's move to the force that answers it, beside that of a device of 1 kHz: a
+/// reading waits for its turn, its answer for the next, and stands for a period.
+[[nodiscard]] constexpr double answer_delay(const HandFacts& hand) noexcept {
+  constexpr double kUsual = 1e-3;
+  const double wait = 1 / hand.rate - kUsual;
+  return hand.lag + (wait > 0 ? 1.5 * wait : 0);
+}
 
 /// [N], no less is felt as contact: two steps of the sensor, and no less than two of the paper's.
 [[nodiscard]] constexpr double felt_as_contact(const ForceSensorFacts& sensor) noexcept {

@@ -11,11 +11,11 @@ tl::unexpected<Error> unknown_name(const std::string& name) {
 
 }  // namespace
 
-Result<SurgeonCoupling> make_surgeon_coupling(const CouplingConfig& config) {
+Result<SurgeonCoupling> make_surgeon_coupling(const CouplingConfig& config, const HandFacts& hand) {
   if (config.name == "direct") return SurgeonCoupling{DirectSurgeon{config.direct}};
   if (config.name == "wave") return SurgeonCoupling{WaveSurgeon{config.wave}};
   if (config.name == "tdpa") return SurgeonCoupling{TdpaSurgeon{config.tdpa}};
-  if (config.name == "mmt") return SurgeonCoupling{MmtSurgeon{config.mmt}};
+  if (config.name == "mmt") return SurgeonCoupling{MmtSurgeon{config.mmt, hand}};
   return unknown_name(config.name);
 }
 

@@ -32,8 +32,9 @@ struct CouplingConfig {
 };
 
 /// The half named by `config.name`, or a sentence that lists the names there are.
-[[nodiscard]] Result<SurgeonCoupling> make_surgeon_coupling(const CouplingConfig& config);
-/// `devices`: the site's own.
+/// `hand`, `devices`: the site's own.
+[[nodiscard]] Result<SurgeonCoupling> make_surgeon_coupling(const CouplingConfig& config,
+                                                            const HandFacts& hand = {});
 [[nodiscard]] Result<PatientCoupling> make_patient_coupling(const CouplingConfig& config,
                                                             const PatientDevices& devices = {});
 

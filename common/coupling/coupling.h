@@ -40,6 +40,8 @@ struct PatientInput {
   double position{};                  ///< [m], tip
   double velocity{};                  ///< [m/s]
   double contact_force{};             ///< [N], measured; noise may make it negative
+  Duration position_age{};            ///< since the stage was read
+  Duration force_age{};               ///< since the sensor was
   Place place{};                      ///< along the surface; a new place is new tissue
   std::span<const Incoming> arrived;  ///< since the last tick, by number
   Duration round_trip{};

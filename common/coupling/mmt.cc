@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace palp::coupling {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 constexpr double kEnergyTolerance = 1e-15;  // [J]
 constexpr double kForceTolerance = 1e-12;   // [N]
 constexpr int kHalvings = 30;
+constexpr double kReadingsInSpeed = 6;                      // of the hand
 constexpr Duration kStale = std::chrono::milliseconds{20};  // older speed is no speed
 
 constexpr bool may_render(SiteState state) noexcept {
@@ -22,11 +24,26 @@ ContactEstimatorConfig with_sensor(ContactEstimatorConfig config,
   return config;
 }
 
+/// [Hz], of a speed from readings that come in steps.
+double velocity_cut_off(const MmtConfig& config, const HandFacts& hand) noexcept {
+  return std::min(config.velocity_cut_off, hand.rate / kReadingsInSpeed);
+}
+
+/// [N s/m], from which on a damping that answers so late drives the lightest hand.
+double damping_most(const MmtConfig& config, const HandFacts& hand) noexcept {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  const double filter = 1 / (kTurn * velocity_cut_off(config, hand));
+  const double late = answer_delay(hand) + filter - 1 / (kTurn * config.velocity_cut_off);
+  return late > 0 ? config.mass_least / (2 * late) : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
-MmtSurgeon::MmtSurgeon(const MmtConfig& config) noexcept
+MmtSurgeon::MmtSurgeon(const MmtConfig& config, const HandFacts& hand) noexcept
     : config_{config},
-      velocity_{config.velocity_cut_off, config.period},
+      delay_{answer_delay(hand)},
+      damping_most_{damping_most(config, hand)},
+      velocity_{velocity_cut_off(config, hand), config.period},
       tank_{config.tank_start} {}
 
 /// The axis may have moved under the hand, so there is no work in this tick. The tank is kept.
@@ -79,7 +96,7 @@ void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& 
   const double passed = seconds(lapse.passed());
   if (!candidate_) return shown_.age(depth, passed);
   ContactModel aim = *candidate_;
-  for (double& coefficient : aim.c) coefficient *= presence_.value();
+  for (double& coefficient : aim.c) coefficient *= presence_.value() * share_;
   // The surface swings on by itself; what is blended is the rest.
   const double swung = swing_.after(swing_age_);
   ContactModel elastic = shown_.elastic();
@@ -178,16 +195,36 @@ double MmtSurgeon::debt() const noexcept {
   return std::clamp(1 - tank_ / level, 0.0, 1.0);
 }
 
+/// A spring that answers late pushes harder on the way out than on the way in. How stiff it may be
+/// depends on the hand that holds it, which nobody knows. That it drives the hand is seen: the hand
+/// swings as no person does, or the tank is overdrawn.
+void MmtSurgeon::share_out(double speed, double passed) noexcept {
+  if (delay_ <= 0) return;
+  since_turn_ += passed;
+  if (since_turn_ > config_.turn_time) turns_ = 0;
+  if (std::abs(speed) > config_.turn_speed && (speed > 0) != inwards_) {
+    inwards_ = speed > 0;
+    since_turn_ = 0;
+    ++turns_;
+  }
+  if (tank_ < 0 || turns_ > config_.turns_most) {
+    share_ *= std::exp(-passed / config_.share_fall);
+  } else {
+    share_ += (1 - share_) * -std::expm1(-passed / config_.share_rise);
+  }
+}
+
 /// In the air and on the way out of the tissue the hand pays the tank back: on the way in, where
 /// stiffness is judged, damping would be felt as softness.
 double MmtSurgeon::damp(double force, double depth, double speed) const noexcept {
+  const double empty = config_.empty_damping * std::clamp(-tank_ / config_.overdraft, 0.0, 1.0);
   if (depth > 0) {
     const double damping = config_.contact_damping + config_.repay_contact * debt();
-    force = std::max(0.0, force + damping * std::min(0.0, speed));
+    force = std::max(0.0, force + std::min(damping, damping_most_) * std::min(0.0, speed));
   } else {
-    force += (config_.air_damping + config_.repay_air * debt()) * speed;
+    force += std::min(config_.air_damping + config_.repay_air * debt(), damping_most_) * speed;
   }
-  force += config_.empty_damping * std::clamp(-tank_ / config_.overdraft, 0.0, 1.0) * speed;
+  force += std::min(empty, damping_most_) * speed;
   return force;
 }
 
@@ -222,6 +259,7 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexc
   const double moved = energy_now();
   const double force_before = force_now();
   tank_ = std::min(config_.tank_max, tank_ + work - (moved - stored_));
+  share_out(speed, seconds(lapse.passed()));
 
   approach_candidate(in.position, depth_before, lapse);
   const double rise_max = slew_for(in.position, in.round_trip) * span;
@@ -247,6 +285,7 @@ MmtPatient::MmtPatient(const MmtConfig& config, const PatientDevices& devices) n
     : config_{config},
       // A target stands for a tick: what is led beyond whole ones would be led too far.
       stage_lead_{std::floor(devices.stage.lag / config.period) * config.period},
+      paired_{devices, config.period},
       estimator_{with_sensor(config.estimator, devices.sensor)},
       lead_velocity_{config.lead_cut_off, config.period} {}
 
@@ -277,7 +316,9 @@ PatientOutput MmtPatient::step(const PatientInput& in, const Lapse& lapse) noexc
     estimator_.new_place();
     place_ = in.place;
   }
-  estimator_.step(in.position, in.contact_force, lapse.periods);
+  const PairedReadings::Pair pair = paired_.step(
+      in.now, in.now - in.position_age, in.position, in.now - in.force_age, in.contact_force);
+  estimator_.step(pair.position, pair.force, lapse.periods);
   return {aim, {in.position, in.velocity, in.contact_force, estimator_.model()}};
 }
 

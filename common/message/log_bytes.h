@@ -27,7 +27,8 @@ using LogMessages = MessageList<SiteTick,
                                 ForceReading,
                                 LinkHeard,
                                 UserAsked,
-                                DevicesTold>;
+                                DevicesTold,
+                                PlantTruth>;
 
 /// Larger than any message of the log.
 inline constexpr std::size_t kLogMessageSizeMax = 1024;  ///< [bytes]

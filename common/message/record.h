@@ -13,6 +13,7 @@
 #include "common/message/enumerators.h"
 #include "common/message/field.h"
 #include "common/message/link_health.h"
+#include "common/message/plant_truth.h"
 #include "common/message/port_sample.h"
 #include "common/message/readings.h"
 
@@ -82,7 +83,8 @@ using Record = std::variant<SiteTick,
                             ForceReading,
                             LinkHeard,
                             UserAsked,
-                            DevicesTold>;
+                            DevicesTold,
+                            PlantTruth>;
 static_assert(std::is_trivially_copyable_v<Record>, "crosses threads by copy");
 
 /// Their names in summaries and reports, in the same order.
@@ -99,7 +101,8 @@ inline constexpr std::array<const char*, std::variant_size_v<Record>> kRecordNam
                                                                                    "force",
                                                                                    "heard",
                                                                                    "user",
-                                                                                   "devices"};
+                                                                                   "devices",
+                                                                                   "truth"};
 
 namespace message {
 

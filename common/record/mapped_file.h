@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/core/result.h"
+#include "common/record/file_bytes.h"
 
 namespace palp::record {
 
@@ -19,7 +20,7 @@ class MappedFile {
   MappedFile& operator=(const MappedFile&) = delete;
   ~MappedFile();
 
-  [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }
+  [[nodiscard]] FileBytes bytes() const noexcept { return FileBytes::of_mapping(bytes_); }
 
  private:
   explicit MappedFile(std::span<std::byte> bytes) noexcept : bytes_{bytes} {}

@@ -23,10 +23,10 @@ bool is_data(McapOpcode opcode) noexcept {
 
 }  // namespace
 
-McapReader::McapReader(std::span<const std::byte> file, const McapLimits& limits)
-    : file_{file}, limits_{limits}, decompressor_{limits.chunk_size_max} {
-  const std::size_t shared = std::min(file.size(), kMcapMagic.size());
-  if (!std::equal(kMcapMagic.begin(), kMcapMagic.begin() + shared, file.begin())) {
+McapReader::McapReader(const FileBytes& file, const McapLimits& limits)
+    : mapping_{file}, file_{file}, limits_{limits}, decompressor_{limits.chunk_size_max} {
+  const std::size_t shared = std::min(file_.size(), kMcapMagic.size());
+  if (!std::equal(kMcapMagic.begin(), kMcapMagic.begin() + shared, file_.begin())) {
     fault(0, "this is not an MCAP file: its first bytes are others");
     ended_ = true;
   }
@@ -101,7 +101,18 @@ std::optional<McapItem> McapReader::next_in_file() {
     ended_ = true;
     return std::nullopt;
   }
+  leave_behind(record->offset);
   return interpret(*record);
+}
+
+void McapReader::leave_behind(std::uint64_t offset) {
+  constexpr std::size_t kForgetEvery = std::size_t{1} << 20;  // [bytes]
+  const auto read = static_cast<std::size_t>(offset) - read_up_to_;
+  data_crc_ = crc32(file_.subspan(read_up_to_, read), data_crc_);
+  read_up_to_ += read;
+  if (read_up_to_ - forgotten_ < kForgetEvery) return;
+  mapping_.forget(forgotten_, read_up_to_);
+  forgotten_ = read_up_to_;
 }
 
 std::optional<McapItem> McapReader::interpret(const RawRecord& record) {

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/record/file_bytes.h"
 #include "common/record/mcap_compression.h"
 #include "common/record/mcap_format.h"
 
@@ -103,11 +104,12 @@ struct McapReadReport {
 
 /// Reads an MCAP file from its first byte to its last, also one that a crash cut off or a disk
 /// damaged: all whole records and all whole chunks are used, a damaged chunk is skipped. Never
-/// aborts and never takes more memory than the limits, whatever the bytes say.
+/// aborts and never takes more memory than the limits, whatever the bytes say. Of a mapped file it
+/// gives back the memory that it read.
 /// Does not own the bytes. Thread: any one.
 class McapReader {
  public:
-  explicit McapReader(std::span<const std::byte> file, const McapLimits& limits = {});
+  explicit McapReader(const FileBytes& file, const McapLimits& limits = {});
 
   /// The next item, or nullopt at the end. Definitions come once, not again from the summary.
   std::optional<McapItem> next();
@@ -142,13 +144,18 @@ class McapReader {
   bool admit_definition(const RawRecord& record);
   void check_message_index(const RawRecord& record);
   void check_chunk_index(const RawRecord& record);
+  void leave_behind(std::uint64_t offset);
   void check_data_end(const RawRecord& record);
   void check_footer(const RawRecord& record);
   void fault(std::uint64_t offset, std::string text);
 
-  std::span<const std::byte> file_;
+  FileBytes mapping_;
+  std::span<const std::byte> file_;  ///< the same
   McapLimits limits_;
-  std::size_t offset_{};  ///< in the file
+  std::size_t offset_{};      ///< in the file
+  std::size_t read_up_to_{};  ///< bytes in data_crc_
+  std::size_t forgotten_{};   ///< bytes whose memory was given back
+  std::uint32_t data_crc_{};
   bool ended_{};
   ChunkDecompressor decompressor_;
   std::span<const std::byte> chunk_;  ///< records of the open chunk

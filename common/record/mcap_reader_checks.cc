@@ -56,7 +56,7 @@ void McapReader::check_chunk_index(const RawRecord& record) {
 void McapReader::check_data_end(const RawRecord& record) {
   ByteCursor cursor{record.content};
   const auto crc = cursor.read<std::uint32_t>();
-  if (!cursor.ok() || (crc != 0 && crc != crc32(file_.first(record.offset)))) {
+  if (!cursor.ok() || (crc != 0 && crc != data_crc_)) {
     fault(record.offset, "the data section has a wrong CRC");
   }
   data_ended_ = true;

@@ -53,6 +53,7 @@ std::vector<TopicFormat> topics_of(Role site) {
   topics.push_back(format<LinkHeard>(Topic::Heard, site, "heard"));
   topics.push_back(format<UserAsked>(Topic::User, site, "user"));
   topics.push_back(format<DevicesTold>(Topic::Devices, site, "devices"));
+  if (site == Role::Surgeon) topics.push_back(format<PlantTruth>(Topic::Truth, site, "truth"));
   return topics;
 }
 
@@ -105,7 +106,8 @@ std::optional<Prepared> SessionEncoder::prepare(const Record& record,
                  [&](const ForceReading& one) { return of_site(!surgeon, Topic::Force, one); },
                  [&](const LinkHeard& one) { return of_site(true, Topic::Heard, one); },
                  [&](const UserAsked& one) { return of_site(true, Topic::User, one); },
-                 [&](const DevicesTold& one) { return of_site(true, Topic::Devices, one); }},
+                 [&](const DevicesTold& one) { return of_site(true, Topic::Devices, one); },
+                 [&](const PlantTruth& one) { return of_site(surgeon, Topic::Truth, one); }},
       record);
 }
 

@@ -28,9 +28,10 @@ enum class Topic : std::uint8_t {
   Force,
   Heard,
   User,
-  Devices
+  Devices,
+  Truth
 };
-inline constexpr std::size_t kTopicCount = 13;
+inline constexpr std::size_t kTopicCount = 14;
 
 struct TopicFormat {
   Topic topic{};

@@ -16,7 +16,7 @@ constexpr std::size_t kSessionsMax = 4096;  ///< kept of a file that names more
 
 }  // namespace
 
-SessionReader::SessionReader(std::span<const std::byte> file, const McapLimits& limits)
+SessionReader::SessionReader(const FileBytes& file, const McapLimits& limits)
     : mcap_{file, limits} {}
 
 std::optional<SessionEntry> SessionReader::next() {

@@ -41,7 +41,7 @@ struct TopicCount {
 /// Messages that nobody of ours wrote are counted, never fatal. Does not own the bytes.
 class SessionReader {
  public:
-  explicit SessionReader(std::span<const std::byte> file, const McapLimits& limits = {});
+  explicit SessionReader(const FileBytes& file, const McapLimits& limits = {});
 
   /// The next record, or nullopt at the end. Views carry no record; they are only counted.
   std::optional<SessionEntry> next();

@@ -64,8 +64,8 @@ struct PlanAsk {
 };
 
 /// table, net, mc, mc-hard, mc-noise, mc-adv, grips, inc, blackout, breath, long, faults, pauses,
-/// device-faults. Random sets draw case i from (seed, i) alone, so that the first 100 of 1000 are
-/// the first 100 of 100.
+/// device-faults, devices. Random sets draw case i from (seed, i) alone, so that the first 100 of
+/// 1000 are the first 100 of 100.
 [[nodiscard]] Result<Plan> make_set(const std::string& name, const PlanAsk& ask);
 [[nodiscard]] std::vector<NamedChoice> described_sets();
 

@@ -34,6 +34,12 @@ Fault make_fault(const proto::config::LabFault& message) {
           .apart = from_seconds(message.apart_s())};
 }
 
+DeviceTiming make_timing(const proto::config::LabDevice& message) {
+  return {.rate = message.rate_hz(),
+          .lag = from_seconds(message.lag_ms() * 1e-3),
+          .jitter = from_seconds(message.jitter_ms() * 1e-3)};
+}
+
 /// A clock may jump back; a pause, a kill and a failing device last some time.
 Result<void> check_fault(const Fault& fault, Duration length) {
   const bool jumps =
@@ -115,6 +121,9 @@ Result<Scenario> make_scenario(const std::string& name, const config::Document& 
                   .patient = patient->node,
                   .tissue = patient->simulation,
                   .phantom = std::move(*phantom),
+                  .hand_timing = make_timing(message.hand_device()),
+                  .stage_timing = make_timing(message.stage_device()),
+                  .sensor_timing = make_timing(message.sensor_device()),
                   .estimator = patient->estimator,
                   .up = std::move(*up),
                   .down = std::move(*down),

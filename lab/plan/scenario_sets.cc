@@ -275,6 +275,48 @@ void fill_pauses(Plan& plan, const PlanAsk& ask) {
   }
 }
 
+/// Paces, lags and steps of all three devices, over the links and hands of `mc`.
+void fill_devices(Plan& plan, const PlanAsk& ask) {
+  fill_random(plan, ask, false);
+  plan.label_names.insert(plan.label_names.end(),
+                          {"hand_hz",
+                           "hand_lag_ms",
+                           "stage_hz",
+                           "stage_lag_ms",
+                           "sensor_hz",
+                           "sensor_lag_ms",
+                           "jitter_share",
+                           "sensor_step_mn"});
+  for (Case& one : plan.cases) {
+    const auto uniform = [&](std::uint64_t which) {
+      return random_uniform(ask.seed, kCaseStream + 60 + which, one.index);
+    };
+    constexpr std::array kRates{50.0, 100.0, 200.0, 500.0, 1000.0};  // [Hz]
+    constexpr std::array kLags{0.0, 2.0, 5.0, 10.0, 20.0, 30.0};     // [ms]
+    const double jitter = pick(std::array{0.0, 0.1, 0.3}, uniform(6));
+    std::uint64_t which = 0;
+    for (const char* device : {"hand", "stage", "sensor"}) {
+      const double rate = pick(kRates, uniform(which));
+      const double lag = pick(kLags, uniform(which + 1));
+      which += 2;
+      const std::string path = std::string{device} + "_device.";
+      one.settings.push_back({path + "rate_hz", text("%.9g", rate)});
+      one.settings.push_back({path + "lag_ms", text("%.9g", lag)});
+      one.settings.push_back({path + "jitter_ms", text("%.9g", jitter * 1e3 / rate)});
+      one.labels.push_back(text("%.9g", rate));
+      one.labels.push_back(text("%.9g", lag));
+    }
+    const double step = pick(std::array{1.0, 10.0, 50.0, 100.0}, uniform(7));
+    one.settings.push_back({"patient.simulated_phantom.sensor_quantum_mn", text("%.9g", step)});
+    one.settings.push_back({"patient.simulated_phantom.encoder_um",
+                            text("%.9g", pick(std::array{1.0, 10.0, 50.0}, uniform(8)))});
+    one.settings.push_back(
+        {"surgeon.hand.encoder_um", text("%.9g", pick(std::array{1.0, 30.0, 100.0}, uniform(9)))});
+    one.labels.push_back(text("%.9g", jitter));
+    one.labels.push_back(text("%.9g", step));
+  }
+}
+
 void set_for_all(Plan& plan, const Setting& setting) {
   for (Case& one : plan.cases) one.settings.push_back(setting);
 }
@@ -316,6 +358,7 @@ constexpr std::array kSets{
     Set{"device-faults",
         "mc with a sensor, a stage or a haptic device that fails",
         fill_device_faults},
+    Set{"devices", "mc with devices of 50 to 1,000 Hz, lags to 30 ms, jitter, steps", fill_devices},
 };
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "judge/depth_statement.h"
 #include "judge/depth_summary.h"
 #include "judge/metric_table.h"
+#include "judge/stroke_pairing.h"
 #include "lab/run/digest.h"
 
 namespace palp::lab {
@@ -50,23 +51,25 @@ Json depth_json(const DepthEstimate& estimate, depth::EstimatorKind kind) {
   return json;
 }
 
-/// The strokes of a site follow each other as its taps do; presses come behind them.
+/// Each tap with the stroke that shares its time.
 Json taps_json(const RunResult& result, depth::EstimatorKind kind) {
   Json taps = Json::array();
-  for (const judge::TapMetrics& tap : result.metrics.taps) {
-    const std::vector<DepthEstimate> here = estimates_at(tap.place, result.depths);
-    const auto index = static_cast<std::size_t>(tap.index - 1);
+  const std::vector<judge::TapMetrics>& all = result.metrics.taps;
+  const auto found = judge::estimates_of(all, result.strokes, result.depths);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const judge::TapMetrics& tap = all[k];
+    const DepthEstimate* const estimate = found[k];
     Json json;
     json["site"] = place_text(tap.place);
     json["x_mm"] = tap.place.x * 1e3;
     json["y_mm"] = tap.place.y * 1e3;
     json["index"] = tap.index;
-    const bool known = index < here.size();
-    json["indentation_max_mm"] = known ? number(here[index].indentation_max * 1e3) : Json(nullptr);
-    json["force_max_n"] = known ? number(here[index].force_max) : Json(nullptr);
-    json["stiffness_felt_n_per_m"] = number(tap.stiffness_felt);
-    json["stiffness_true_n_per_m"] = number(tap.stiffness_true);
-    json["depth"] = known ? depth_json(here[index], kind) : Json(nullptr);
+    const bool known = estimate != nullptr;
+    json["indentation_max_mm"] = known ? number(estimate->indentation_max * 1e3) : Json(nullptr);
+    json["force_max_n"] = known ? number(estimate->force_max) : Json(nullptr);
+    json["stiffness_felt_n_per_m"] = number(tap.stiffness.felt().value_or(judge::kUndefined));
+    json["stiffness_true_n_per_m"] = number(tap.stiffness.truth().value_or(judge::kUndefined));
+    json["depth"] = known ? depth_json(*estimate, kind) : Json(nullptr);
     taps.push_back(json);
   }
   return taps;
@@ -106,12 +109,12 @@ std::string measured(double value, int decimals, const char* unit) {
 std::string tap_text(const judge::TapMetrics& tap) {
   std::string text;
   append(text, "tap %-9s %-2d ", place_text(tap.place).c_str(), tap.index);
-  if (!std::isfinite(tap.stiffness_felt)) return text + "no contact\n";
+  if (!tap.stiffness.felt()) return text + "no contact\n";
   append(text,
          "felt %6.1f N/m, true %6.1f N/m (%s), hand to %.2f mm\n",
-         tap.stiffness_felt,
-         tap.stiffness_true,
-         percent(tap.stiffness_felt / tap.stiffness_true - 1).c_str(),
+         *tap.stiffness.felt(),
+         tap.stiffness.truth().value_or(judge::kUndefined),
+         percent(tap.stiffness.error().value_or(judge::kUndefined)).c_str(),
          tap.hand_max * 1e3);
   return text;
 }

@@ -9,7 +9,7 @@
 #include "common/core/denormals.h"
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
-#include "lab/run/pause_probe.h"
+#include "judge/truth_judge.h"
 #include "lab/run/session_files.h"
 #include "lab/run/simulator.h"
 #include "lab/run/site_process.h"
@@ -26,8 +26,6 @@ namespace {
 constexpr Duration kRunMax = std::chrono::hours{5};
 /// What happens after the script: the pedal goes up and the force fades.
 constexpr Duration kAfterScript = std::chrono::milliseconds{500};
-constexpr std::size_t kStepTicks = 10;
-constexpr double kAfterBlackout = 2;  // [s], still judged with it
 constexpr std::size_t kInFlightMax = 4096;
 constexpr std::size_t kContactQueue = 4096;
 constexpr std::uint64_t kTissueStream = 0x7469737375650000;  ///< keeps the sensor's noise apart
@@ -49,26 +47,34 @@ class DirectRecorder final : public record::Recorder {
 
 constexpr Duration kBlackout = std::chrono::seconds{2};
 
-/// Follows the plant's true states.
+/// Follows the plant's true states: for the judge, and for the surgeon's file where one is kept.
 class Probe {
  public:
   Probe(const Scenario& scenario,
         const surgeon::SimulatedHand& hand,
-        const patient::SimulatedPhantom& tissue)
+        const patient::SimulatedPhantom& tissue,
+        record::SessionWriter* file)
       : scenario_{scenario},
         hand_{hand},
         tissue_{tissue},
+        file_{file},
         phases_{scenario.script},
         field_{patient::make_field(scenario.phantom, scenario.tissue.viscous_factor)},
         relaxing_{scenario.phantom.relaxation} {}
 
-  /// `at`: since the start of the run [s].
-  void look(const SurgeonProcess& site, const PatientProcess& peer, double at, Digest& digest) {
+  /// Of the run's path and time at a look.
+  struct Moment {
+    TimePoint now{};
+    Duration run_time{};
+    bool dark{};
+  };
+
+  void look(SurgeonProcess& site,
+            const PatientProcess& peer,
+            const Moment& moment,
+            Digest& digest) {
     const surgeon::SurgeonStatus& status = site.status();
-    const bool guarded = site.pressed();
     const surgeon::HandTruth hand = hand_.truth();
-    step_max_ = guarded ? std::max(step_max_, force_step(hand.force)) : step_max_;
-    if (!guarded) forces_.clear();
     const patient::PhantomTruth tissue = tissue_.truth();
     for (const double state : {hand.position,
                                hand.velocity,
@@ -81,69 +87,53 @@ class Probe {
                                tissue.tissue_energy}) {
       digest.add(state);
     }
-    const double net = hand.work - tissue.tissue_energy;
-    work_min_ = std::min(work_min_, hand.work);
-    net_min_ = std::min(net_min_, net);
     // What the hand itself would have felt, had it pressed the tissue.
     const double depth = hand.position - status.offset - tissue.surface;
     const double force_true =
         relaxing_.step(field_->elastic_force(status.place, depth), seconds(scenario_.link.period));
-    pauses_.look({.held = site.paused(),
-                  .resumed = paused_,
-                  .guarded = guarded,
-                  .force = hand.force,
-                  .force_true = force_true,
-                  .work = hand.work});
+    const review::PhaseFinder::Found phase = phases_.find(hand.script_time);
+    const PlantTruth truth{
+        .at = site.clock().local(moment.now),
+        .run_time = moment.run_time,
+        .script_time = hand.script_time,
+        .phase_kind = static_cast<std::uint32_t>(phase.tag.kind),
+        .phase_index = static_cast<std::uint32_t>(phase.tag.index),
+        .phase_began = phase.began_at,
+        .phase_duration = phase.duration,
+        .phase_place = phase.tag.place,
+        .performing = hand.performing && site.alive(),
+        .counted = status.state == SiteState::Engaged || status.state == SiteState::Hold,
+        .guarded = site.pressed(),
+        .held = site.paused(),
+        .resumed = paused_,
+        .dark = moment.dark,
+        .hand = depth,
+        .hand_velocity = hand.velocity,
+        .hand_force = hand.force,
+        .hand_work = hand.work,
+        .force_true = force_true,
+        .surface = tissue.surface - scenario_.tissue.surface_offset,
+        .tip = tissue.position - tissue.surface,
+        .tip_velocity = tissue.velocity,
+        .tip_place = tissue.place,
+        .contact_force = tissue.contact_force,
+        .tissue_energy = tissue.tissue_energy};
     paused_ = site.paused() || peer.paused();
-    if (!hand.performing || !site.alive()) return;
-
-    judge::RunTick tick;
-    tick.at = at;
-    tick.phase = phases_.at(hand.script_time);
-    tick.counted = status.state == SiteState::Engaged || status.state == SiteState::Hold;
-    tick.hand = depth;
-    tick.surface = tissue.surface - scenario_.tissue.surface_offset;
-    tick.hand_velocity = hand.velocity;
-    tick.hand_force = hand.force;
-    tick.force_true = force_true;
-    tick.contact_force = tissue.contact_force;
-    tick.tip = tissue.position - tissue.surface;
-    tick.tip_velocity = tissue.velocity;
-    tick.tip_place = tissue.place;
-    tick.energy_operator = hand.work;
-    tick.energy_operator_min = work_min_;
-    tick.energy_net_min = net_min_;
-    ticks_.push_back(tick);
+    judge_.look(truth);
+    if (file_ != nullptr) file_->write(truth);
   }
-  [[nodiscard]] const std::vector<judge::RunTick>& ticks() const { return ticks_; }
-  [[nodiscard]] std::vector<judge::RunTick> take_ticks() { return std::move(ticks_); }
-  [[nodiscard]] double work_min() const { return work_min_; }  ///< [J], of the whole run
-  [[nodiscard]] double net_min() const { return net_min_; }    ///< [J], of the whole run
-  /// [N], in 10 ms, whatever the operator was doing.
-  [[nodiscard]] double force_step_max() const { return step_max_; }
-  [[nodiscard]] const PauseProbe& pauses() const { return pauses_; }
+  [[nodiscard]] judge::TruthJudge& judge() { return judge_; }
 
  private:
-  /// Against 10 ms ago, or the oldest since the force became the site's own.
-  double force_step(double force) {
-    forces_.push_back(force);
-    if (forces_.size() > kStepTicks + 1) forces_.pop_front();
-    return std::abs(force - forces_.front());
-  }
-
   const Scenario& scenario_;
   const surgeon::SimulatedHand& hand_;
   const patient::SimulatedPhantom& tissue_;
+  record::SessionWriter* file_;
   review::PhaseFinder phases_;
   std::unique_ptr<patient::TissueField> field_;
   patient::RelaxingForce relaxing_;
-  double work_min_{};  ///< [J]
-  double net_min_{};   ///< [J]
-  PauseProbe pauses_;
-  bool paused_{};              ///< either site, at the last look
-  std::deque<double> forces_;  ///< [N], newest last
-  double step_max_{};          ///< [N]
-  std::vector<judge::RunTick> ticks_;
+  bool paused_{};  ///< either site, at the last look
+  judge::TruthJudge judge_;
 };
 
 /// Makes the one fault of a run happen, and ends it.
@@ -224,7 +214,6 @@ class DarkPath {
   }
   /// As long as it is.
   [[nodiscard]] const bool& shut() const { return shut_; }
-  [[nodiscard]] std::optional<TimePoint> from() const { return from_; }
 
  private:
   Duration at_script_time_;
@@ -259,7 +248,7 @@ struct PatientEnd {
         file{writer},
         recorder{digest, &file},
         process{scenario, {tissue, recorder, contact, depth}, std::move(path)},
-        estimator{depth::with_sensor(scenario.estimator, tissue.sensor_facts()),
+        estimator{depth::with_sensor(scenario.estimator, patient_devices_of(scenario).sensor),
                   {contact, depth, recorder}} {}
 
   patient::SimulatedPhantom tissue;
@@ -271,26 +260,21 @@ struct PatientEnd {
   patient::EstimatorWorker estimator;
 };
 
-/// `start`: of the run.
-judge::RunMetrics judged(const Probe& probe,
-                         const Scenario& scenario,
-                         TimePoint start,
-                         std::optional<TimePoint> dark_from) {
-  judge::MetricsConfig judging{.force_cap = scenario.hand.force_max,
-                               .period = seconds(scenario.link.period)};
-  if (dark_from) {
-    judging.blackout_from = seconds(*dark_from - start);
-    judging.blackout_to = judging.blackout_from + seconds(kBlackout) + kAfterBlackout;
+/// Theirs, on the line of time that begins with `start`. The estimates are of a site's clock.
+std::vector<judge::Stay> strokes_of(const std::vector<DepthEstimate>& estimates,
+                                    const LocalClock& clock,
+                                    TimePoint start) {
+  const auto since_start = [&](TimePoint local) {
+    return TimePoint{elapsed(start, clock.world(local))};
+  };
+  std::vector<judge::Stay> strokes;
+  strokes.reserve(estimates.size());
+  for (const DepthEstimate& estimate : estimates) {
+    strokes.push_back({since_start(estimate.stroke_began_at),
+                       since_start(estimate.stroke_ended_at),
+                       estimate.place});
   }
-  judge::RunMetrics metrics = judge::metrics_of(probe.ticks(), judging);
-  metrics.whole.force_step = probe.force_step_max();
-  metrics.whole.force_kick = probe.pauses().kick();
-  metrics.whole.force_drop = probe.pauses().drop();
-  metrics.whole.energy_given = probe.pauses().energy_given();
-  // Energy has no script: what the hand gets while it waits or lets go counts too.
-  metrics.energy_operator = std::max(0.0, -probe.work_min());
-  metrics.energy_net = std::max(0.0, -probe.net_min());
-  return metrics;
+  return strokes;
 }
 
 }  // namespace
@@ -309,7 +293,10 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   surgeon.process.start(start);
   patient.process.start(start);
 
-  Probe probe{scenario, surgeon.hand, patient.tissue};
+  Probe probe{scenario,
+              surgeon.hand,
+              patient.tissue,
+              files.surgeon != nullptr ? session_files.surgeon() : nullptr};
   FaultInjector fault_injector{scenario.fault, surgeon.process, patient.process};
   std::optional<TimePoint> finished_at;
   const Duration period = scenario.link.period;
@@ -321,10 +308,11 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
     } else {
       drop_all(patient.contact);
     }
-    const surgeon::HandTruth truth = surgeon.hand.truth();
-    dark.step(now, truth.script_time);
-    probe.look(surgeon.process, patient.process, seconds(now - start), digest);
-    fault_injector.step(now, truth);
+    const surgeon::HandTruth hand = surgeon.hand.truth();
+    dark.step(now, hand.script_time);
+    const Probe::Moment moment{.now = now, .run_time = now - start, .dark = dark.shut()};
+    probe.look(surgeon.process, patient.process, moment, digest);
+    fault_injector.step(now, hand);
     if (surgeon.hand.finished() && !finished_at) finished_at = now;
   });
 
@@ -340,9 +328,11 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   result.began_at = start;
   result.virtual_span = simulator.now() - start;
   result.outcome = surgeon.hand.progress().outcome;
-  result.metrics = judged(probe, scenario, start, dark.from());
-  result.ticks = probe.take_ticks();
+  result.metrics = probe.judge().metrics(scenario.hand.force_max, seconds(scenario.link.period));
+  result.ticks = probe.judge().take_ticks();
   result.depths = patient.file.estimates();
+  result.strokes =
+      strokes_of(result.depths, patient.process.clock(), start + scenario.up.delay.mean);
   result.surgeon_link = surgeon.process.health(simulator.now());
   result.patient_link = patient.process.health(simulator.now());
   result.records = session_files.records();

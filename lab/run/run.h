@@ -6,6 +6,7 @@
 #include "common/link/telegram.h"
 #include "common/message/depth.h"
 #include "judge/metrics.h"
+#include "judge/stroke_pairing.h"
 #include "lab/run/scenario.h"
 #include "lab/run/session_files.h"
 #include "surgeon_site/haptic_device.h"
@@ -21,6 +22,8 @@ struct RunResult {
   judge::RunMetrics metrics;
   std::vector<judge::RunTick> ticks;  ///< while the script was performed
   std::vector<DepthEstimate> depths;  ///< one per stroke, in order
+  /// Theirs, since the start of the run, as the hand made them: less the way to the tip.
+  std::vector<judge::Stay> strokes;
   LinkHealth surgeon_link;
   LinkHealth patient_link;
   std::uint64_t records{};  ///< written to both session files

@@ -7,6 +7,7 @@
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
 #include "depth/depth_estimator.h"
+#include "lab/run/device_timing.h"
 #include "lab/run/fault.h"
 #include "netem/model/impairment.h"
 #include "patient_site/patient_node.h"
@@ -33,6 +34,9 @@ struct Scenario {
   patient::PatientConfig patient;
   patient::SimulatedPhantomConfig tissue;
   patient::Phantom phantom;
+  DeviceTiming hand_timing{};
+  DeviceTiming stage_timing{};
+  DeviceTiming sensor_timing{};
   depth::DepthEstimatorConfig estimator;
   netem::Impairment up;    ///< surgeon to patient
   netem::Impairment down;  ///< patient to surgeon
@@ -44,5 +48,9 @@ struct Scenario {
   Duration blackout_at_script_time{};
   Fault fault;  ///< with one, sites meet by the handshake
 };
+
+/// What the devices of a run say of themselves, their timing included.
+[[nodiscard]] HandFacts hand_facts_of(const Scenario& scenario) noexcept;
+[[nodiscard]] PatientDevices patient_devices_of(const Scenario& scenario) noexcept;
 
 }  // namespace palp::lab

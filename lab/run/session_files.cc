@@ -39,13 +39,15 @@ record::SessionInfo info_of(const Scenario& scenario, link::Role site, TimePoint
 SessionFiles::SessionFiles(const Scenario& scenario, const RunFiles& files, TimePoint start) {
   if (scenario.bare) return;
   record::SessionInfo surgeon = info_of(scenario, link::Role::Surgeon, start);
-  surgeon.metadata.emplace_back("hand", describe(surgeon::facts_of(scenario.hand)));
+  surgeon.metadata.emplace_back("surface_offset_mm",
+                                config::number_text(scenario.hand.person.surface_offset * 1e3));
+  surgeon.metadata.emplace_back("hand", describe(hand_facts_of(scenario)));
   surgeon.metadata.emplace_back(
       "script_round_trip_s",
       config::number_text(seconds(scenario.up.delay.mean + scenario.down.delay.mean)));
   surgeon_.emplace(files.surgeon != nullptr ? *files.surgeon : null_surgeon_, surgeon);
   record::SessionInfo patient = info_of(scenario, link::Role::Patient, start);
-  const PatientDevices devices = patient::facts_of(scenario.tissue);
+  const PatientDevices devices = patient_devices_of(scenario);
   patient.metadata.emplace_back("estimator", to_string(scenario.estimator.kind));
   patient.metadata.emplace_back("stage", describe(devices.stage));
   patient.metadata.emplace_back("force_sensor", describe(devices.sensor));

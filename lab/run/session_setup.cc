@@ -23,9 +23,9 @@ bool by_handshake(const Scenario& scenario) { return scenario.fault.kind != Faul
 
 DeviceFacts devices_of(const Scenario& scenario, link::Role role) {
   if (role == link::Role::Surgeon) {
-    return {.hand = surgeon::facts_of(scenario.hand), .stage = {}, .sensor = {}};
+    return {.hand = hand_facts_of(scenario), .stage = {}, .sensor = {}};
   }
-  const PatientDevices devices = patient::facts_of(scenario.tissue);
+  const PatientDevices devices = patient_devices_of(scenario);
   return {.hand = {}, .stage = devices.stage, .sensor = devices.sensor};
 }
 

@@ -20,10 +20,47 @@ std::unique_ptr<link::Codec> patient_codec(const Scenario& scenario) {
   return std::make_unique<LyingCodec>(std::move(codec), scenario.seed, scenario.link.period);
 }
 
+// Streams of chance.
+constexpr std::uint64_t kHandPolls = 0x68616e64;    // "hand"
+constexpr std::uint64_t kStagePolls = 0x73746167;   // "stag"
+constexpr std::uint64_t kSensorPolls = 0x73656e73;  // "sens"
+
 }  // namespace
 
+HandAtClock::HandAtClock(surgeon::SimulatedHand& hand,
+                         const Scenario& scenario,
+                         const LocalClock& clock) noexcept
+    : hand_{hand},
+      facts_{hand_facts_of(scenario)},
+      clock_{clock},
+      at_once_{scenario.hand_timing.at_once()},
+      polls_{scenario.hand_timing, scenario.seed, kHandPolls},
+      commands_{scenario.hand_timing.lag} {}
+
+void HandAtClock::let_go() noexcept {
+  asked_ = 0;
+  commands_.clear();
+}
+
+void HandAtClock::apply(double force) noexcept {
+  asked_ = force;
+  if (at_once_) hand_.apply(force);
+}
+
+/// The person and the handle go on whether the device is asked or not.
+surgeon::HandState HandAtClock::poll(TimePoint now) noexcept {
+  const surgeon::HandState state = hand_.read(now);
+  if (at_once_) return state;
+  if (polls_.due(now)) {
+    reading_ = state;
+    commands_.put(now, asked_);
+  }
+  hand_.apply(commands_.at(now, 0));
+  return reading_;
+}
+
 surgeon::HandState HandAtClock::read(TimePoint now) noexcept {
-  surgeon::HandState state = hand_.read(clock_.world(now));
+  surgeon::HandState state = poll(clock_.world(now));
   state.sampled_at = clock_.local(state.sampled_at);
   if (lifted_) state.pedal_held = false;
   held_ = state.pedal_held;
@@ -33,20 +70,65 @@ surgeon::HandState HandAtClock::read(TimePoint now) noexcept {
   return state;
 }
 
+PhantomAtClock::PhantomAtClock(patient::SimulatedPhantom& phantom,
+                               const Scenario& scenario,
+                               const LocalClock& clock) noexcept
+    : phantom_{phantom},
+      facts_{patient_devices_of(scenario)},
+      clock_{clock},
+      stage_at_once_{scenario.stage_timing.at_once()},
+      stage_polls_{scenario.stage_timing, scenario.seed, kStagePolls},
+      commands_{scenario.stage_timing.lag},
+      sensor_at_once_{scenario.sensor_timing.at_once()},
+      sensor_polls_{scenario.sensor_timing, scenario.seed, kSensorPolls},
+      felt_{scenario.sensor_timing.lag} {}
+
+void PhantomAtClock::obey(const Command& command) noexcept {
+  command ? phantom_.move_to(*command) : phantom_.halt();
+}
+
+patient::StageState PhantomAtClock::poll_stage(TimePoint now) noexcept {
+  const patient::StageState state = phantom_.read(now);
+  if (stage_at_once_) return state;
+  if (stage_polls_.due(now)) {
+    standing_ = state;
+    commands_.put(now, asked_);
+    obey(commands_.at(now, std::nullopt));
+  }
+  return standing_;
+}
+
+std::optional<patient::ForceSample> PhantomAtClock::poll_sensor(TimePoint now) noexcept {
+  const auto sample = phantom_.sample(now);
+  if (sensor_at_once_ || !sample) return sample;
+  felt_.put(now, *sample);
+  if (!sensor_polls_.due(now)) return std::nullopt;
+  // It cannot know how old its own reading is.
+  patient::ForceSample late = felt_.at(now, *sample);
+  late.sampled_at = now;
+  return late;
+}
+
 patient::StageState PhantomAtClock::read(TimePoint now) noexcept {
-  patient::StageState state = phantom_.read(clock_.world(now));
+  patient::StageState state = poll_stage(clock_.world(now));
   state.sampled_at = clock_.local(state.sampled_at);
   if (failing_ == FaultKind::StageFaulted) state.faulted = true;
   return state;
 }
 
 void PhantomAtClock::move_to(const patient::StageTarget& target) noexcept {
-  if (failing_ == FaultKind::StageStuck) return phantom_.halt();
-  phantom_.move_to(target);
+  if (failing_ == FaultKind::StageStuck) return halt();
+  asked_ = target;
+  if (stage_at_once_) phantom_.move_to(target);
+}
+
+void PhantomAtClock::halt() noexcept {
+  asked_.reset();
+  if (stage_at_once_) phantom_.halt();
 }
 
 std::optional<patient::ForceSample> PhantomAtClock::sample(TimePoint now) noexcept {
-  auto sample = phantom_.sample(clock_.world(now));
+  auto sample = poll_sensor(clock_.world(now));
   if (!sample || failing_ == FaultKind::SensorSilent) return std::nullopt;
   constexpr double kOffset = 1;  // [N]
   sample->sampled_at = clock_.local(sample->sampled_at);
@@ -59,7 +141,8 @@ std::optional<patient::ForceSample> PhantomAtClock::sample(TimePoint now) noexce
 
 SurgeonProcess::Running::Running(SurgeonProcess& owner)
     : link{owner.scenario_.link, make_codec(owner.scenario_)},
-      law{coupling::make_surgeon_coupling(owner.scenario_.coupling).value()},
+      law{coupling::make_surgeon_coupling(owner.scenario_.coupling, hand_facts_of(owner.scenario_))
+              .value()},
       node{owner.scenario_.surgeon, {owner.device_, law, link, owner.recorder_}} {}
 
 SurgeonProcess::SurgeonProcess(const Scenario& scenario,
@@ -69,7 +152,7 @@ SurgeonProcess::SurgeonProcess(const Scenario& scenario,
     : scenario_{scenario},
       hand_{hand},
       session_setup_{scenario, link::Role::Surgeon, std::move(end)},
-      device_{hand, session_setup_.clock()},
+      device_{hand, scenario, session_setup_.clock()},
       recorder_{recorder} {}
 
 void SurgeonProcess::start(TimePoint now) {
@@ -91,6 +174,7 @@ void SurgeonProcess::tick(TimePoint now) {
   if (!parts_) {
     // A device that nobody writes to any more lets go by itself.
     (void)hand_.read(now);
+    device_.let_go();
     hand_.apply(0);
     hand_.hold_in_plane(false);
     hand_.show({});
@@ -113,7 +197,7 @@ LinkHealth SurgeonProcess::health(TimePoint now) const noexcept {
 PatientProcess::Running::Running(PatientProcess& owner)
     : link{owner.scenario_.link, patient_codec(owner.scenario_)},
       law{coupling::make_patient_coupling(owner.scenario_.coupling,
-                                          patient::facts_of(owner.scenario_.tissue))
+                                          patient_devices_of(owner.scenario_))
               .value()},
       node{owner.scenario_.patient,
            {owner.device_,
@@ -130,7 +214,7 @@ PatientProcess::PatientProcess(const Scenario& scenario,
     : scenario_{scenario},
       around_{around},
       session_setup_{scenario, link::Role::Patient, std::move(end)},
-      device_{around.phantom, session_setup_.clock()} {}
+      device_{around.phantom, scenario, session_setup_.clock()} {}
 
 void PatientProcess::start(TimePoint now) {
   parts_.emplace(*this);

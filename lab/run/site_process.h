@@ -8,6 +8,7 @@
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
 #include "common/record/recorder.h"
+#include "lab/run/device_timing.h"
 #include "lab/run/fault.h"
 #include "lab/run/local_clock.h"
 #include "lab/run/scenario.h"
@@ -22,19 +23,23 @@
 /// the lab's. Times are the lab's.
 namespace palp::lab {
 
-/// The hand, seen through the process's clock; and a foot that can be taken off the pedal.
+/// The hand, seen through the process's clock and at its device's own pace; and a foot that can be
+/// taken off the pedal.
 class HandAtClock final : public surgeon::HapticDevice {
  public:
-  HandAtClock(surgeon::SimulatedHand& hand, const LocalClock& clock) noexcept
-      : hand_{hand}, clock_{clock} {}
+  HandAtClock(surgeon::SimulatedHand& hand,
+              const Scenario& scenario,
+              const LocalClock& clock) noexcept;
+  /// Nobody writes to it any more: what was on its way is dropped.
+  void let_go() noexcept;
   void lift_pedal(bool lifted) noexcept { lifted_ = lifted; }
   /// One of the device's own; None: it works.
   void fail(FaultKind how) noexcept { failing_ = how; }
   [[nodiscard]] bool pedal_held() const noexcept { return held_; }  ///< at the last read()
 
-  [[nodiscard]] HandFacts hand_facts() const noexcept override { return hand_.hand_facts(); }
+  [[nodiscard]] HandFacts hand_facts() const noexcept override { return facts_; }
   surgeon::HandState read(TimePoint now) noexcept override;
-  void apply(double force) noexcept override { hand_.apply(force); }
+  void apply(double force) noexcept override;
   void hold_in_plane(bool held) noexcept override { hand_.hold_in_plane(held); }
   void show(const surgeon::OperatorView& view) noexcept override { hand_.show(view); }
   [[nodiscard]] surgeon::ScriptProgress progress() const noexcept override {
@@ -42,32 +47,54 @@ class HandAtClock final : public surgeon::HapticDevice {
   }
 
  private:
+  [[nodiscard]] surgeon::HandState poll(TimePoint now) noexcept;
+
   surgeon::SimulatedHand& hand_;
+  HandFacts facts_;
   const LocalClock& clock_;
+  bool at_once_;
+  DevicePolls polls_;
+  Delayed<double> commands_;    ///< [N]
+  double asked_{};              ///< [N], last
+  surgeon::HandState reading_;  ///< newest, in the lab's time
   bool lifted_{};
   bool held_{};
   FaultKind failing_{};
 };
 
-/// Stage and sensor, seen through the process's clock.
+/// Stage and sensor, seen through the process's clock and each at its own pace.
 class PhantomAtClock final : public patient::Stage, public patient::ForceSensor {
  public:
-  PhantomAtClock(patient::SimulatedPhantom& phantom, const LocalClock& clock) noexcept
-      : phantom_{phantom}, clock_{clock} {}
+  PhantomAtClock(patient::SimulatedPhantom& phantom,
+                 const Scenario& scenario,
+                 const LocalClock& clock) noexcept;
   /// One of stage or sensor; None: they work.
   void fail(FaultKind how) noexcept { failing_ = how; }
-  [[nodiscard]] StageFacts stage_facts() const noexcept override { return phantom_.stage_facts(); }
-  [[nodiscard]] ForceSensorFacts sensor_facts() const noexcept override {
-    return phantom_.sensor_facts();
-  }
+  [[nodiscard]] StageFacts stage_facts() const noexcept override { return facts_.stage; }
+  [[nodiscard]] ForceSensorFacts sensor_facts() const noexcept override { return facts_.sensor; }
   patient::StageState read(TimePoint now) noexcept override;
   void move_to(const patient::StageTarget& target) noexcept override;
-  void halt() noexcept override { phantom_.halt(); }
+  void halt() noexcept override;
   std::optional<patient::ForceSample> sample(TimePoint now) noexcept override;
 
  private:
+  /// Of the stage; none: it holds.
+  using Command = std::optional<patient::StageTarget>;
+  void obey(const Command& command) noexcept;
+  [[nodiscard]] patient::StageState poll_stage(TimePoint now) noexcept;
+  [[nodiscard]] std::optional<patient::ForceSample> poll_sensor(TimePoint now) noexcept;
+
   patient::SimulatedPhantom& phantom_;
+  PatientDevices facts_;
   const LocalClock& clock_;
+  bool stage_at_once_;
+  DevicePolls stage_polls_;
+  Delayed<Command> commands_;
+  Command asked_;                 ///< last
+  patient::StageState standing_;  ///< newest reading, in the lab's time
+  bool sensor_at_once_;
+  DevicePolls sensor_polls_;
+  Delayed<patient::ForceSample> felt_;
   FaultKind failing_{};
   double reading_{};  ///< [N], last that was given
 };

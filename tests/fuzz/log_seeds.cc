@@ -58,7 +58,8 @@ std::vector<Record> records() {
           ForceReading{.at = at, .fresh = true, .force = 0.2},
           LinkHeard{.at = at, .state = LinkState::Live, .session_id = 5, .peer_place = {}},
           UserAsked{.at = at, .command = {.emergency_stop = true}},
-          DevicesTold{.at = at, .facts = {HandFacts{}, StageFacts{}, ForceSensorFacts{}}}};
+          DevicesTold{.at = at, .facts = {HandFacts{}, StageFacts{}, ForceSensorFacts{}}},
+          PlantTruth{.at = at, .phase_place = {}, .hand = 1e-3, .tip_place = {}}};
 }
 
 void messages(const fs::path& corpus) {

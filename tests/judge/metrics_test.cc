@@ -68,8 +68,8 @@ TEST(MetricsTest, ExactRenderingHasNoError) {
   EXPECT_NEAR(metrics.ratio_error, 0, 1e-12);
   EXPECT_NEAR(metrics.drift, 0, 1e-12);
   ASSERT_EQ(metrics.taps.size(), 8U);
-  EXPECT_NEAR(metrics.taps[0].stiffness_true, 150, 1e-9);
-  EXPECT_NEAR(metrics.taps[7].stiffness_felt, 300, 1e-9);
+  EXPECT_NEAR(metrics.taps[0].stiffness.truth().value(), 150, 1e-9);
+  EXPECT_NEAR(metrics.taps[7].stiffness.felt().value(), 300, 1e-9);
   EXPECT_NEAR(metrics.taps[7].hand_max, 0.004, 1e-5);
 }
 

@@ -1,6 +1,7 @@
 #include "common/io/realtime/background_loop.h"
 
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <utility>
 
@@ -9,12 +10,46 @@
 
 namespace palp::io {
 
+/// How the thread came to its end. Who comes last frees it: the loop, or a thread left to itself.
+struct BackgroundLoop::Ending {
+  std::mutex mutex;
+  std::condition_variable_any changed;
+  bool ended{};
+  bool left_to_itself{};
+  std::exception_ptr failure;
+
+  /// @returns that nobody else is there any more.
+  bool run(const std::stop_token& stop,
+           Duration pause,
+           const std::function<void(TimePoint now)>& work) {
+    const SteadyClock clock;
+    std::exception_ptr thrown;
+    try {
+      for (bool last = false; !last;) {
+        last = stop.stop_requested();
+        work(clock.now());
+        std::unique_lock lock{mutex};
+        changed.wait_for(lock, stop, pause, [] { return false; });
+      }
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    const std::lock_guard lock{mutex};
+    ended = true;
+    failure = thrown;
+    changed.notify_all();
+    return left_to_itself;
+  }
+};
+
 BackgroundLoop::BackgroundLoop(const std::string& name,
                                Duration pause,
                                std::function<void(TimePoint now)> work)
-    : thread_{[this, name, pause, work = std::move(work)](const std::stop_token& stop) {
+    : ending_{std::make_unique<Ending>()},
+      thread_{[ending = ending_.get(), name, pause, work = std::move(work)](
+                  const std::stop_token& stop) {
         name_this_thread(name);
-        run(stop, pause, work);
+        const std::unique_ptr<Ending> mine{ending->run(stop, pause, work) ? ending : nullptr};
       }} {}
 
 BackgroundLoop::~BackgroundLoop() {
@@ -29,27 +64,26 @@ void BackgroundLoop::stop() {
   if (thread_.joinable()) {
     thread_.join();
   }
-  if (failure_) {
-    std::rethrow_exception(failure_);
+  if (ending_ && ending_->failure) {
+    std::rethrow_exception(ending_->failure);
   }
 }
 
-void BackgroundLoop::run(const std::stop_token& stop,
-                         Duration pause,
-                         const std::function<void(TimePoint now)>& work) {
-  const SteadyClock clock;
-  std::mutex mutex;
-  std::condition_variable_any wake;
-  try {
-    for (bool last = false; !last;) {
-      last = stop.stop_requested();
-      work(clock.now());
-      std::unique_lock lock{mutex};
-      wake.wait_for(lock, stop, pause, [] { return false; });
+bool BackgroundLoop::stop_within(Duration patience) {
+  if (!thread_.joinable()) return true;
+  thread_.request_stop();
+  {
+    std::unique_lock lock{ending_->mutex};
+    if (!ending_->changed.wait_for(lock, patience, [&] { return ending_->ended; })) {
+      ending_->left_to_itself = true;
+      lock.unlock();
+      thread_.detach();
+      (void)ending_.release();  // the thread's own now
+      return false;
     }
-  } catch (...) {
-    failure_ = std::current_exception();
   }
+  stop();
+  return true;
 }
 
 }  // namespace palp::io

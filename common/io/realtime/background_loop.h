@@ -1,7 +1,7 @@
 #pragma once
 
-#include <exception>
 #include <functional>
+#include <memory>
 #include <string>
 #include <thread>
 
@@ -24,13 +24,15 @@ class BackgroundLoop {
   /// before this call is done, and waits. Idempotent.
   /// @throws what `work` threw, if it did: the loop ended there.
   void stop();
+  /// stop(), for `work` that a disk may hold up for ever: waits `patience` for it to come back.
+  /// @returns false: it did not. The thread is left to itself then, and `work` must own what it
+  /// refers to.
+  [[nodiscard]] bool stop_within(Duration patience);
 
  private:
-  void run(const std::stop_token& stop,
-           Duration pause,
-           const std::function<void(TimePoint now)>& work);
+  struct Ending;
 
-  std::exception_ptr failure_;  ///< written by the thread, read after it has ended
+  std::unique_ptr<Ending> ending_;
   std::jthread thread_;
 };
 

@@ -42,6 +42,7 @@ void each_struct(auto&& visit) {
             ForceSensorFacts,
             DeviceFacts,
             DevicesTold,
+            PlantTruth,
             TickView,
             Event>(visit);
 }

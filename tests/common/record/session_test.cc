@@ -31,7 +31,7 @@ Record any_record(Role site) {
     return one;
   };
   const bool surgeon = site == Role::Surgeon;
-  switch (draw.below(surgeon ? 10 : 11)) {
+  switch (draw.below(11)) {
     case 0:
       return any(SiteTick{});
     case 1:
@@ -53,6 +53,7 @@ Record any_record(Role site) {
     case 9:
       return any(DevicesTold{});
     default:
+      if (surgeon) return any(PlantTruth{});
       return draw.below(2) == 0 ? any(ForceReading{}) : any(ContactSample{});
   }
 }

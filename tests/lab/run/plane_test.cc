@@ -54,7 +54,8 @@ TEST(PlaneTest, ASessionByCoordinatesEndsInOrder) {
     EXPECT_EQ(result.metrics.taps[0].place, (Place{-5e-3, 0}));
     EXPECT_EQ(result.metrics.taps[2].place, (Place{10e-3, 0}));
     EXPECT_EQ(result.metrics.taps[2].index, 1) << "each visit begins with a first tap";
-    EXPECT_GT(result.metrics.taps[3].stiffness_true, 1.3 * result.metrics.taps[1].stiffness_true);
+    EXPECT_GT(*result.metrics.taps[3].stiffness.truth(),
+              1.3 * *result.metrics.taps[1].stiffness.truth());
     ASSERT_GE(result.depths.size(), 4U);
     EXPECT_NEAR(distance(result.depths[0].place, {-5e-3, 0}), 0, 1e-6);
   }

@@ -61,8 +61,8 @@ TEST(RunTest, HardTissueFeelsHarder) {
       simulate(scenario("metro", {"patient.simulated_phantom.phantom=paper-5mm"}));
   const auto& taps = result.metrics.taps;
   ASSERT_EQ(taps.size(), 8U);
-  EXPECT_GT(taps[5].stiffness_felt, 1.2 * taps[1].stiffness_felt);
-  EXPECT_GT(taps[5].stiffness_true, 1.2 * taps[1].stiffness_true);
+  EXPECT_GT(*taps[5].stiffness.felt(), 1.2 * *taps[1].stiffness.felt());
+  EXPECT_GT(*taps[5].stiffness.truth(), 1.2 * *taps[1].stiffness.truth());
 }
 
 TEST(RunTest, TheSameSeedGivesTheSameBits) {

@@ -48,5 +48,35 @@ TEST(BackgroundLoopTest, StopThrowsWhatTheWorkThrew) {
       std::runtime_error);
 }
 
+TEST(BackgroundLoopTest, WhatDoesNotComeBackIsLeftToItself) {
+  static std::atomic<bool> in;
+  static std::atomic<bool> out;
+  static std::atomic<bool> done;
+  {
+    BackgroundLoop loop{"test", milliseconds{1}, [](TimePoint) {
+                          in = true;
+                          in.notify_all();
+                          out.wait(false);
+                          done = true;
+                          done.notify_all();
+                        }};
+    in.wait(false);
+    EXPECT_FALSE(loop.stop_within(milliseconds{1}));
+  }
+  EXPECT_FALSE(done) << "nobody waited for it";
+  out = true;
+  out.notify_all();
+  done.wait(false);
+}
+
+TEST(BackgroundLoopTest, WhatComesBackInTimeHasWorkedOnceMore) {
+  std::atomic<int> queued{0};
+  int done = 0;
+  BackgroundLoop loop{"test", hours{1}, [&](TimePoint) { done = queued.load(); }};
+  queued = 7;
+  EXPECT_TRUE(loop.stop_within(hours{1}));
+  EXPECT_EQ(done, 7);
+}
+
 }  // namespace
 }  // namespace palp::io

@@ -1,8 +1,8 @@
-#include "lab/run/pause_probe.h"
+#include "judge/pause_probe.h"
 
 #include <gtest/gtest.h>
 
-namespace palp::lab {
+namespace palp::judge {
 namespace {
 
 PauseProbe::Look pressing(double force, double force_true, double work = 0) {
@@ -46,4 +46,4 @@ TEST(PauseProbeTest, WithoutAPauseNothingIsJudged) {
 }
 
 }  // namespace
-}  // namespace palp::lab
+}  // namespace palp::judge

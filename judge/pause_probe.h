@@ -3,11 +3,11 @@
 #include <cstddef>
 #include <deque>
 
-namespace palp::lab {
+namespace palp::judge {
 
 /// What pauses of a site's process did to the hand, judged from the plant's own states: a device
 /// whose process stands still holds its last force, and whatever that does to a hand no law can
-/// undo. Thread: the lab's.
+/// undo. Thread: any.
 class PauseProbe {
  public:
   struct Look {
@@ -49,4 +49,4 @@ class PauseProbe {
   std::size_t judged_for_{};   ///< ticks still to come
 };
 
-}  // namespace palp::lab
+}  // namespace palp::judge

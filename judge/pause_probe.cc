@@ -1,9 +1,9 @@
-#include "lab/run/pause_probe.h"
+#include "judge/pause_probe.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace palp::lab {
+namespace palp::judge {
 
 void PauseProbe::look(const Look& now) {
   const double taken = std::max(0.0, -now.work);
@@ -32,4 +32,4 @@ void PauseProbe::look(const Look& now) {
   worst = std::max(worst, unexplained);
 }
 
-}  // namespace palp::lab
+}  // namespace palp::judge

@@ -1,0 +1,81 @@
+#include "judge/truth_judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palp::judge {
+namespace {
+
+constexpr std::size_t kStepTicks = 10;
+constexpr Duration kBlackout = std::chrono::seconds{2};
+constexpr double kAfterBlackout = 2;  ///< [s], still judged with it
+
+PhaseTag tag_of(const PlantTruth& truth) {
+  const bool known = truth.phase_kind <= static_cast<std::uint32_t>(PhaseKind::LiftHold);
+  return {.kind = known ? static_cast<PhaseKind>(truth.phase_kind) : PhaseKind::Other,
+          .site = site_at(truth.phase_place),
+          .place = truth.phase_place,
+          .index = static_cast<int>(truth.phase_index),
+          .elapsed = seconds(truth.script_time - truth.phase_began),
+          .duration = seconds(truth.phase_duration)};
+}
+
+}  // namespace
+
+void TruthJudge::look(const PlantTruth& truth) {
+  if (truth.guarded) {
+    step_max_ = std::max(step_max_, force_step(truth.hand_force));
+  } else {
+    forces_.clear();
+  }
+  work_min_ = std::min(work_min_, truth.hand_work);
+  net_min_ = std::min(net_min_, truth.hand_work - truth.tissue_energy);
+  pauses_.look({.held = truth.held,
+                .resumed = truth.resumed,
+                .guarded = truth.guarded,
+                .force = truth.hand_force,
+                .force_true = truth.force_true,
+                .work = truth.hand_work});
+  if (truth.dark && !dark_from_) dark_from_ = truth.run_time;
+  if (!truth.performing) return;
+  ticks_.push_back({.at = seconds(truth.run_time),
+                    .phase = tag_of(truth),
+                    .counted = truth.counted,
+                    .hand = truth.hand,
+                    .surface = truth.surface,
+                    .hand_velocity = truth.hand_velocity,
+                    .hand_force = truth.hand_force,
+                    .force_true = truth.force_true,
+                    .contact_force = truth.contact_force,
+                    .tip = truth.tip,
+                    .tip_velocity = truth.tip_velocity,
+                    .tip_place = truth.tip_place,
+                    .energy_operator = truth.hand_work,
+                    .energy_operator_min = work_min_,
+                    .energy_net_min = net_min_});
+}
+
+double TruthJudge::force_step(double force) {
+  forces_.push_back(force);
+  if (forces_.size() > kStepTicks + 1) forces_.pop_front();
+  return std::abs(force - forces_.front());
+}
+
+RunMetrics TruthJudge::metrics(double force_cap, double period) const {
+  MetricsConfig judging{.force_cap = force_cap, .period = period};
+  if (dark_from_) {
+    judging.blackout_from = seconds(*dark_from_);
+    judging.blackout_to = judging.blackout_from + seconds(kBlackout) + kAfterBlackout;
+  }
+  RunMetrics metrics = metrics_of(ticks_, judging);
+  metrics.whole = {.force_step = step_max_,
+                   .force_kick = pauses_.kick(),
+                   .force_drop = pauses_.drop(),
+                   .energy_given = pauses_.energy_given()};
+  // Energy has no script: what the hand gets while it waits or lets go counts too.
+  metrics.energy_operator = std::max(0.0, -work_min_);
+  metrics.energy_net = std::max(0.0, -net_min_);
+  return metrics;
+}
+
+}  // namespace palp::judge

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/mailbox.h"
+#include "common/core/spsc_queue.h"
+#include "common/record/queue_recorder.h"
+#include "common/record/session_writer.h"
+#include "common/settings/site_settings.h"
+#include "site_program/disk_forecast.h"
+
+namespace palp::site_program {
+
+/// What became of the records.
+struct RecordAccount {
+  record::SessionCounts counts;  ///< in the file
+  std::uint64_t messages{};      ///< in the file, views included
+  std::uint64_t dropped{};       ///< a queue was full, or the disk, or the file was removed
+  std::string fault;             ///< why the file lacks something, one sentence; empty: it does not
+};
+
+/// What the record thread does: it takes records from their queues to the session file and watches
+/// the disk. Where files of sessions are asked for, each session after the first begins the next
+/// file, at the first record of its first tick. A disk that does not answer may hold its thread
+/// longer than anybody waits: the thread has it to itself then.
+/// Thread: record, but for what says otherwise.
+class RecordDesk {
+ public:
+  struct News {
+    std::string sentence;
+    bool alarming{};
+  };
+  struct Need {
+    TimePoint at{};  ///< of this look
+    bool failed{};
+    bool nearly_full{};
+    Duration left{};
+  };
+
+  /// As Recording. Thread: its maker's.
+  RecordDesk(const settings::RecordSettings& settings,
+             record::SessionInfo info,
+             std::size_t writer_count);
+
+  /// Writes what waits; once close() was said, the last of it, and closes the file.
+  void work(TimePoint now);
+  /// All writers have ended. Thread: the maker's.
+  void close() noexcept { closing_ = true; }
+  /// Once work() has come back from that. Thread: the maker's.
+  [[nodiscard]] const RecordAccount& account() const noexcept { return account_; }
+
+  [[nodiscard]] record::Recorder& recorder(std::size_t writer) { return *queues_.at(writer); }
+  /// What people are told of; false: no more. Thread: the maker's.
+  [[nodiscard]] bool take(News& news) noexcept { return news_.try_dequeue(news); }
+  [[nodiscard]] const Need& need() noexcept { return need_.get(); }  ///< Thread: the maker's.
+
+ private:
+  void drain();
+  void write(const Record& record);
+  void write_tick(const Record& record);
+  [[nodiscard]] std::string next_path() const;
+  void open(const std::string& path);
+  void begin_next_file();
+  void close_file();
+  void tell_of(const Record& record);
+  void keep_watch(TimePoint now);
+  [[nodiscard]] std::string fault() const;
+
+  static constexpr std::size_t kNewsMax = 256;
+  /// Less than so much recording left is told.
+  static constexpr Duration kNearlyFull = std::chrono::minutes{5};
+
+  std::string prefix_;  ///< of the files of sessions; empty: one file
+  record::SessionInfo info_;
+  std::uint64_t session_id_{};  ///< of the newest session
+  std::vector<Record> tick_;    ///< of the present tick, with files of sessions
+  std::string file_fault_;      ///< of a file before this one, or why there is none
+  std::optional<record::FileSink> sink_;
+  std::optional<record::SessionWriter> writer_;
+  std::vector<std::unique_ptr<record::QueueRecorder>> queues_;
+  SpscQueue<News> news_{kNewsMax};  ///< reader: the maker
+  DiskForecast forecast_;
+  TimePoint looked_at_{};
+  bool told_of_nearly_full_{};
+  std::string told_fault_;
+  Mailbox<Need> need_;       ///< reader: the maker
+  std::uint64_t dropped_{};  ///< by full queues
+  std::uint64_t lost_{};     ///< in no file, and not for a full queue
+  RecordAccount account_;
+  std::atomic<bool> closing_{};
+};
+
+}  // namespace palp::site_program
