@@ -111,9 +111,9 @@ void MasterDevice::drain(const Clock& clock) {
     vanish("it fell silent", now);
     return;
   }
-  protocol_->advance(now, sample_);
+  const bool whole = protocol_->advance(now, sample_);
   now_.looked_at = now;
-  if (good > 0 || position_known_) adopt(now);
+  if (good > 0 || position_known_ || whole) adopt(now);
 }
 
 void MasterDevice::adopt(TimePoint now) {

@@ -37,8 +37,9 @@ class MasterProtocol {
   virtual bool take(std::span<const std::uint8_t> report, TimePoint now, MasterSample& sample) = 0;
   /// Once a cycle. `force` [counts], finite; it and `live` false: no force, motors may be off.
   virtual io::PortFault send(io::ReportPort& port, double force, bool live, TimePoint now) = 0;
-  /// Of a device that counts motion, not places: what happened up to `now`.
-  virtual void advance(TimePoint /*now*/, MasterSample& /*sample*/) {}
+  /// Of a device that tells speeds, not places: where it is at `now`.
+  /// @returns whether `sample` is whole without any report.
+  virtual bool advance(TimePoint /*now*/, MasterSample& /*sample*/) { return false; }
   virtual void show_lamp(bool /*engaged*/) noexcept {}
   /// On the way out: no force, whatever was asked before.
   virtual void stop(io::ReportPort& port) = 0;

@@ -95,7 +95,8 @@ std::optional<std::string> why_not_opened(const HidFound& found) {
   const char* const path = found.path.c_str();
   if (::access(path, F_OK) == 0 && ::access(path, R_OK | W_OK) != 0) {
     return "no permission for " + found.path +
-           ": install Palp's udev rules, join the group palp, and plug it in again";
+           ": install Palp's udev rules (70-palp-hid.rules), join the group plugdev, plug it in "
+           "again";
   }
   return "cannot be opened: " + (why.empty() ? "busy or gone" : why);
 }

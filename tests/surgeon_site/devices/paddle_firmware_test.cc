@@ -11,6 +11,8 @@ namespace {
 
 using Report = std::array<std::uint8_t, palp_paddle::kReportBytes>;
 
+// The board's own names.
+// NOLINTBEGIN(readability-identifier-naming)
 constexpr int LOW = 0;
 constexpr int HIGH = 1;
 constexpr int INPUT_PULLUP = 2;
@@ -50,6 +52,7 @@ struct {
     return 1;
   }
 } RawHID;
+// NOLINTEND(readability-identifier-naming)
 
 #include "surgeon_site/devices/firmware/paddle/paddle.ino"
 

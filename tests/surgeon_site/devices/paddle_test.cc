@@ -200,7 +200,7 @@ TEST_F(PaddleTest, NoSequenceOfFaultsGivesForceThatIsNotAskedFor) {
     state_.flags = palp_paddle::kStateCalibrated;
     state_.position_nm = 0;
     raw_->there = raw_->writable = true;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 12; ++i) {
       switch (draw(12)) {
         case 0:
           state_.flags = static_cast<std::uint16_t>(draw(65'536));
