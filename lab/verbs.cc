@@ -9,6 +9,7 @@
 #include "common/core/whole_file.h"
 #include "common/coupling/any_coupling.h"
 #include "judge/metric_table.h"
+#include "lab/partial_cases.h"
 #include "lab/report/batch_report.h"
 #include "lab/report/metric_plot.h"
 #include "lab/report/stability_map.h"
@@ -33,10 +34,16 @@ constexpr std::uint64_t kSeedMax = 9007199254740991;  // what a JSON number hold
 
 ExitStatus refusal(const Error& fault) { return config::refusal("palp-lab", fault); }
 
-/// One line that grows, for a person.
-void show_progress(std::size_t done, std::size_t count) {
-  static_cast<void>(std::fprintf(stderr, "\r%zu of %zu", done, count));
-  if (done == count) static_cast<void>(std::fprintf(stderr, "\r                    \r"));
+/// One line that is written over, for a person: how far, how fast, how long still.
+Progress shown_progress(const Machine& machine) {
+  if (!machine.watched) return {};
+  return [&machine, begin = machine.used().second](std::size_t done, std::size_t count) {
+    const double rate = static_cast<double>(done) / std::max(1e-3, machine.used().second - begin);
+    const double left = static_cast<double>(count - done) / rate;
+    static_cast<void>(std::fprintf(
+        stderr, "\r%zu of %zu, %.1f a second, %.0f s left\x1b[K", done, count, rate, left));
+    if (done == count) static_cast<void>(std::fprintf(stderr, "\r\x1b[K"));
+  };
 }
 
 /// Writes what was asked for; the error, if any.
@@ -85,6 +92,30 @@ Result<void> check_metric(const BatchArguments& arguments) {
   return fail(sentence);
 }
 
+/// Runs what no interrupted batch before left in `kept`.
+Result<std::vector<CaseResult>> run_missing(Plan plan,
+                                            const BatchArguments& arguments,
+                                            const Machine& machine,
+                                            std::size_t cores) {
+  std::vector<CaseResult> results;
+  auto kept = PartialCases::begin(
+      arguments.keeps_rows ? arguments.cases : "", arguments.resume, plan, results);
+  if (!kept) return tl::unexpected(kept.error());
+  auto made = run_plan(
+      plan,
+      [&](std::size_t count, const std::function<void(std::size_t)>& work) {
+        machine.for_each_index(count, cores, work);
+      },
+      shown_progress(machine),
+      [&](const CaseResult& result) { kept->add(plan, result); });
+  if (!made) return tl::unexpected(made.error());
+  results.insert(results.end(), made->begin(), made->end());
+  std::sort(results.begin(), results.end(), [](const CaseResult& a, const CaseResult& b) {
+    return a.index < b.index;
+  });
+  return results;
+}
+
 Result<Run> run(Plan plan, const BatchArguments& arguments, const Machine& machine) {
   if (auto known = check_metric(arguments); !known) return tl::unexpected(known.error());
   if (!arguments.shard.empty()) {
@@ -94,12 +125,7 @@ Result<Run> run(Plan plan, const BatchArguments& arguments, const Machine& machi
   }
   const std::size_t cores = arguments.cores > 0 ? arguments.cores : machine.processors;
   const auto begin = machine.used();
-  auto results = run_plan(
-      plan,
-      [&](std::size_t count, const std::function<void(std::size_t)>& work) {
-        machine.for_each_index(count, cores, work);
-      },
-      machine.watched ? show_progress : Progress{});
+  auto results = run_missing(plan, arguments, machine, cores);
   if (!results) return tl::unexpected(results.error());
   const auto end = machine.used();
   BatchAccount account;
@@ -122,6 +148,7 @@ ExitStatus finish(const Run& done, const BatchArguments& arguments, const std::s
                        {arguments.svg, svg}})) {
     return *failed;
   }
+  if (done.account.cores > 0) remove_partial_cases(arguments.cases);  // none of a merge
   return {ExitCode::Done, batch_summary(done.plan, done.results, done.account)};
 }
 
@@ -159,6 +186,7 @@ ExitStatus finish_map(const Run& done, const BatchArguments& arguments) {
                        {arguments.svg, map_svg(done.results)}})) {
     return *failed;
   }
+  if (done.account.cores > 0) remove_partial_cases(arguments.cases);  // none of a merge
   return {ExitCode::Done, map_text(done.results)};
 }
 
@@ -179,6 +207,7 @@ ExitStatus compare(const BatchArguments& arguments, const Machine& machine) {
   for (const std::string_view name : coupling::kCouplingNames) {
     BatchArguments one = arguments;
     one.coupling = name;
+    one.keeps_rows = false;  // four plans, one file
     auto plan = make_set(set_of(one), ask_of(one));
     if (!plan) return refusal(plan.error());
     auto done = run(std::move(*plan), one, machine);
@@ -258,6 +287,7 @@ void declare_running(config::CommandLine& verb, BatchArguments& arguments, const
 
 void declare_spread(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {
   declare_running(verb, arguments, schema);
+  verb.toggle("--resume", arguments.resume, "only the cases that FILE.partial of --cases lacks");
   declare_submission(verb, arguments.submission);
 }
 

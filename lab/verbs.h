@@ -38,6 +38,8 @@ struct BatchArguments {
   std::uint64_t count{1000};
   std::uint64_t repeats{1};
   std::uint64_t cores{};
+  bool resume{};          ///< takes only what an interrupted batch has not
+  bool keeps_rows{true};  ///< as they come, beside `cases`
   Submission submission;  ///< of montecarlo, adversary, map and sweep
 };
 

@@ -136,6 +136,9 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   info.metadata.emplace_back("estimator", settings->estimator_kind);
   info.metadata.emplace_back("stage", describe(facts.stage));
   info.metadata.emplace_back("force_sensor", describe(facts.sensor));
+  if (*devices) {
+    info.attachments.push_back({"devices.textproto", "text/plain", (*devices)->text});
+  }
   if (tissue_known) describe_tissue(*phantom, simulation.surface_offset, settings->node.gate, info);
   return Plan{std::move(*settings),
               std::move(*phantom),
@@ -162,7 +165,7 @@ class Program {
         law_{coupling::make_patient_coupling(settings_.coupling, plan.facts).value()},
         link_{settings_.link, std::make_unique<link::WireCodec>()},
         runner_{plan.runner},
-        recording_{settings_.record, std::move(plan.info), 2},
+        recording_{settings_.record, proven(std::move(plan.info)), 2},
         worker_{depth::with_sensor(settings_.estimator, plan.facts.sensor),
                 {contact_, depth_, recording_.recorder(1)}},
         node_{settings_.node,
@@ -189,8 +192,14 @@ class Program {
   [[nodiscard]] std::optional<ExitStatus> await_devices(io::Terminal& terminal);
   void tell_of_devices();
   void look(TimePoint now);
+  void show(const PatientStatus& status, TimePoint now);
   void listen();  ///< Thread: estimator
   [[nodiscard]] ExitStatus end(std::string outcome);
+
+  [[nodiscard]] record::SessionInfo proven(record::SessionInfo info) const {
+    runner_.describe_identity(info);
+    return info;
+  }
 
   const Settings settings_;
   const Phantom phantom_;
@@ -239,6 +248,7 @@ ExitStatus Program::run(io::Terminal& terminal) {
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
   while (true) {
     const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
+    recording_.mark(terminal.marks(), clock_.now());
     node_.commands().put({.emergency_stop = false, .resets = terminal.resets()});
     // A reset frees the devices first; the site hears of the next, once they are ready.
     if (rig_ && std::exchange(resets_, terminal.resets()) != resets_) rig_->restart();
@@ -255,9 +265,10 @@ void Program::look(TimePoint now) {
   const PatientStatus& status = node_.status().get();
   round_trips_.add(status.link);
   runner_.tell_news(line_);
+  if (const auto peer = runner_.take_peer()) recording_.tell_of_peer(*peer);
   recording_.tell_news(line_);
   tell_of_devices();
-  line_.show(recording_.alarm() + status_line(status), now);
+  show(status, now);
 }
 
 void Program::listen() {
@@ -280,20 +291,25 @@ ExitStatus Program::end(std::string outcome) {
   return {ExitCode::Done, std::move(outcome), ""};
 }
 
+void Program::show(const PatientStatus& status, TimePoint now) {
+  const std::string alarm = recording_.alarm();
+  line_.show(alarm + status_line(status, line_.room_behind(alarm)), now);
+}
+
 void Program::stop(site_program::SiteReport& report) {
   runner_.stop("the patient site has ended");
   estimator_.stop();
   const PatientStatus& status = node_.status().get();
-  report.records = recording_.stop();
-  recording_.tell_news(line_);
-  line_.show(recording_.alarm() + status_line(status), clock_.now());
-  line_.end();
   report.link = status.link;
   report.round_trips = round_trips_;
   report.estimates = worker_.strokes();
   report.estimate_p50 = latencies_.quantile(0.5);
   report.estimate_max = latencies_.max();
   runner_.account(report);
+  report.records = recording_.stop(figures_of(report));
+  recording_.tell_news(line_);
+  show(status, clock_.now());
+  line_.end();
 }
 
 }  // namespace

@@ -258,7 +258,9 @@ Result<DevicePlans> make_device_plans(std::string_view text, const std::string& 
 Result<DevicePlans> read_device_plans(const std::string& path) {
   const auto text = read_whole_file(path);
   if (!text) return tl::unexpected{text.error()};
-  return make_device_plans(*text, path);
+  auto plans = make_device_plans(*text, path);
+  if (plans) plans->text = *text;
+  return plans;
 }
 
 }  // namespace palp::patient

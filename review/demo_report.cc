@@ -87,6 +87,12 @@ Json link_json(const Asked& asked, const SiteData& surgeon, const Json& report, 
                    {"loss", value(asked.loss)}};
   link["achieved"]["rtt_p50_ms"] =
       first_known({member(report, "round_trip_p50_ms"), value(round_trip_median_ms(surgeon))});
+  link["achieved"]["telegrams_lost"] = nullptr;
+  link["achieved"]["telegrams_accepted"] = nullptr;
+  if (surgeon.last_link) {
+    link["achieved"]["telegrams_lost"] = surgeon.last_link->health.lost;
+    link["achieved"]["telegrams_accepted"] = surgeon.last_link->health.accepted;
+  }
   link["achieved"]["up"] = direction_json(relay, "up");
   link["achieved"]["down"] = direction_json(relay, "down");
   return link;
@@ -149,6 +155,9 @@ Json rejected_json(const SiteData& site, const Json& report) {
   return json;
 }
 
+/// What the site's program reported in its file.
+Json told_by(const SiteData& site) { return parsed(site.program_report.value_or("")); }
+
 Json site_json(const SiteData& site, const Json& report, const std::string& path) {
   Json json;
   json["session_file"] = first_known({member(report, "session_file"), path});
@@ -157,7 +166,7 @@ Json site_json(const SiteData& site, const Json& report, const std::string& path
   json["ticks"] = first_known({member(report, "ticks"), site.motion.size()});
   json["missed_ticks"] = member(report, "missed_ticks");
   json["lateness_p999_us"] = member(report, "lateness_p999_us");
-  json["records_written"] = first_known({member(report, "records_written"), site.report.messages});
+  json["records_written"] = first_known({member(report, "records_written"), site.records});
   json["records_dropped"] =
       first_known({member(report, "records_dropped"), whole_number(site.records_dropped)});
   json["rejected"] = rejected_json(site, report);
@@ -197,6 +206,20 @@ Json transitions_json(const SiteData& surgeon, const SiteData& patient) {
   return list;
 }
 
+/// The moments that the operators marked, each site's on its own line of time.
+Json marks_json(const SiteData& surgeon, const SiteData& patient) {
+  Json list = Json::array();
+  for (const SiteData* site : {&surgeon, &patient}) {
+    for (const Note& note : site->notes) {
+      if (note.code != static_cast<std::uint16_t>(record::NoteCode::Marked)) continue;
+      list.push_back({{"site", record::site_name(site->site)},
+                      {"t_s", value(seconds(elapsed(site->began_at, note.at)))},
+                      {"number", value(note.detail)}});
+    }
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string demo_report(const SiteData& surgeon,
@@ -206,8 +229,8 @@ std::string demo_report(const SiteData& surgeon,
                         const ProgramReports& reports,
                         const SessionPaths& paths,
                         const config::Json& metrics) {
-  const Json surgeon_report = parsed(reports.surgeon);
-  const Json patient_report = parsed(reports.patient);
+  const Json surgeon_report = first_known({parsed(reports.surgeon), told_by(surgeon)});
+  const Json patient_report = first_known({parsed(reports.patient), told_by(patient)});
   Json json;
   json["schema"] = "palp.demo/1";
   json["outcome"] = first_known({text_or_null(asked.outcome),
@@ -229,6 +252,7 @@ std::string demo_report(const SiteData& surgeon,
   json["sites"]["surgeon"] = site_json(surgeon, surgeon_report, paths.surgeon);
   json["sites"]["patient"] = site_json(patient, patient_report, paths.patient);
   json["transitions"] = transitions_json(surgeon, patient);
+  json["marks"] = marks_json(surgeon, patient);
   return json.dump(2) + '\n';
 }
 

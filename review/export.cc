@@ -35,7 +35,10 @@ class Selection {
       auto& encoder = encoders.try_emplace(entry->site, entry->site).first->second;
       const auto prepared = encoder.prepare(entry->record, 0);
       if (!prepared) continue;
-      if (!began) began = reader.began_at();
+      if (!began) {
+        began = reader.began_at();
+        look_only_between(reader, *began);
+      }
       const double t = seconds(elapsed(*began, prepared->at));
       if (t < ask_.from || (ask_.to && t >= *ask_.to)) continue;
       const std::string& topic = name(entry->site, prepared->topic);
@@ -45,6 +48,14 @@ class Selection {
   }
 
  private:
+  /// What lies outside of the interval need not be unpacked.
+  void look_only_between(record::SessionReader& reader, TimePoint began) const {
+    constexpr double kLongest = 1e9;      // [s]
+    const auto instant = [&](double t) {  // a file may begin at any time
+      return TimePoint{elapsed(TimePoint{-from_seconds(std::clamp(t, 0.0, kLongest))}, began)};
+    };
+    reader.only_between(instant(ask_.from), instant(ask_.to.value_or(kLongest)));
+  }
   [[nodiscard]] const std::string& name(link::Role site, record::Topic topic) const {
     static const std::array<std::vector<record::TopicFormat>, 2> all{
         record::topics_of(link::Role::Surgeon), record::topics_of(link::Role::Patient)};

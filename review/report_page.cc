@@ -6,6 +6,7 @@
 #include <span>
 
 #include "common/config/json.h"
+#include "common/record/notes.h"
 #include "judge/excursions.h"
 #include "review/page_texts.h"
 #include "review/text.h"
@@ -16,6 +17,7 @@ namespace {
 using config::Json;
 
 constexpr std::size_t kCurvePoints = 6000;
+constexpr double kTickPeriod = 1e-3;  ///< [s]
 constexpr std::size_t kLoopPoints = 150;
 constexpr std::size_t kLoopsMax = 60;
 
@@ -29,12 +31,16 @@ Json shown(double value, double unit) {
 std::size_t stride_for(std::size_t size, std::size_t most) { return size / most + 1; }
 
 void add_curves(const SessionTicks& session, Json& to) {
-  for (const char* name : {"t", "felt", "touched", "truth", "hand", "tip", "x", "y", "energy"}) {
+  for (const char* name :
+       {"t", "felt", "touched", "truth", "hand", "tip", "x", "y", "energy", "energy_tissue"}) {
     to[name] = Json::array();
   }
   const std::size_t step = stride_for(session.ticks.size(), kCurvePoints);
-  for (std::size_t i = 0; i < session.ticks.size(); i += step) {
+  double tissue = 0;  // [J]
+  for (std::size_t i = 0; i < session.ticks.size(); ++i) {
     const judge::RunTick& tick = session.ticks[i];
+    if (std::isfinite(tick.tip)) tissue += tick.contact_force * tick.tip_velocity * kTickPeriod;
+    if (i % step != 0) continue;
     to["t"].push_back(shown(tick.at, 1));
     to["felt"].push_back(shown(tick.hand_force, 1));
     to["touched"].push_back(shown(tick.contact_force, 1));
@@ -44,6 +50,7 @@ void add_curves(const SessionTicks& session, Json& to) {
     to["x"].push_back(shown(tick.tip_place.x, 1e-3));
     to["y"].push_back(shown(tick.tip_place.y, 1e-3));
     to["energy"].push_back(shown(tick.energy_operator, 1e-3));
+    to["energy_tissue"].push_back(shown(tissue, 1e-3));
   }
 }
 
@@ -59,6 +66,28 @@ void add_link(const SessionPair& session, Json& to) {
     to["jitter"].push_back(measured ? shown(seconds(health.jitter), 1e-3) : Json(nullptr));
     to["lost"].push_back(health.lost);
     to["sent"].push_back(health.accepted + health.lost);
+  }
+}
+
+/// When the hand was not engaged, as pairs of instants [s].
+void add_idle(const SessionTicks& session, Json& to) {
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i <= session.ticks.size(); ++i) {
+    if (i < session.ticks.size() && !session.ticks[i].counted) continue;
+    if (i > begin) to.push_back({session.ticks[begin].at, session.ticks[i - 1].at});
+    begin = i + 1;
+  }
+}
+
+/// The operators' marks on the surgeon's line of time [s].
+void add_marks(const SessionPair& session, Json& to) {
+  for (const SiteData* site : {&session.surgeon, &session.patient}) {
+    for (const Note& note : site->notes) {
+      if (note.code != static_cast<std::uint16_t>(record::NoteCode::Marked)) continue;
+      const bool surgeon = site == &session.surgeon;
+      const TimePoint at = surgeon ? note.at : session.time_line.surgeons(note.at);
+      to.push_back(shown(seconds(elapsed(session.surgeon.began_at, at)), 1));
+    }
   }
 }
 
@@ -88,6 +117,7 @@ void add_loops(const SessionTicks& session, Json& to) {
 Json facts_of_site(const SiteData& site) {
   Json facts = Json::object();
   for (const auto& [key, value] : site.metadata) facts[key] = value;
+  for (const auto& [key, value] : site.peer) facts["peer's " + key] = value;
   return facts;
 }
 
@@ -125,6 +155,10 @@ std::string report_page(const SessionPair& session,
   data["series"]["clock"] = clock_sentence(session.time_line);
   add_curves(ticks, data["series"]);
   add_link(session, data["series"]["link"]);
+  data["series"]["idle"] = Json::array();
+  add_idle(ticks, data["series"]["idle"]);
+  data["series"]["marks"] = Json::array();
+  add_marks(session, data["series"]["marks"]);
   data["series"]["loops"] = Json::array();
   add_loops(ticks, data["series"]["loops"]);
   data["facts"]["session_id"] = session.session_id;

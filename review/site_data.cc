@@ -7,6 +7,7 @@
 #include "common/record/mapped_file.h"
 #include "common/record/session_encoder.h"
 #include "common/record/session_reader.h"
+#include "common/record/session_writer.h"
 
 namespace palp::review {
 namespace {
@@ -97,6 +98,8 @@ Result<SiteData> load_site(const record::FileBytes& file,
   data.began_at = reader.began_at().value_or(TimePoint{});
   data.clock = reader.clock();
   data.metadata = reader.metadata("palp");
+  data.program_report = reader.metadata(record::kReportRecord, record::kReportKey);
+  data.peer = reader.metadata("palp.peer");
   data.records_dropped = reader.metadata("palp.summary", "records_dropped");
   if (const auto text = reader.attachment("config.textproto")) {
     data.settings = std::string{*text};

@@ -42,8 +42,10 @@ struct SiteData {
   std::vector<DepthArrived> reports;           ///< surgeon: each estimate as it arrived
   std::vector<PlantTruth> truths;              ///< surgeon: of a simulation of both sites
   record::McapMap metadata;                    ///< of the record `palp`
+  record::McapMap peer;                        ///< of the record `palp.peer`
   std::optional<std::string> tissue_csv;       ///< attachment tissue.csv
   std::optional<std::string> settings;         ///< attachment config.textproto
+  std::optional<std::string> program_report;   ///< of the program, as JSON, where it was closed
   std::uint64_t records{};                     ///< decoded
   std::optional<std::string> records_dropped;  ///< from the summary
   record::McapReadReport report;

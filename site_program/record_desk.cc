@@ -68,7 +68,7 @@ RecordDesk::RecordDesk(const settings::RecordSettings& settings,
     if (!sink_) throw std::runtime_error{file_fault_};
   }
   tick_.reserve(kTickRecords);
-  for (std::size_t i = 0; i < writer_count; ++i) {
+  for (std::size_t i = 0; i <= writer_count; ++i) {  // the last is the maker's own
     queues_.push_back(std::make_unique<record::QueueRecorder>(settings.queue_records));
   }
 }
@@ -132,6 +132,10 @@ void RecordDesk::work(TimePoint now) {
   if (!last) return;
   for (const Record& one : tick_) write(one);
   tick_.clear();
+  // A file of one session of many knows nothing of the run.
+  if (writer_ && prefix_.empty() && !figures_.empty()) {
+    writer_->add_metadata(record::kReportRecord, {{record::kReportKey, figures_}});
+  }
   close_file();
   account_.fault = file_fault_;
   account_.dropped = dropped_ + lost_;
@@ -145,6 +149,20 @@ void RecordDesk::drain() {
     dropped_ += queue->dropped();
   }
   if (writer_) writer_->set_dropped(dropped_);
+  write_peer();
+}
+
+/// The peer may be known before the first tick of its session is here.
+void RecordDesk::write_peer() {
+  for (io::PeerIdentity next; peers_.try_dequeue(next);) peer_ = next;
+  const bool begun = prefix_.empty() || session_id_ == (peer_ ? peer_->session_id : 0);
+  if (!peer_ || !writer_ || !begun) return;
+  writer_->add_facts("palp.peer",
+                     {{"session_id", record::session_id_text(peer_->session_id)},
+                      {"identity", peer_->name},
+                      {"certificate_sha256", peer_->fingerprint},
+                      {"git_commit", peer_->build}});
+  peer_.reset();
 }
 
 void RecordDesk::keep_watch(TimePoint now) {
@@ -209,7 +227,10 @@ void RecordDesk::tell_of(const Record& record) {
                              false});
   } else if (const auto* note = std::get_if<Note>(&record)) {
     const auto code = static_cast<record::NoteCode>(note->code);
-    if (!shown_elsewhere(code)) {
+    if (code == record::NoteCode::Marked) {
+      const auto number = static_cast<std::uint64_t>(note->detail);
+      (void)news_.try_enqueue({"moment " + std::to_string(number) + " is marked", false});
+    } else if (!shown_elsewhere(code)) {
       (void)news_.try_enqueue({std::string{record::to_string(code)}, false});
     }
   }

@@ -5,10 +5,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
+#include "common/io/secure/session_news.h"
 #include "common/record/queue_recorder.h"
 #include "common/record/session_writer.h"
 #include "common/settings/site_settings.h"
@@ -49,12 +51,19 @@ class RecordDesk {
 
   /// Writes what waits; once close() was said, the last of it, and closes the file.
   void work(TimePoint now);
-  /// All writers have ended. Thread: the maker's.
-  void close() noexcept { closing_ = true; }
+  /// All writers have ended. `figures`: as Recording::stop(). Thread: the maker's.
+  void close(std::string figures) {
+    figures_ = std::move(figures);
+    closing_ = true;
+  }
   /// Once work() has come back from that. Thread: the maker's.
   [[nodiscard]] const RecordAccount& account() const noexcept { return account_; }
 
   [[nodiscard]] record::Recorder& recorder(std::size_t writer) { return *queues_.at(writer); }
+  /// Into the queue behind those of the writers. Thread: the maker's.
+  void note(const Note& note) noexcept { (void)queues_.back()->record(note); }
+  /// Into the file of that session, as metadata `palp.peer`. Thread: the maker's.
+  void tell_of_peer(const io::PeerIdentity& peer) { (void)peers_.try_enqueue(peer); }
   /// What people are told of; false: no more. Thread: the maker's.
   [[nodiscard]] bool take(News& news) noexcept { return news_.try_dequeue(news); }
   [[nodiscard]] const Need& need() noexcept { return need_.get(); }  ///< Thread: the maker's.
@@ -68,10 +77,12 @@ class RecordDesk {
   void begin_next_file();
   void close_file();
   void tell_of(const Record& record);
+  void write_peer();
   void keep_watch(TimePoint now);
   [[nodiscard]] std::string fault() const;
 
   static constexpr std::size_t kNewsMax = 256;
+  static constexpr std::size_t kPeersMax = 16;
   /// Less than so much recording left is told.
   static constexpr Duration kNearlyFull = std::chrono::minutes{5};
 
@@ -83,7 +94,9 @@ class RecordDesk {
   std::optional<record::FileSink> sink_;
   std::optional<record::SessionWriter> writer_;
   std::vector<std::unique_ptr<record::QueueRecorder>> queues_;
-  SpscQueue<News> news_{kNewsMax};  ///< reader: the maker
+  SpscQueue<News> news_{kNewsMax};                ///< reader: the maker
+  SpscQueue<io::PeerIdentity> peers_{kPeersMax};  ///< writer: the maker
+  std::optional<io::PeerIdentity> peer_;          ///< in no file yet
   DiskForecast forecast_;
   TimePoint looked_at_{};
   bool told_of_nearly_full_{};
@@ -92,6 +105,7 @@ class RecordDesk {
   std::uint64_t dropped_{};  ///< by full queues
   std::uint64_t lost_{};     ///< in no file, and not for a full queue
   RecordAccount account_;
+  std::string figures_;  ///< written before closing_, read behind it
   std::atomic<bool> closing_{};
 };
 

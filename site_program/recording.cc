@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/io/realtime/steady_clock.h"
+#include "common/record/notes.h"
 
 namespace palp::site_program {
 namespace {
@@ -35,6 +36,14 @@ Duration Recording::silent_for() {
   return io::SteadyClock{}.now() - std::max(began_, desk_->need().at);
 }
 
+void Recording::mark(std::uint32_t count, TimePoint now) {
+  constexpr auto kCode = static_cast<std::uint16_t>(record::NoteCode::Marked);
+  while (marks_ < count) {
+    ++marks_;
+    desk_->note(Note{.at = now, .code = kCode, .detail = static_cast<double>(marks_)});
+  }
+}
+
 std::string Recording::alarm() {
   if (!desk_) return "RECORDING FAILED ";
   const RecordDesk::Need& need = desk_->need();
@@ -57,9 +66,9 @@ void Recording::tell_news(StatusLine& line) {
   }
 }
 
-const RecordAccount& Recording::stop() {
+const RecordAccount& Recording::stop(std::string figures) {
   if (!loop_) return account_;
-  desk_->close();
+  desk_->close(std::move(figures));
   if (loop_->stop_within(kPatience)) {
     account_ = desk_->account();
   } else {

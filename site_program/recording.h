@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -27,18 +28,24 @@ class Recording {
   Recording& operator=(const Recording&) = delete;
 
   [[nodiscard]] record::Recorder& recorder(std::size_t writer) { return desk_->recorder(writer); }
+  /// Notes a moment for each mark that is new of `count`.
+  void mark(std::uint32_t count, TimePoint now);
+  /// Into the file of that session: who the peer is.
+  void tell_of_peer(const io::PeerIdentity& peer) { desk_->tell_of_peer(peer); }
   /// Tells people of changes of state and of notes; what repeats itself once.
   void tell_news(StatusLine& line);
   /// What stands at the head of the status line while the recording is in need, with a space behind
   /// it; empty: it is well.
   [[nodiscard]] std::string alarm();
-  /// Once all writers have ended: writes what waits and closes the file. Idempotent.
-  const RecordAccount& stop();
+  /// Once all writers have ended: writes what waits, and `figures`, what the program reports of its
+  /// run, and closes the file. Idempotent.
+  const RecordAccount& stop(std::string figures = {});
 
  private:
   [[nodiscard]] Duration silent_for();
 
   std::unique_ptr<RecordDesk> desk_;
+  std::uint32_t marks_{};
   std::string told_last_;
   bool told_of_silence_{};
   RecordAccount account_;

@@ -71,12 +71,20 @@ std::vector<std::string> Runner::shortcomings() const {
   return sentences;
 }
 
+void Runner::describe_identity(record::SessionInfo& info) const {
+  info.metadata.emplace_back("identity", credentials_ ? credentials_->name() : "none: insecure");
+  info.metadata.emplace_back("certificate_sha256", credentials_ ? credentials_->fingerprint() : "");
+}
+
 std::optional<std::string> Runner::tell_news(StatusLine& line) {
   using Kind = io::SessionNews::Kind;
   std::optional<std::string> hopeless;
   service_.progress(rt_->progress().ticks);
   while (const auto news = server_->news()) {
-    if (news->kind == Kind::Established) ++sessions_;
+    if (news->kind == Kind::Established) {
+      ++sessions_;
+      peer_ = news->identity;
+    }
     if (news->final) {
       hopeless = news->sentence;
     } else if (news->kind == Kind::Refused) {

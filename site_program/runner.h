@@ -45,6 +45,10 @@ class Runner {
   /// What of real time was asked for and not granted, and what is wrong with the identity, in
   /// sentences.
   [[nodiscard]] std::vector<std::string> shortcomings() const;
+  /// Into the file's metadata: what this site proves itself with.
+  void describe_identity(record::SessionInfo& info) const;
+  /// With whom the newest session is, once for each. Told by tell_news().
+  [[nodiscard]] std::optional<io::PeerIdentity> take_peer() { return std::exchange(peer_, {}); }
   /// Tells people of sessions, and a service manager that the loop goes on. @returns the sentence
   /// if there will never be one.
   std::optional<std::string> tell_news(StatusLine& line);
@@ -67,6 +71,7 @@ class Runner {
   io::ServiceNotice service_;
   std::uint64_t sessions_{};
   std::string refusal_;
+  std::optional<io::PeerIdentity> peer_;
 };
 
 }  // namespace palp::site_program

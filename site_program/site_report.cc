@@ -48,6 +48,39 @@ Json clock_json(const std::optional<LinkHealth>& link) {
           {"delay_in_ms", milliseconds(link->delay_in)}};
 }
 
+/// What the program alone knows of its run.
+Json figures_json(const SiteReport& report) {
+  const io::LoopStats& loop = report.loop;
+  const LinkHealth& link = report.link;
+  Json json;
+  json["schema"] = "palp.site/2";
+  json["site"] = report.site;
+  json["outcome"] = report.exit_status.outcome;
+  json["reason"] = report.exit_status.reason;
+  json["exit_code"] = config::exit_value(report.exit_status.code);
+  json["seed"] = report.seed;
+  json["coupling"] = report.coupling;
+  json["ticks"] = loop.ticks;
+  json["missed_ticks"] = loop.missed;
+  json["lateness_p50_us"] = microseconds(loop.lateness_p50);
+  json["lateness_p999_us"] = microseconds(loop.lateness_p999);
+  json["lateness_max_us"] = microseconds(loop.lateness_max);
+  json["realtime"] = {{"priority", loop.grant.priority},
+                      {"memory_locked", loop.grant.memory_locked}};
+  for (const auto& [name, count] : message::counters_of(link)) json[std::string{name}] = count;
+  json["rejected"] = rejected_json(link, report.noise);
+  json["round_trip_p50_ms"] = milliseconds(report.round_trips.median());
+  json["round_trip_min_ms"] = milliseconds(report.round_trips.least());
+  json["clock"] = clock_json(report.round_trips.clocked());
+  json["sessions"] = report.sessions;
+  if (report.estimates) {
+    json["estimates"] = *report.estimates;
+    json["estimate_latency_p50_ms"] = microseconds(report.estimate_p50) / 1e3;
+    json["estimate_latency_max_ms"] = microseconds(report.estimate_max) / 1e3;
+  }
+  return json;
+}
+
 }  // namespace
 
 void RoundTrips::add(const LinkHealth& link) noexcept {
@@ -62,25 +95,11 @@ std::optional<Duration> RoundTrips::median() const noexcept {
   return all_.quantile(0.5);
 }
 
+std::string figures_of(const SiteReport& report) { return figures_json(report).dump(); }
+
 std::string to_json(const SiteReport& report) {
-  const io::LoopStats& loop = report.loop;
-  const LinkHealth& link = report.link;
-  Json json;
-  json["schema"] = "palp.site/2";
-  json["site"] = report.site;
-  json["outcome"] = report.exit_status.outcome;
-  json["reason"] = report.exit_status.reason;
-  json["exit_code"] = config::exit_value(report.exit_status.code);
-  json["seed"] = report.seed;
-  json["coupling"] = report.coupling;
+  Json json = figures_json(report);
   json["session_file"] = report.session_file.empty() ? Json(nullptr) : Json(report.session_file);
-  json["ticks"] = loop.ticks;
-  json["missed_ticks"] = loop.missed;
-  json["lateness_p50_us"] = microseconds(loop.lateness_p50);
-  json["lateness_p999_us"] = microseconds(loop.lateness_p999);
-  json["lateness_max_us"] = microseconds(loop.lateness_max);
-  json["realtime"] = {{"priority", loop.grant.priority},
-                      {"memory_locked", loop.grant.memory_locked}};
   json["records_written"] = report.records.counts.records();
   json["records_dropped"] = report.records.dropped;
   json["records"] = records_json(report.records);
@@ -88,17 +107,6 @@ std::string to_json(const SiteReport& report) {
   json["messages"] = report.records.messages;
   json["recording_fault"] =
       report.records.fault.empty() ? Json(nullptr) : Json(report.records.fault);
-  for (const auto& [name, count] : message::counters_of(link)) json[std::string{name}] = count;
-  json["rejected"] = rejected_json(link, report.noise);
-  json["round_trip_p50_ms"] = milliseconds(report.round_trips.median());
-  json["round_trip_min_ms"] = milliseconds(report.round_trips.least());
-  json["clock"] = clock_json(report.round_trips.clocked());
-  json["sessions"] = report.sessions;
-  if (report.estimates) {
-    json["estimates"] = *report.estimates;
-    json["estimate_latency_p50_ms"] = microseconds(report.estimate_p50) / 1e3;
-    json["estimate_latency_max_ms"] = microseconds(report.estimate_max) / 1e3;
-  }
   return json.dump(2) + "\n";
 }
 

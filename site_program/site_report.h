@@ -47,6 +47,8 @@ struct SiteReport {
 };
 
 [[nodiscard]] std::string to_json(const SiteReport& report);
+/// The same without what became of the records: for the session file itself.
+[[nodiscard]] std::string figures_of(const SiteReport& report);
 
 /// A run whose recording failed did not do all that it was asked for, however well it went: Done
 /// becomes Missed, and the reason says so. Other endings stay and say it too.

@@ -34,6 +34,12 @@ void StatusLine::show(std::string_view text, TimePoint now) {
   (void)std::fflush(stdout);
 }
 
+std::size_t StatusLine::room_behind(std::string_view before) const {
+  const std::size_t columns = over_itself_ ? io::Terminal::output_columns() : 0;
+  if (columns <= 1) return 0;
+  return columns > before.size() + 2 ? columns - 1 - before.size() : 1;
+}
+
 void StatusLine::info(std::string_view sentence) {
   end();
   io::info(sentence);

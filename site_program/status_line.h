@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
@@ -18,6 +19,8 @@ class StatusLine {
   StatusLine& operator=(const StatusLine&) = delete;
 
   void show(std::string_view text, TimePoint now);
+  /// How many columns are left behind `before`; 0: no end, nothing is written over. At least 1.
+  [[nodiscard]] std::size_t room_behind(std::string_view before) const;
   /// A sentence on standard error, as io::info() and io::warn(), that does not break the line.
   void info(std::string_view sentence);
   void warn(std::string_view sentence);

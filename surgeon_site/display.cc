@@ -1,8 +1,10 @@
 #include "surgeon_site/display.h"
 
 #include <algorithm>
+#include <array>
 
 #include "common/core/depth_text.h"
+#include "common/core/fitted_line.h"
 #include "common/core/number_text.h"
 #include "common/core/place_text.h"
 #include "common/link/health_text.h"
@@ -13,37 +15,55 @@ namespace {
 
 double in_milliseconds(Duration span) noexcept { return seconds(span) * 1e3; }
 
-std::string progress_text(const ScriptProgress& script) {
+LinePart bar_of(const ScriptProgress& script) {
   constexpr int kWidth = 10;
   if (!script.scripted) return {};
   const int filled = static_cast<int>(std::clamp(script.done, 0.0, 1.0) * kWidth);
-  std::string text = "  [";
-  for (int i = 0; i < kWidth; ++i) text += i < filled ? '#' : '-';
-  text += number_text("] ", script.done * 100, 0, " %  ");
-  if (script.finished) return text + std::string{to_string(script.outcome)};
-  return text + script.phase_name.data();
+  std::string bar = "[";
+  for (int i = 0; i < kWidth; ++i) bar += i < filled ? '#' : '-';
+  const std::string share = number_text("", script.done * 100, 0, " %");
+  return {.full = bar + "] " + share, .brief = share, .rank = 5};
+}
+
+std::string phase_text(const ScriptProgress& script) {
+  if (!script.scripted) return {};
+  return script.finished ? std::string{to_string(script.outcome)} : script.phase_name.data();
 }
 
 /// A stage that goes along with the hand is no news.
 std::string stage_text(const SurgeonStatus& status) {
   const bool apart = distance(status.place, status.peer_place) > kSamePlace;
   if (status.state != SiteState::Engaged || !status.peer_heard || !apart) return {};
-  return "stage not at " + place_text(status.place) + " but at " + place_text(status.peer_place) +
-         "  ";
+  return "stage not at " + place_text(status.place) + " but at " + place_text(status.peer_place);
 }
 
-std::string incomplete_text(const SurgeonStatus& status) {
+LinePart incomplete_part(const SurgeonStatus& status) {
   if (!status.force_incomplete) return {};
-  return number_text("LESS THAN THE TISSUE'S BY ", status.force_missing, 2, " N: lift once  ");
+  return {
+      .full = number_text("LESS THAN THE TISSUE'S BY ", status.force_missing, 2, " N: lift once"),
+      .brief = number_text("LESS BY ", status.force_missing, 2, " N"),
+      .rank = 6};
 }
 
 }  // namespace
 
-std::string status_line(const SurgeonStatus& status) {
-  return record::state_text(status.state, status.reason, status.refused) + "  " +
-         link::health_text(status.link) + number_text("  force ", status.force, 2, " N  ") +
-         incomplete_text(status) + stage_text(status) + depth_line_of(status.depth) +
-         progress_text(status.script);
+std::string status_line(const SurgeonStatus& status, std::size_t columns) {
+  std::array<LinePart, 8> parts{
+      {{.full = record::state_text(status.state, status.reason, status.refused),
+        .brief = std::string{to_string(status.state)},
+        .rank = 4},
+       {.full = link::health_text(status.link),
+        .brief = link::health_brief(status.link),
+        .rank = 1},
+       {.full = number_text("force ", status.force, 2, " N"),
+        .brief = number_text("force ", status.force, 2, " N"),
+        .rank = 7},
+       incomplete_part(status),
+       {.full = stage_text(status), .brief = {}, .rank = 3},
+       {.full = depth_line_of(status.depth), .brief = depth_brief_of(status.depth), .rank = 2},
+       bar_of(status.script),
+       {.full = phase_text(status.script), .brief = {}, .rank = 3}}};
+  return fitted_line(parts, columns);
 }
 
 std::optional<std::string> delay_advice(const SurgeonStatus& status,

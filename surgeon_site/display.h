@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -8,8 +9,9 @@
 namespace palp::surgeon {
 
 /// The site in one line for a terminal, without newline: state and its cue, round trip, loss,
-/// force, depth, progress. Pure. Thread: the display's; allocates.
-[[nodiscard]] std::string status_line(const SurgeonStatus& status);
+/// force, depth, progress. In `columns` (0: any) those four come first, the rest is shortened or
+/// left out. Pure. Thread: the display's; allocates.
+[[nodiscard]] std::string status_line(const SurgeonStatus& status, std::size_t columns = 0);
 
 /// What coupling direct does at the present round trip, if that is above `round_trip_max`.
 [[nodiscard]] std::optional<std::string> delay_advice(const SurgeonStatus& status,

@@ -40,7 +40,7 @@ class ForceAtHand {
   }
 
  private:
-  static constexpr double kMost = 200;  // ticks
+  static constexpr double kMost = 200;  // [-], ticks
 
   [[nodiscard]] static std::size_t ticks(double span, double period) noexcept {
     return static_cast<std::size_t>(std::clamp(std::round(span / period), 0.0, kMost));

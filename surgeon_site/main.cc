@@ -186,7 +186,7 @@ class Program {
         law_{std::move(plan.law)},
         link_{settings_.link, std::make_unique<link::WireCodec>()},
         runner_{plan.runner},
-        recording_{settings_.record, std::move(plan.info), 1},
+        recording_{settings_.record, proven(std::move(plan.info)), 1},
         node_{settings_.node,
               {rig_ ? rig_->device() : *scripted_, law_, link_, recording_.recorder(0)}},
         began_at_{clock_.now()},
@@ -209,6 +209,12 @@ class Program {
   /// nullopt: the master is ready.
   [[nodiscard]] std::optional<ExitStatus> await_master(io::Terminal& terminal);
   void tell_of_master();
+  void show(const SurgeonStatus& status, TimePoint now);
+
+  [[nodiscard]] record::SessionInfo proven(record::SessionInfo info) const {
+    runner_.describe_identity(info);
+    return info;
+  }
 
   const Settings settings_;
   std::unique_ptr<SimulatedHand> scripted_;
@@ -251,10 +257,12 @@ ExitStatus Program::run(io::Terminal& terminal) {
   if (auto ended = await_master(terminal)) return *ended;
   runner_.start(link_, [this](TimePoint now) { node_.tick(now); });
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
-  line_.info("calling " + settings_.peer +
-             (terminal.reads_keys() ? "; r resets a stop, any other key ends" : ""));
+  line_.info(
+      "calling " + settings_.peer +
+      (terminal.reads_keys() ? "; r resets a stop, m marks a moment, any other key ends" : ""));
   while (true) {
     const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
+    recording_.mark(terminal.marks(), clock_.now());
     node_.commands().put({.emergency_stop = false, .resets = terminal.resets()});
     // A reset frees the master first; the site hears of the next, once it is ready.
     if (rig_ && std::exchange(resets_, terminal.resets()) != resets_) rig_->restart();
@@ -269,6 +277,7 @@ std::optional<ExitStatus> Program::look(TimePoint now) {
   round_trips_.add(status.link);
   const std::optional<std::string> hopeless = runner_.tell_news(line_);
   watch_.note_refusal(runner_.refusal());
+  if (const auto peer = runner_.take_peer()) recording_.tell_of_peer(*peer);
   recording_.tell_news(line_);
   if (!advised_ && settings_.coupling.name == "direct") {
     const auto advice =
@@ -276,7 +285,7 @@ std::optional<ExitStatus> Program::look(TimePoint now) {
     if (advice) line_.warn(*advice);
     advised_ = advice.has_value();
   }
-  line_.show(recording_.alarm() + status_line(status), now);
+  show(status, now);
   if (hopeless) return ExitStatus{ExitCode::CannotOpen, "refused", *hopeless};
   if (auto exit_status = end_of_script(status)) return exit_status;
   if (auto exit_status = watch_.judge(status.link, now)) return exit_status;
@@ -287,18 +296,23 @@ std::optional<ExitStatus> Program::look(TimePoint now) {
                               : watch_.unreachable(status.link, settings_.duration);
 }
 
+void Program::show(const SurgeonStatus& status, TimePoint now) {
+  const std::string alarm = recording_.alarm();
+  line_.show(alarm + status_line(status, line_.room_behind(alarm)), now);
+}
+
 void Program::stop(site_program::SiteReport& report) {
   runner_.stop(report.exit_status.reason.empty()
                    ? "the surgeon site has ended"
                    : "the surgeon site has ended: " + report.exit_status.reason);
   const SurgeonStatus& status = node_.status().get();
-  line_.show(recording_.alarm() + status_line(status), clock_.now());
-  report.records = recording_.stop();
-  recording_.tell_news(line_);
-  line_.end();
+  show(status, clock_.now());
   report.link = status.link;
   report.round_trips = round_trips_;
   runner_.account(report);
+  report.records = recording_.stop(figures_of(report));
+  recording_.tell_news(line_);
+  line_.end();
 }
 
 }  // namespace

@@ -43,4 +43,19 @@ template <typename Estimate>
   return "depth " + text + (estimate.verdict == DepthVerdict::Found ? hash : "");
 }
 
+/// The same in few characters: what was found, or that nothing was.
+template <typename Estimate>
+[[nodiscard]] std::string depth_brief_of(const Estimate& estimate) {
+  if (estimate.number == 0) return "depth -";
+  switch (estimate.verdict) {
+    case DepthVerdict::Found:
+      return number_text("depth ", estimate.depth * 1e3, 1, " mm");
+    case DepthVerdict::None:
+      return "no inclusion";
+    case DepthVerdict::Invalid:
+      break;
+  }
+  return "depth ?";
+}
+
 }  // namespace palp

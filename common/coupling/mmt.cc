@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 namespace palp::coupling {
 namespace {
@@ -11,7 +9,6 @@ namespace {
 constexpr double kEnergyTolerance = 1e-15;  // [J]
 constexpr double kForceTolerance = 1e-12;   // [N]
 constexpr int kHalvings = 30;
-constexpr double kReadingsInSpeed = 6;                      // of the hand
 constexpr Duration kStale = std::chrono::milliseconds{20};  // older speed is no speed
 
 constexpr bool may_render(SiteState state) noexcept {
@@ -24,26 +21,12 @@ ContactEstimatorConfig with_sensor(ContactEstimatorConfig config,
   return config;
 }
 
-/// [Hz], of a speed from readings that come in steps.
-double velocity_cut_off(const MmtConfig& config, const HandFacts& hand) noexcept {
-  return std::min(config.velocity_cut_off, hand.rate / kReadingsInSpeed);
-}
-
-/// [N s/m], from which on a damping that answers so late drives the lightest hand.
-double damping_most(const MmtConfig& config, const HandFacts& hand) noexcept {
-  constexpr double kTurn = 2 * std::numbers::pi;
-  const double filter = 1 / (kTurn * velocity_cut_off(config, hand));
-  const double late = answer_delay(hand) + filter - 1 / (kTurn * config.velocity_cut_off);
-  return late > 0 ? config.mass_least / (2 * late) : std::numeric_limits<double>::infinity();
-}
-
 }  // namespace
 
 MmtSurgeon::MmtSurgeon(const MmtConfig& config, const HandFacts& hand) noexcept
     : config_{config},
-      delay_{answer_delay(hand)},
-      damping_most_{damping_most(config, hand)},
-      velocity_{velocity_cut_off(config, hand), config.period},
+      device_{hand, config.velocity_cut_off},
+      velocity_{device_.velocity_cut_off(), config.period},
       tank_{config.tank_start} {}
 
 /// The axis may have moved under the hand, so there is no work in this tick. The tank is kept.
@@ -96,7 +79,7 @@ void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& 
   const double passed = seconds(lapse.passed());
   if (!candidate_) return shown_.age(depth, passed);
   ContactModel aim = *candidate_;
-  for (double& coefficient : aim.c) coefficient *= presence_.value() * share_;
+  for (double& coefficient : aim.c) coefficient *= presence_.value() * device_.share();
   // The surface swings on by itself; what is blended is the rest.
   const double swung = swing_.after(swing_age_);
   ContactModel elastic = shown_.elastic();
@@ -195,36 +178,18 @@ double MmtSurgeon::debt() const noexcept {
   return std::clamp(1 - tank_ / level, 0.0, 1.0);
 }
 
-/// A spring that answers late pushes harder on the way out than on the way in. How stiff it may be
-/// depends on the hand that holds it, which nobody knows. That it drives the hand is seen: the hand
-/// swings as no person does, or the tank is overdrawn.
-void MmtSurgeon::share_out(double speed, double passed) noexcept {
-  if (delay_ <= 0) return;
-  since_turn_ += passed;
-  if (since_turn_ > config_.turn_time) turns_ = 0;
-  if (std::abs(speed) > config_.turn_speed && (speed > 0) != inwards_) {
-    inwards_ = speed > 0;
-    since_turn_ = 0;
-    ++turns_;
-  }
-  if (tank_ < 0 || turns_ > config_.turns_most) {
-    share_ *= std::exp(-passed / config_.share_fall);
-  } else {
-    share_ += (1 - share_) * -std::expm1(-passed / config_.share_rise);
-  }
-}
-
 /// In the air and on the way out of the tissue the hand pays the tank back: on the way in, where
 /// stiffness is judged, damping would be felt as softness.
 double MmtSurgeon::damp(double force, double depth, double speed) const noexcept {
   const double empty = config_.empty_damping * std::clamp(-tank_ / config_.overdraft, 0.0, 1.0);
   if (depth > 0) {
     const double damping = config_.contact_damping + config_.repay_contact * debt();
-    force = std::max(0.0, force + std::min(damping, damping_most_) * std::min(0.0, speed));
+    force = std::max(0.0, force + std::min(damping, device_.damping_most()) * std::min(0.0, speed));
   } else {
-    force += std::min(config_.air_damping + config_.repay_air * debt(), damping_most_) * speed;
+    force +=
+        std::min(config_.air_damping + config_.repay_air * debt(), device_.damping_most()) * speed;
   }
-  force += std::min(empty, damping_most_) * speed;
+  force += std::min(empty, device_.damping_most()) * speed;
   return force;
 }
 
@@ -259,7 +224,7 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexc
   const double moved = energy_now();
   const double force_before = force_now();
   tank_ = std::min(config_.tank_max, tank_ + work - (moved - stored_));
-  share_out(speed, seconds(lapse.passed()));
+  device_.look(tank_, seconds(lapse.passed()));
 
   approach_candidate(in.position, depth_before, lapse);
   const double rise_max = slew_for(in.position, in.round_trip) * span;

@@ -10,6 +10,7 @@
 #include "common/coupling/contact_estimator.h"
 #include "common/coupling/contact_model.h"
 #include "common/coupling/coupling.h"
+#include "common/coupling/late_device.h"
 #include "common/coupling/paired_readings.h"
 
 /// Coupling `mmt`: the patient site says what the tissue is like, not what it just did. The
@@ -43,13 +44,6 @@ struct MmtConfig {
   double repay_air{0.7};        ///< [N s/m], the same in the air
   double empty_damping{2};      ///< [N s/m], on top while the tank is overdrawn
   double overdraft{5e-6};       ///< [J], with which that is reached
-  // Of a device that answers late: what is delayed, damps no more from some gain on, but drives.
-  double mass_least{0.06};  ///< [kg], a handle and the lightest hand
-  double share_fall{0.1};   ///< [s], in which the shown stiffness falls while it drives a hand
-  double share_rise{20};    ///< [s], in which it comes back
-  double turn_speed{5e-3};  ///< [m/s], of a hand: slower is no swing
-  double turn_time{0.15};   ///< [s], from one turn of a swing to the next; a person's are slower
-  std::uint32_t turns_most{3};  ///< no more of them: more is a swing
   double velocity_cut_off{60};  ///< [Hz]
   double fade{1};               ///< [s], of the model in Retract
   double period{1e-3};          ///< [s]
@@ -89,16 +83,10 @@ class MmtSurgeon {
   void choose_depth(double position, double energy_max, double force_max) noexcept;
   void brake(double missing, double speed, double rise_max) noexcept;
   [[nodiscard]] double debt() const noexcept;
-  void share_out(double speed, double passed) noexcept;
   [[nodiscard]] double damp(double force, double depth, double speed) const noexcept;
 
   MmtConfig config_;
-  double delay_;         ///< [s], of the device's answer
-  double damping_most_;  ///< [N s/m], that it does not turn into its opposite
-  double share_{1};      ///< [-], of the tissue's stiffness that this device may show
-  bool inwards_{};       ///< as the hand moved last
-  double since_turn_{};  ///< [s]
-  std::uint32_t turns_{};
+  LateDevice device_;
   VelocityEstimate velocity_;
   double position_before_{};  ///< [m]
   double tank_;               ///< [J]

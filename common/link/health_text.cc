@@ -21,4 +21,10 @@ std::string health_text(const LinkHealth& health) {
   return text;
 }
 
+std::string health_brief(const LinkHealth& health) {
+  if (health.state == LinkState::Down) return "no link";
+  if (health.state != LinkState::Live) return number_text("silent ", seconds(health.gap), 1, " s");
+  return number_text("rtt ", seconds(health.round_trip) * 1e3, 1, " ms");
+}
+
 }  // namespace palp::link

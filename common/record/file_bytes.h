@@ -22,10 +22,10 @@ class FileBytes {
     return mapped;
   }
 
+  // NOLINTNEXTLINE(google-explicit-constructor): it is such a span
+  operator std::span<const std::byte>() const noexcept { return bytes_; }
   [[nodiscard]] std::size_t size() const noexcept { return bytes_.size(); }  ///< [bytes]
   [[nodiscard]] bool empty() const noexcept { return bytes_.empty(); }
-  [[nodiscard]] auto begin() const noexcept { return bytes_.begin(); }
-  [[nodiscard]] auto end() const noexcept { return bytes_.end(); }
 
   /// The memory of a mapping's bytes [`begin`, `end`) is not needed for now; they stay readable.
   void forget(std::size_t begin, std::size_t end) const noexcept;

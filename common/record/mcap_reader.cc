@@ -108,7 +108,7 @@ std::optional<McapItem> McapReader::next_in_file() {
 void McapReader::leave_behind(std::uint64_t offset) {
   constexpr std::size_t kForgetEvery = std::size_t{1} << 20;  // [bytes]
   const auto read = static_cast<std::size_t>(offset) - read_up_to_;
-  data_crc_ = crc32(file_.subspan(read_up_to_, read), data_crc_);
+  if (!window_) data_crc_ = crc32(file_.subspan(read_up_to_, read), data_crc_);
   read_up_to_ += read;
   if (read_up_to_ - forgotten_ < kForgetEvery) return;
   mapping_.forget(forgotten_, read_up_to_);
@@ -162,7 +162,8 @@ void McapReader::open_chunk(const RawRecord& record) {
   chunk_places_.push_back({record.offset, kMcapPrefixSize + record.content.size()});
   ++report_.chunks;
   ByteCursor cursor{record.content};
-  cursor.take(16);  // begin and end: the messages themselves say more
+  const auto begin = cursor.read<std::uint64_t>();
+  const auto end = cursor.read<std::uint64_t>();
   const auto size = cursor.read<std::uint64_t>();
   const auto crc = cursor.read<std::uint32_t>();
   const auto compression = cursor.text();
@@ -172,7 +173,7 @@ void McapReader::open_chunk(const RawRecord& record) {
     fault(record.offset, "a field of this chunk reaches beyond its end");
     return;
   }
-  if (!admit_unpacked(record, size)) return;
+  if (passes_over(begin, end) || !admit_unpacked(record, size)) return;
   const auto answer = decompressor_.decompress(compression, bytes, size);
   const bool crc_wrong = answer.error.empty() && crc != 0 && crc32(answer.records) != crc;
   if (!answer.error.empty() || crc_wrong) {
@@ -181,6 +182,10 @@ void McapReader::open_chunk(const RawRecord& record) {
     return;
   }
   chunk_ = answer.records;
+}
+
+bool McapReader::passes_over(std::uint64_t begin, std::uint64_t end) const noexcept {
+  return window_ && (end < window_->from || begin > window_->to);
 }
 
 /// A file of a megabyte must not cost the work of one of thirty thousand.

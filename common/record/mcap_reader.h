@@ -114,6 +114,10 @@ class McapReader {
   /// The next item, or nullopt at the end. Definitions come once, not again from the summary.
   std::optional<McapItem> next();
 
+  /// From now on chunks without a message in [`from`, `to`] [ns] are passed over unopened, in no
+  /// time; what the file says of itself as a whole is then not checked.
+  void only_between(std::uint64_t from, std::uint64_t to) noexcept { window_ = {from, to}; }
+
   [[nodiscard]] const McapReadReport& report() const noexcept { return report_; }
 
  private:
@@ -134,6 +138,7 @@ class McapReader {
   static std::optional<RawRecord> cut_record(std::span<const std::byte> bytes, std::size_t& offset);
   std::optional<McapItem> interpret(const RawRecord& record);
   void open_chunk(const RawRecord& record);
+  [[nodiscard]] bool passes_over(std::uint64_t begin, std::uint64_t end) const noexcept;
   bool admit_unpacked(const RawRecord& record, std::uint64_t size);
   std::optional<McapItem> read_schema(const RawRecord& record);
   std::optional<McapItem> read_channel(const RawRecord& record);
@@ -156,6 +161,11 @@ class McapReader {
   std::size_t read_up_to_{};  ///< bytes in data_crc_
   std::size_t forgotten_{};   ///< bytes whose memory was given back
   std::uint32_t data_crc_{};
+  struct Window {
+    std::uint64_t from{};  ///< [ns]
+    std::uint64_t to{};    ///< [ns]
+  };
+  std::optional<Window> window_;
   bool ended_{};
   ChunkDecompressor decompressor_;
   std::span<const std::byte> chunk_;  ///< records of the open chunk

@@ -56,7 +56,7 @@ void McapReader::check_chunk_index(const RawRecord& record) {
 void McapReader::check_data_end(const RawRecord& record) {
   ByteCursor cursor{record.content};
   const auto crc = cursor.read<std::uint32_t>();
-  if (!cursor.ok() || (crc != 0 && crc != data_crc_)) {
+  if (!cursor.ok() || (crc != 0 && !window_ && crc != data_crc_)) {
     fault(record.offset, "the data section has a wrong CRC");
   }
   data_ended_ = true;
@@ -82,8 +82,8 @@ std::optional<McapItem> McapReader::read_statistics(const RawRecord& record) {
     fault(record.offset, "a field of the statistics reaches beyond their end");
     return std::nullopt;
   }
-  const bool damaged = report_.chunks_damaged > 0;
-  if (!damaged &&
+  const bool partial = report_.chunks_damaged > 0 || window_;
+  if (!partial &&
       (statistics.messages != report_.messages ||
        statistics.channel_messages != messages_by_channel_ || statistics.chunks != report_.chunks ||
        statistics.attachments != report_.attachments || statistics.metadata != report_.metadata)) {

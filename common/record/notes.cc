@@ -47,6 +47,7 @@ constexpr std::array kTexts{
     Text{NoteCode::PlaceBeyondTravel, "a place beyond the stage's travel"},
     Text{NoteCode::ForceIncomplete, "the force is incomplete: lift once"},
     Text{NoteCode::ForceComplete, "the force is complete again"},
+    Text{NoteCode::Marked, "a moment marked by the operator"},
     Text{NoteCode::DiskNearlyFull, "the disk of the session file is nearly full"},
 };
 

@@ -47,6 +47,7 @@ enum class NoteCode : std::uint16_t {
   PlaceBeyondTravel = 46,   ///< detail: likewise
   ForceIncomplete = 47,     ///< the hand feels less than the tissue; detail: missing [N]
   ForceComplete = 48,       ///< again all of it
+  Marked = 49,              ///< by who sat at the terminal; detail: number of the mark
   // Of the recording itself, written by the record thread.
   DiskNearlyFull = 64,  ///< detail: time left [s] at the rate of late
 };

@@ -38,6 +38,10 @@ std::optional<SessionEntry> SessionReader::next() {
   return std::nullopt;
 }
 
+void SessionReader::only_between(TimePoint from, TimePoint to) noexcept {
+  mcap_.only_between(clock_.stamp(from), clock_.stamp(to));
+}
+
 void SessionReader::keep(const McapMetadata& metadata) {
   if (metadata.name == "palp.session") {
     if (sessions_.size() < kSessionsMax) {

@@ -46,6 +46,9 @@ class SessionReader {
   /// The next record, or nullopt at the end. Views carry no record; they are only counted.
   std::optional<SessionEntry> next();
 
+  /// As McapReader::only_between(), of instants of the site's own time. A first entry was read.
+  void only_between(TimePoint from, TimePoint to) noexcept;
+
   // All that was met so far; complete once next() said nullopt.
   [[nodiscard]] const McapReadReport& report() const noexcept { return mcap_.report(); }
   [[nodiscard]] const std::map<std::string, TopicCount>& topics() const noexcept { return topics_; }

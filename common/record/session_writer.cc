@@ -73,6 +73,10 @@ bool SessionWriter::write(const Record& record) {
   return true;
 }
 
+void SessionWriter::add_facts(const std::string& name, const McapMap& facts) {
+  if (!closed_) mcap_.add_metadata(name, facts);
+}
+
 void SessionWriter::look_for_session(const LinkHeard& heard) {
   if (heard.session_id == 0 || heard.session_id == session_id_ || closed_) return;
   session_id_ = heard.session_id;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -35,6 +36,10 @@ struct SessionInfo {
   std::uint32_t sessions_before{};
 };
 
+/// The metadata record and its entry that hold the report of a site's program, as JSON.
+inline constexpr const char* kReportRecord = "palp.report";
+inline constexpr const char* kReportKey = "json";
+
 struct SessionCounts {
   SessionCounts& operator+=(const SessionCounts& other) noexcept;
   std::array<std::uint64_t, std::variant_size_v<Record>> by_type{};  ///< in the order of Record
@@ -57,8 +62,14 @@ class SessionWriter {
 
   /// @returns false: not written, and counted.
   bool write(const Record& record);
+  /// Facts that become known while it runs: a metadata record of that name.
+  void add_facts(const std::string& name, const McapMap& facts);
   /// Total of records that a full queue dropped; shown in the next link status and the summary.
   void set_dropped(std::uint64_t total) noexcept { dropped_ = total; }
+  /// Of the session as a whole; the names `palp...` of summary and sessions are taken.
+  void add_metadata(std::string_view name, const McapMap& entries) {
+    mcap_.add_metadata(name, entries);
+  }
   /// Keeps the promise that a kill loses at most half a second, also when nothing is recorded.
   void flush_if_due(TimePoint now);
   /// Writes summary and index; the destructor does it too. Later writes are refused.

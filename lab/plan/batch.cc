@@ -47,9 +47,10 @@ CaseResult result_of(const Case& one, const RunResult& run) {
 
 Result<std::vector<CaseResult>> run_plan(const Plan& plan,
                                          const ForEach& for_each,
-                                         const Progress& progress) {
+                                         const Progress& progress,
+                                         const CaseSink& sink) {
   std::vector<CaseResult> results(plan.cases.size());
-  std::mutex mutex;  // of the next two and of progress
+  std::mutex mutex;  // of the next two, of sink and of progress
   std::size_t done = 0;
   std::optional<Error> first_error;
   std::atomic<bool> failed{false};
@@ -60,6 +61,7 @@ Result<std::vector<CaseResult>> run_plan(const Plan& plan,
     const std::lock_guard lock{mutex};
     if (!scenario && !first_error) first_error = scenario.error();
     if (!scenario) failed = true;
+    if (scenario && sink) sink(results[i]);
     if (progress) progress(++done, plan.cases.size());
   });
   if (first_error) return tl::unexpected(*first_error);

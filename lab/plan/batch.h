@@ -31,10 +31,14 @@ using ForEach = std::function<void(std::size_t count, const std::function<void(s
 /// How many of how many are done; called from any thread, one at a time.
 using Progress = std::function<void(std::size_t done, std::size_t count)>;
 
+/// A case is done; called as Progress is, before it.
+using CaseSink = std::function<void(const CaseResult& result)>;
+
 /// Sorted by index. A case that cannot be made is an error of the plan.
 [[nodiscard]] Result<std::vector<CaseResult>> run_plan(const Plan& plan,
                                                        const ForEach& for_each,
-                                                       const Progress& progress);
+                                                       const Progress& progress,
+                                                       const CaseSink& sink = {});
 
 /// Of the absolute values: element min(n - 1, floor(p n)) of n sorted ones, undefined ones last.
 struct Spread {

@@ -1,5 +1,4 @@
 /// The sets of scenarios by which couplings are judged.
-
 #include <array>
 #include <cmath>
 #include <cstdarg>
@@ -176,10 +175,9 @@ void fill_blackout(Plan& plan, const PlanAsk& ask) {
   for (const double ms : {20, 100, 500}) add(plan, ask.seed, {.round_trip = ms * 1e-3}, ask);
 }
 
-constexpr std::uint64_t kBreathSeeds = 5;
-
 void fill_breath(Plan& plan, const PlanAsk& ask) {
-  for (std::uint64_t k = 0; k < 6 * kBreathSeeds; ++k) {
+  constexpr std::uint64_t kSeeds = 5;
+  for (std::uint64_t k = 0; k < 6 * kSeeds; ++k) {
     constexpr std::array kTrips{0.0, 20.0, 50.0, 100.0, 200.0, 500.0};
     add(plan, ask.seed + k / 6, {.round_trip = kTrips[k % 6] * 1e-3}, ask);
     auto& settings = plan.cases.back().settings;
@@ -278,42 +276,30 @@ void fill_pauses(Plan& plan, const PlanAsk& ask) {
 /// Paces, lags and steps of all three devices, over the links and hands of `mc`.
 void fill_devices(Plan& plan, const PlanAsk& ask) {
   fill_random(plan, ask, false);
-  plan.label_names.insert(plan.label_names.end(),
-                          {"hand_hz",
-                           "hand_lag_ms",
-                           "stage_hz",
-                           "stage_lag_ms",
-                           "sensor_hz",
-                           "sensor_lag_ms",
-                           "jitter_share",
-                           "sensor_step_mn"});
+  for (const char* label :
+       {"hand_hz", "hand_lag_ms", "stage_hz", "stage_lag_ms", "sensor_hz", "sensor_lag_ms"}) {
+    plan.label_names.emplace_back(label);
+  }
   for (Case& one : plan.cases) {
-    const auto uniform = [&](std::uint64_t which) {
-      return random_uniform(ask.seed, kCaseStream + 60 + which, one.index);
+    std::uint64_t which = kCaseStream + 60;
+    const auto draw = [&](const auto& values) {
+      return pick(values, random_uniform(ask.seed, which++, one.index));
     };
-    constexpr std::array kRates{50.0, 100.0, 200.0, 500.0, 1000.0};  // [Hz]
-    constexpr std::array kLags{0.0, 2.0, 5.0, 10.0, 20.0, 30.0};     // [ms]
-    const double jitter = pick(std::array{0.0, 0.1, 0.3}, uniform(6));
-    std::uint64_t which = 0;
-    for (const char* device : {"hand", "stage", "sensor"}) {
-      const double rate = pick(kRates, uniform(which));
-      const double lag = pick(kLags, uniform(which + 1));
-      which += 2;
-      const std::string path = std::string{device} + "_device.";
-      one.settings.push_back({path + "rate_hz", text("%.9g", rate)});
-      one.settings.push_back({path + "lag_ms", text("%.9g", lag)});
-      one.settings.push_back({path + "jitter_ms", text("%.9g", jitter * 1e3 / rate)});
-      one.labels.push_back(text("%.9g", rate));
-      one.labels.push_back(text("%.9g", lag));
+    const auto set = [&one](const std::string& path, double value) {
+      one.settings.push_back({path, text("%.9g", value)});
+    };
+    const double jitter = draw(std::array{0.0, 0.1, 0.3});  // [-], of a period
+    for (const std::string device : {"hand_device.", "stage_device.", "sensor_device."}) {
+      const double rate = draw(std::array{50.0, 100.0, 200.0, 500.0, 1000.0});
+      const double lag = draw(std::array{0.0, 2.0, 5.0, 10.0, 20.0, 30.0});
+      set(device + "rate_hz", rate);
+      set(device + "lag_ms", lag);
+      set(device + "jitter_ms", jitter * 1e3 / rate);
+      one.labels.insert(one.labels.end(), {text("%.9g", rate), text("%.9g", lag)});
     }
-    const double step = pick(std::array{1.0, 10.0, 50.0, 100.0}, uniform(7));
-    one.settings.push_back({"patient.simulated_phantom.sensor_quantum_mn", text("%.9g", step)});
-    one.settings.push_back({"patient.simulated_phantom.encoder_um",
-                            text("%.9g", pick(std::array{1.0, 10.0, 50.0}, uniform(8)))});
-    one.settings.push_back(
-        {"surgeon.hand.encoder_um", text("%.9g", pick(std::array{1.0, 30.0, 100.0}, uniform(9)))});
-    one.labels.push_back(text("%.9g", jitter));
-    one.labels.push_back(text("%.9g", step));
+    set("patient.simulated_phantom.sensor_quantum_mn", draw(std::array{1.0, 10.0, 50.0, 100.0}));
+    set("patient.simulated_phantom.encoder_um", draw(std::array{1.0, 10.0, 50.0}));
+    set("surgeon.hand.encoder_um", draw(std::array{1.0, 30.0, 100.0}));
   }
 }
 

@@ -36,6 +36,7 @@ struct DevicePlans {
   std::optional<DevicePlan> cell;  ///< absent: the normal axis feels its load
   std::optional<CardPlan> card;    ///< on USB, in place of a cell
   std::string phantom;             ///< the tissue under them, where it is known; for whoever judges
+  std::string text;                ///< of the file itself, calibrations included
 };
 
 /// Of a stage put together from these; `normal` is there.

@@ -34,6 +34,16 @@ TEST(PatientDisplayTest, ShowsTheSiteInItsUnits) {
             "depth 10.2 mm (h 0.0731 N) at B");
 }
 
+TEST(PatientDisplayTest, InFewColumnsWhatMattersStays) {
+  PatientStatus status;
+  status.state = SiteState::Hold;
+  status.reason = record::NoteCode::GapHold;
+  status.depth.number = 1;
+  status.depth.verdict = DepthVerdict::None;
+  status.depth.depth_low = 12e-3;
+  EXPECT_EQ(status_line(status, 60), "HOLD  no link  tip 0.00 mm  contact 0.00 N  no inclusion");
+}
+
 TEST(PatientDisplayTest, SaysWhyItIsNotAsUsual) {
   PatientStatus status;
   status.state = SiteState::Hold;

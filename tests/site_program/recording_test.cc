@@ -50,6 +50,32 @@ TEST(RecordingTest, WhatAllWritersRecordedIsInTheFile) {
   EXPECT_EQ(recording.stop().messages, account.messages) << "once more changes nothing";
 }
 
+TEST(RecordingTest, MarksAndThePeersIdentityAreInTheFile) {
+  const std::string path = fresh_file();
+  Recording recording{{.file = path}, patient_info(), 1};
+  recording.mark(1, io::SteadyClock{}.now());
+  recording.mark(3, io::SteadyClock{}.now());
+  io::PeerIdentity peer;
+  peer.session_id = 7;
+  peer.name = "ward";
+  peer.fingerprint = "ab12";
+  recording.tell_of_peer(peer);
+  (void)recording.stop();
+  const auto file = record::MappedFile::open(path);
+  ASSERT_TRUE(file);
+  record::SessionReader reader{file->bytes()};
+  std::vector<double> marks;
+  while (const auto entry = reader.next()) {
+    const auto* note = std::get_if<Note>(&entry->record);
+    if (note == nullptr) continue;
+    EXPECT_EQ(note->code, static_cast<std::uint16_t>(record::NoteCode::Marked));
+    marks.push_back(note->detail);
+  }
+  EXPECT_EQ(marks, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(reader.metadata("palp.peer", "certificate_sha256"), "ab12");
+  EXPECT_EQ(reader.metadata("palp.peer", "session_id"), record::session_id_text(7));
+}
+
 /// A tick of a session; 0: of none.
 void record_tick(Recording& recording, std::uint64_t session_id) {
   LinkHeard heard;

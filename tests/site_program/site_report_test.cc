@@ -75,6 +75,16 @@ TEST(SiteReportTest, TheClockOfThePeerIsNullBeforeItIsKnown) {
   EXPECT_EQ(clock["delay_in_ms"], 41);
 }
 
+TEST(SiteReportTest, TheFiguresForTheFileAreThoseOfTheReportButForTheRecords) {
+  SiteReport made;
+  made.loop.ticks = 17;
+  const json report = json::parse(to_json(made));
+  const json figures = json::parse(figures_of(made));
+  EXPECT_EQ(figures["ticks"], 17);
+  for (const auto& [name, figure] : figures.items()) EXPECT_EQ(report[name], figure) << name;
+  EXPECT_FALSE(figures.contains("records_written")) << "the file goes on until it is closed";
+}
+
 TEST(SiteReportTest, TheCountsByTypeAddUpToTheRecordsWritten) {
   SiteReport made;
   made.records.counts.by_type = {1, 2, 3, 4, 5, 6, 7, 8};

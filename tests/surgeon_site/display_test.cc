@@ -12,8 +12,10 @@ namespace {
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""us;
 using ::testing::AllOf;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 SurgeonStatus engaged() {
   SurgeonStatus status;
@@ -42,6 +44,46 @@ TEST(DisplayTest, SaysStateLinkForceDepthAndProgressInOneLine) {
   EXPECT_EQ(line,
             "ENGAGED  rtt 12.3 ms  loss 2.0 %  force 0.48 N  depth 9.7 mm (h 0.0712 N) at B"
             "  [######----] 62 %  taps B");
+}
+
+TEST(DisplayTest, StateForceDepthAndProgressStandIn80ColumnsWhateverElseIsSaid) {
+  SurgeonStatus status = engaged();
+  status.link.peer_clock = ClockOffset{};
+  status.link.round_trip = 1234567us;
+  status.depth.depth_low = 9.3e-3;
+  status.depth.depth_high = 10.2e-3;
+  EXPECT_THAT(status_line(status, 79),
+              AllOf(StartsWith("ENGAGED  "),
+                    HasSubstr("force 0.48 N"),
+                    HasSubstr("depth 9.7 mm"),
+                    HasSubstr("62 %")));
+  status.peer_heard = true;
+  status.peer_place = {-50e-3, -30e-3};
+  status.force_incomplete = true;
+  status.force_missing = 0.31;
+  status.force = -10.25;
+  status.script.done = 1;
+  for (const SiteState state : {SiteState::Parked,
+                                SiteState::Clutched,
+                                SiteState::Engaged,
+                                SiteState::Hold,
+                                SiteState::Retract,
+                                SiteState::Stopped}) {
+    for (const DepthVerdict verdict :
+         {DepthVerdict::Found, DepthVerdict::None, DepthVerdict::Invalid}) {
+      status.state = state;
+      status.reason = record::NoteCode::GapHold;
+      status.depth.verdict = verdict;
+      const std::string line = status_line(status, 79);
+      EXPECT_LE(line.size(), 79U) << line;
+      EXPECT_THAT(line,
+                  AllOf(StartsWith(std::string{to_string(state)}),
+                        HasSubstr("force -10.25 N"),
+                        HasSubstr("100 %")));
+      EXPECT_THAT(
+          line, AnyOf(HasSubstr("depth 9.7 mm"), HasSubstr("no inclusion"), HasSubstr("depth ?")));
+    }
+  }
 }
 
 TEST(DisplayTest, SaysThatTheHandFeelsLessThanTheTissue) {

@@ -2,11 +2,15 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "common/record/mapped_file.h"
+#include "common/record/session_reader.h"
 #include "tests/system/process.h"
 #include "tests/system/session_files.h"
 
@@ -56,6 +60,74 @@ class SessionTest : public ::testing::Test {
     EXPECT_EQ(file.arrivals.size(), account["records"]["arrived"]);
   }
 
+  /// What palp-review finds in the files alone equals the programs' reports to the last digit.
+  void expect_what_the_programs_said() const {
+    Process metrics{"palp-review",
+                    {"metrics",
+                     "--surgeon",
+                     path("surgeon.mcap"),
+                     "--patient",
+                     path("patient.mcap"),
+                     "--report",
+                     path("review.json")},
+                    path("review.log")};
+    ASSERT_EQ(metrics.wait(seconds{60}), 0) << metrics.output();
+    const nlohmann::json review = report(path("review.json"));
+    for (const std::string site : {"surgeon", "patient"}) {
+      const nlohmann::json program = report(path(site + ".json"));
+      for (const char* key : {"ticks",
+                              "missed_ticks",
+                              "lateness_p999_us",
+                              "messages",
+                              "records_written",
+                              "records_dropped",
+                              "rejected",
+                              "late",
+                              "repaired"}) {
+        EXPECT_EQ(review["sites"][site][key], program[key]) << site << ' ' << key;
+      }
+    }
+    EXPECT_EQ(review["link"]["achieved"]["rtt_p50_ms"],
+              report(path("surgeon.json"))["round_trip_p50_ms"]);
+  }
+
+  /// What the file says of the session's making is all there. @returns the fingerprints of the
+  /// site's own certificate and of its peer's.
+  [[nodiscard]] std::pair<std::string, std::string> expect_told_of(const std::string& site) const {
+    const auto file = record::MappedFile::open(path(site + ".mcap"));
+    if (!file) return {};
+    record::SessionReader reader{file->bytes()};
+    while (reader.next()) {
+    }
+    std::vector<std::string> keys{"program",
+                                  "version",
+                                  "git_commit",
+                                  "protocol_version",
+                                  "host_kernel",
+                                  "seed",
+                                  "coupling",
+                                  "identity",
+                                  "certificate_sha256",
+                                  "began_utc",
+                                  "time_zone",
+                                  "clock_source",
+                                  "clock_synchronised"};
+    const std::vector<std::string> own =
+        site == "surgeon"
+            ? std::vector<std::string>{"master", "grip", "hand"}
+            : std::vector<std::string>{"estimator", "stage", "force_sensor", "phantom_name"};
+    keys.insert(keys.end(), own.begin(), own.end());
+    for (const std::string& key : keys) {
+      EXPECT_NE(reader.metadata("palp", key).value_or(""), "") << site << ": " << key;
+    }
+    EXPECT_NE(reader.metadata("palp.peer", "session_id").value_or(""), "") << site;
+    EXPECT_THAT(std::string{reader.attachment("config.textproto").value_or("")},
+                HasSubstr(site == "surgeon" ? "grip:" : "phantom:"))
+        << site << ": what nobody set is in it as well";
+    return {reader.metadata("palp", "certificate_sha256").value_or(""),
+            reader.metadata("palp.peer", "certificate_sha256").value_or("")};
+  }
+
   std::string folder_{make_folder("session")};
 };
 
@@ -100,6 +172,12 @@ TEST_F(SessionTest, EndsInOrderAndLeavesSoundFiles) {
 
   expect_sound_file("surgeon");
   expect_sound_file("patient");
+  expect_what_the_programs_said();
+  const auto [surgeons, of_patient] = expect_told_of("surgeon");
+  const auto [patients, of_surgeon] = expect_told_of("patient");
+  EXPECT_EQ(surgeons.size(), 64U);
+  EXPECT_EQ(surgeons, of_surgeon) << "each knows the other by its certificate";
+  EXPECT_EQ(patients, of_patient);
   const nlohmann::json link = report(path("relay.json"));
   ASSERT_TRUE(link.is_object());
   EXPECT_EQ(link["schema"], "palp.relay/1");

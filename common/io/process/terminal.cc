@@ -102,8 +102,10 @@ std::optional<StopCause> Terminal::wait_for_stop(Duration span) {
     const ssize_t count = read(STDIN_FILENO, typed.data(), typed.size());
     if (count > 0) {
       const auto resets = std::count(typed.begin(), typed.begin() + count, 'r');
+      const auto marks = std::count(typed.begin(), typed.begin() + count, 'm');
       resets_ += static_cast<std::uint32_t>(resets);
-      if (resets < count) cause_ = StopCause::Key;
+      marks_ += static_cast<std::uint32_t>(marks);
+      if (resets + marks < count) cause_ = StopCause::Key;
     } else {
       keys_ = false;  // the terminal went away
     }

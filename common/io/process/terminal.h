@@ -13,11 +13,11 @@ namespace palp::io {
 
 enum class StopCause : std::uint8_t { Key, Signal };
 
-/// The person at the terminal: r asks for a reset; any other key, ^C, SIGTERM or the terminal's own
-/// end asks the program to stop; a second signal ends it hard. That nobody reads its output any
-/// more does not end it. Make it first in main, before any thread: threads inherit that the signals
-/// wait. Keys are read one by one and without echo while standard input is a terminal and the
-/// program in its foreground. One to a process. Thread: main.
+/// The person at the terminal: r asks for a reset, m marks a moment; any other key, ^C, SIGTERM or
+/// the terminal's own end asks the program to stop; a second signal ends it hard. That nobody reads
+/// its output any more does not end it. Make it first in main, before any thread: threads inherit
+/// that the signals wait. Keys are read one by one and without echo while standard input is a
+/// terminal and the program in its foreground. One to a process. Thread: main.
 class Terminal {
  public:
   Terminal();
@@ -31,6 +31,8 @@ class Terminal {
   [[nodiscard]] std::optional<StopCause> wait_for_stop(Duration span);
   /// How often r was pressed.
   [[nodiscard]] std::uint32_t resets() const noexcept { return resets_; }
+  /// How often m was pressed.
+  [[nodiscard]] std::uint32_t marks() const noexcept { return marks_; }
   /// Whether standard output is one (and a line may be written over).
   [[nodiscard]] static bool output_is_terminal() noexcept;
   /// How wide it is now; 0: unknown, or standard output is none.
@@ -46,6 +48,7 @@ class Terminal {
   bool keys_{};
   bool restored_{};
   std::uint32_t resets_{};
+  std::uint32_t marks_{};
   std::optional<StopCause> cause_;
 };
 

@@ -303,6 +303,7 @@ Result<std::unique_ptr<Credentials>> Credentials::read(const std::string& folder
   std::vector<std::string> cautions = cautions_of(*context, place);
   std::unique_ptr<Credentials> read{new Credentials{std::move(context), role, *name}};
   read->cautions_ = std::move(cautions);
+  read->fingerprint_ = fingerprint_of(SSL_CTX_get0_certificate(read->context_->ssl.get()));
   return read;
 }
 

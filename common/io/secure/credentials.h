@@ -32,6 +32,9 @@ class Credentials {
   /// For people: the name in the own certificate, or "a pre-shared key".
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
+  /// SHA-256 of the own certificate, in hexadecimal digits; empty: a pre-shared key.
+  [[nodiscard]] const std::string& fingerprint() const noexcept { return fingerprint_; }
+
   /// What its owner should know, in sentences: a key that others can read, a certificate that is
   /// not good now or not for long.
   [[nodiscard]] const std::vector<std::string>& cautions() const noexcept { return cautions_; }
@@ -46,6 +49,7 @@ class Credentials {
   std::unique_ptr<Context> context_;
   link::Role role_;
   std::string name_;
+  std::string fingerprint_;
   std::vector<std::string> cautions_;
 };
 

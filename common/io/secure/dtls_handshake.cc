@@ -82,16 +82,6 @@ unsigned repeat_after(SSL* /*ssl*/, unsigned last) {
   return last == 0 ? kRepeatFirst : std::min(kRepeatMax, last + last / 2);
 }
 
-std::string hexadecimal(std::span<const unsigned char> bytes) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const unsigned char byte : bytes) {
-    text += kDigits[byte >> 4U];
-    text += kDigits[byte & 0xFU];
-  }
-  return text;
-}
-
 }  // namespace
 
 bool looks_like_dtls(std::span<const std::byte> datagram) noexcept {
@@ -263,15 +253,12 @@ void DtlsHandshake::finish() {
   }
   if (parts_->certificates) {
     const Openssl<X509> peer{SSL_get1_peer_certificate(ssl)};
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-    unsigned size = 0;
-    if (peer == nullptr || SSL_get_verify_result(ssl) != X509_V_OK ||
-        X509_digest(peer.get(), EVP_sha256(), digest.data(), &size) != 1) {
+    result.peer_fingerprint = fingerprint_of(peer.get());
+    if (result.peer_fingerprint.empty() || SSL_get_verify_result(ssl) != X509_V_OK) {
       failure_ = {"the peer has shown no certificate", false};
       return;
     }
     result.peer_name = site_name(peer.get());
-    result.peer_fingerprint = hexadecimal(std::span{digest}.first(size));
   }
   constexpr char kLabel[] = "EXPORTER-palp-session";
   constexpr std::array<unsigned char, 1> kVersion{link::kProtocolVersion};

@@ -116,6 +116,7 @@ void DtlsSession::establish(Association& by, const Endpoint& from, SessionEndpoi
   greeted_ = 0;
   roaming_.begin(from);
   proof_ = by.proof.peer_name;
+  fingerprint_ = by.proof.peer_fingerprint;
   data_connection_ = std::get<link::Established>(*out.event).receive_connection;
   out.protection = std::make_unique<AeadProtection>(data_keys(by, key_id_));
   opener_ = std::make_unique<AeadProtection>(data_keys(by, key_id_));

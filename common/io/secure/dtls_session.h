@@ -35,6 +35,7 @@ class DtlsSession final : public SessionEndpoint {
   void set_own_address(const Endpoint& own) override { path_answers_.set_own(own); }
   [[nodiscard]] link::SessionCounters counters() const override;
   [[nodiscard]] std::string proof() const override { return proof_; }
+  [[nodiscard]] std::string fingerprint() const override { return fingerprint_; }
 
  private:
   void hear_sealed(std::span<const std::byte> datagram,
@@ -66,6 +67,7 @@ class DtlsSession final : public SessionEndpoint {
   Associations associations_;
   LinkGlance link_;
   std::string proof_;
+  std::string fingerprint_;
   std::uint64_t present_{};  ///< association whose data keys the session has; 0: no session
   std::uint64_t next_{};     ///< the one that replaces it, during a changeover
   std::uint8_t key_id_{};    ///< of `present_`

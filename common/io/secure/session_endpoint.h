@@ -43,6 +43,8 @@ class SessionEndpoint {
   [[nodiscard]] virtual link::SessionCounters counters() const = 0;
   /// For people: who the peer has proven to be; empty: nobody has proven anything.
   [[nodiscard]] virtual std::string proof() const = 0;
+  /// Of the certificate that the peer has proven itself with; empty: with none.
+  [[nodiscard]] virtual std::string fingerprint() const = 0;
 };
 
 /// Neither encrypted nor authenticated: for benches within one machine.
@@ -59,6 +61,7 @@ class PlainSession final : public SessionEndpoint {
   void set_own_address(const Endpoint& /*own*/) override {}
   [[nodiscard]] link::SessionCounters counters() const override { return session_.counters(); }
   [[nodiscard]] std::string proof() const override { return {}; }
+  [[nodiscard]] std::string fingerprint() const override { return {}; }
 
  private:
   [[nodiscard]] SessionEndpointOutput carried(link::SessionOutput output, const Endpoint& to);

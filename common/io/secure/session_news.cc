@@ -2,6 +2,10 @@
 
 namespace palp::io {
 
+PeerIdentity identity_of(const link::Established& session, const SessionEndpoint& endpoint) {
+  return {session.session_id, session.peer_git, endpoint.proof(), endpoint.fingerprint()};
+}
+
 std::string session_sentence(link::Role role,
                              const Endpoint& peer,
                              const link::Established& session,

@@ -5,9 +5,20 @@
 
 #include "common/core/time.h"
 #include "common/io/net/endpoint.h"
+#include "common/io/secure/session_endpoint.h"
 #include "common/link/session.h"
 
 namespace palp::io {
+
+/// Who the peer of a session is, as far as it has shown that.
+struct PeerIdentity {
+  std::uint64_t session_id{};  ///< 0: there is none yet
+  std::string build;           ///< git commit that it names; empty: none
+  std::string name;            ///< proven, for people; empty: nothing was proven
+  std::string fingerprint;     ///< SHA-256 of its certificate, hexadecimal; empty: it showed none
+};
+[[nodiscard]] PeerIdentity identity_of(const link::Established& session,
+                                       const SessionEndpoint& endpoint);
 
 /// What people are told of sessions.
 struct SessionNews {
@@ -17,6 +28,7 @@ struct SessionNews {
   TimePoint at{};
   Endpoint peer;
   std::string sentence;
+  PeerIdentity identity;  ///< of the newest session
 };
 
 /// Of an Established one, told by a site of that role: with whom, and what that was proven by.

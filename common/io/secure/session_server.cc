@@ -106,6 +106,7 @@ class SessionServer::Io {
   SourceWatch source_;                    ///< of that socket
   std::optional<RelayMember> relay_;      ///< where both sites meet, if they do
   link::Established present_;             ///< rt has or will get this session; id 0: none
+  PeerIdentity met_;                      ///< of the newest session
   std::deque<link::LinkUpdate> waiting_;  ///< for room on the desk
   std::deque<Early> early_;               ///< taken by a data socket before it was connected
   std::array<std::byte, link::kDatagramSizeMax + 1> buffer_{};
@@ -291,6 +292,7 @@ void SessionServer::Io::meet(const link::Established& session,
     connected_ = peer;
   }
   present_ = session;
+  met_ = identity_of(session, *session_endpoint_);
   waiting_.push_back(std::move(next));
   tell(SessionNews::Kind::Established,
        peer,
@@ -369,7 +371,7 @@ void SessionServer::Io::tell(SessionNews::Kind kind,
                              const Endpoint& peer,
                              std::string sentence,
                              bool final) {
-  (void)news_.try_enqueue({kind, final, clock_.now(), peer, std::move(sentence)});
+  (void)news_.try_enqueue({kind, final, clock_.now(), peer, std::move(sentence), met_});
 }
 
 SessionServer::SessionServer(const SessionServerConfig& config, LinkUpdateDesk& desk)

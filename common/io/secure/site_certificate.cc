@@ -1,6 +1,8 @@
 #include "common/io/secure/site_certificate.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <sstream>
 #include <string_view>
 
@@ -54,6 +56,22 @@ std::string site_name(const X509* certificate) {
   std::ranges::replace_if(
       name, [](char c) { return c < ' ' || c > '~'; }, '?');
   return name;
+}
+
+std::string fingerprint_of(const X509* certificate) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned size = 0;
+  if (certificate == nullptr || X509_digest(certificate, EVP_sha256(), digest.data(), &size) != 1) {
+    return {};
+  }
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  text.reserve(2 * std::size_t{size});
+  for (unsigned i = 0; i < size; ++i) {
+    text += kDigits[digest[i] >> 4U];
+    text += kDigits[digest[i] & 15U];
+  }
+  return text;
 }
 
 CertificateFlaw flaw_of(X509* certificate, Role role) {

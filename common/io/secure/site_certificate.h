@@ -23,6 +23,9 @@ namespace palp::io {
 /// printable ASCII becomes '?'. Empty: there is none, or more than one.
 [[nodiscard]] std::string site_name(const X509* certificate);
 
+/// SHA-256 of a certificate in hexadecimal digits; empty: it cannot be had.
+[[nodiscard]] std::string fingerprint_of(const X509* certificate);
+
 enum class CertificateFlaw { None, Authority, Purpose, Role };
 
 /// A certificate of an authority is none of a site. One without extended key usage, or with the

@@ -30,6 +30,15 @@ TEST(HealthTextTest, SaysTheWaysOnceTheClockIsKnown) {
   EXPECT_EQ(health_text(health), "rtt 75.1 ms (there 37.9, here 37.2)  loss 1.0 %");
 }
 
+TEST(HealthTextTest, InBriefTheRoundTripOrTheSilence) {
+  LinkHealth health = live();
+  EXPECT_EQ(health_brief(health), "rtt 75.1 ms");
+  health.state = LinkState::Hold;
+  health.gap = 320ms;
+  EXPECT_EQ(health_brief(health), "silent 0.3 s");
+  EXPECT_EQ(health_brief({}), "no link");
+}
+
 TEST(HealthTextTest, SaysForHowLongNothingCame) {
   LinkHealth health = live();
   health.state = LinkState::Hold;

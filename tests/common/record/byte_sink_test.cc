@@ -30,7 +30,8 @@ TEST_F(FileTest, WhatIsWrittenIsReadBack) {
   }
   const auto file = MappedFile::open(path_);
   ASSERT_TRUE(file);
-  EXPECT_TRUE(std::ranges::equal(file->bytes(), std::as_bytes(std::span{kText})));
+  EXPECT_TRUE(std::ranges::equal(std::span<const std::byte>{file->bytes()},
+                                 std::as_bytes(std::span{kText})));
 }
 
 TEST_F(FileTest, ExistingFileIsNotOverwritten) {

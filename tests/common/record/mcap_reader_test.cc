@@ -190,6 +190,32 @@ class RawFile {
   Bytes bytes_;
 };
 
+TEST(McapReaderTest, OutsideOfTheWindowNoChunkIsOpened) {
+  MemorySink sink;
+  {
+    McapWriter writer{sink, {}};
+    const auto channel = writer.add_channel(0, "t", "raw");
+    for (std::uint64_t k = 0; k < 100; ++k) {
+      const std::uint64_t stamp = (k + 1) * 100'000'000;
+      (void)writer.add_message({.channel = channel, .log_time = stamp, .publish_time = stamp}, 0);
+    }
+  }
+  McapReader reader{sink.bytes()};
+  reader.only_between(5'000'000'000, 6'000'000'000);
+  std::uint64_t least = ~std::uint64_t{0};
+  std::uint64_t most = 0;
+  while (const auto item = reader.next()) {
+    if (const auto* message = std::get_if<McapMessage>(&*item)) {
+      least = std::min(least, message->log_time);
+      most = std::max(most, message->log_time);
+    }
+  }
+  EXPECT_LE(least, 5'000'000'000U);
+  EXPECT_GE(most, 6'000'000'000U);
+  EXPECT_LT(reader.report().messages, 25U) << "of 100";
+  EXPECT_EQ(reader.report().fault_count, 0U) << "nobody counts what was not looked at";
+}
+
 TEST(McapReaderTest, UnknownOpcodesAreSkipped) {
   RawFile file;
   file.add(static_cast<McapOpcode>(0x77), [](Bytes& out) { append(out, std::uint64_t{1}); });

@@ -68,12 +68,14 @@ void press_keys() {
   if (!terminal.reads_keys()) _exit(2);
   if (write(keyboard, "r", 1) != 1 || terminal.wait_for_stop(seconds{10})) _exit(3);
   if (terminal.resets() != 1) _exit(4);
-  if (write(keyboard, "rq", 2) != 2) _exit(5);
-  if (terminal.wait_for_stop(seconds{10}) != StopCause::Key) _exit(6);
-  _exit(terminal.resets() == 2 ? 0 : 7);
+  if (write(keyboard, "m", 1) != 1 || terminal.wait_for_stop(seconds{10})) _exit(5);
+  if (terminal.marks() != 1 || terminal.resets() != 1) _exit(6);
+  if (write(keyboard, "rmq", 3) != 3) _exit(7);
+  if (terminal.wait_for_stop(seconds{10}) != StopCause::Key) _exit(8);
+  _exit(terminal.resets() == 2 && terminal.marks() == 2 ? 0 : 9);
 }
 
-TEST(TerminalDeathTest, TheKeyForAResetDoesNotStop) {
+TEST(TerminalDeathTest, TheKeysForAResetAndAMarkDoNotStop) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(press_keys(), testing::ExitedWithCode(0), "");
 }

@@ -70,6 +70,17 @@ TEST(CertificatesTest, CertificatesAndASharedKeyDoNotGoIntoOneFolder) {
   EXPECT_THAT(read.error().text, HasSubstr("a certificate and a pre-shared key"));
 }
 
+TEST(CredentialsTest, TellTheFingerprintOfTheirCertificate) {
+  const KeysFolder certificates{"fingerprint"};
+  const KeysFolder bench{"no-fingerprint", true};
+  const auto own = Credentials::read(certificates.site(Role::Patient), Role::Patient);
+  ASSERT_TRUE(own);
+  EXPECT_EQ((*own)->fingerprint().size(), 64U) << "SHA-256 in hexadecimal digits";
+  const auto shared = Credentials::read(bench.site(Role::Patient), Role::Patient);
+  ASSERT_TRUE(shared);
+  EXPECT_EQ((*shared)->fingerprint(), "") << "a shared key has none";
+}
+
 TEST(CredentialsTest, ThePrivateKeyLiesInMemoryThatIsNeitherSwappedNorDumped) {
   const KeysFolder keys{"apart"};
   const auto read = Credentials::read(keys.site(Role::Surgeon), Role::Surgeon);
