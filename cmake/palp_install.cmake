@@ -45,3 +45,6 @@ if(NOT PALP_SANITIZE)
     FILES_MATCHING
     PATTERN "*.1")
 endif()
+
+# Who may open haptic masters and force cards: udev reads it where the prefix is /usr.
+install(FILES packaging/70-palp-hid.rules DESTINATION lib/udev/rules.d)

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/config/json.h"
+#include "common/io/device/hid_look.h"
 #include "common/io/device/modbus_port.h"
 #include "patient_site/settings_devices.h"
 
@@ -12,6 +13,26 @@ namespace palp::patient {
 
 using config::ExitCode;
 using site_program::ExitStatus;
+
+namespace {
+
+DeviceLook look_at_card(const CardPlan& plan) {
+  const std::string name{ScanCard::kName};
+  io::HidAddress commands = ScanCard::address(0);
+  commands.serial = plan.serial;
+  const io::HidLook seen = io::look_for_hid({{name, {commands}}}).front();
+  DeviceLook look;
+  look.place = "force sensor";
+  look.product = name;
+  look.address = seen.address.empty() ? "hid" : seen.address;
+  look.usable = seen.usable;
+  look.found = seen.found;
+  // It looks the same, and yet no HID interface of it will ever be listed.
+  if (seen.address.empty()) look.found += "; a USB-1608FS-Plus is no HID device and cannot be used";
+  return look;
+}
+
+}  // namespace
 
 DevicesCommand::DevicesCommand(config::CommandLine& line) {
   config::CommandLine& verb =
@@ -34,6 +55,7 @@ ExitStatus DevicesCommand::run() const {
   look("x axis", plans->x);
   look("y axis", plans->y);
   look("force sensor", plans->cell);
+  if (plans->card) looks.push_back(look_at_card(*plans->card));
   std::fputs((json_ ? devices_json(looks) : devices_text(looks)).c_str(), stdout);
   if (std::ranges::all_of(looks, &DeviceLook::usable)) return {ExitCode::Done, "completed", ""};
   return {ExitCode::Missed, "not usable", "not all devices can be used"};

@@ -83,8 +83,10 @@ Result<std::optional<DevicePlans>> plan_devices(Settings& settings) {
     return fail(settings.devices + ": " + *flaw);
   }
   if (!plans->phantom.empty()) settings.phantom = plans->phantom;
-  const DevicePlan& sensor = plans->cell ? *plans->cell : *plans->normal;
-  settings.node.sensor_stale = sensor.profile.silence;
+  if ((settings.force == "hid") != plans->card.has_value()) {
+    return fail(settings.devices + ": a card and --force hid go together, one needs the other");
+  }
+  settings.node.sensor_stale = sensor_silence_of(*plans);
   return std::optional{std::move(*plans)};
 }
 

@@ -15,17 +15,18 @@ using settings::from_milli;
 /// The stage's servo runs past its target, and rounds to its encoder.
 constexpr double kTableMargin = 0.1e-3;  // [m]
 
-Result<void> check_device(const std::string& name, const char* what) {
-  if (name == "sim" || name == "modbus") return {};
-  return fail("unknown " + std::string{what} + " '" + name + "'; there are: sim, modbus");
-}
-
 /// A simulated sensor feels nothing of a real stage, nor the other way round.
 Result<void> check_devices(const proto::config::PatientConfig& message) {
-  if (auto known = check_device(message.stage(), "stage"); !known) return known;
-  if (auto known = check_device(message.force(), "force sensor"); !known) return known;
-  if (message.stage() != message.force()) {
-    return fail("stage '" + message.stage() + "' and force sensor '" + message.force() +
+  const std::string& stage = message.stage();
+  const std::string& force = message.force();
+  if (stage != "sim" && stage != "modbus") {
+    return fail("unknown stage '" + stage + "'; there are: sim, modbus");
+  }
+  if (force != "sim" && force != "modbus" && force != "hid") {
+    return fail("unknown force sensor '" + force + "'; there are: sim, modbus, hid");
+  }
+  if ((stage == "sim") != (force == "sim")) {
+    return fail("stage '" + stage + "' and force sensor '" + force +
                 "' do not go together: both are sim, or neither");
   }
   if (message.stage() != "sim" && message.devices().empty()) {

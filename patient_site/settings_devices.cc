@@ -148,6 +148,27 @@ Result<DevicePlan> make_plan(const ModbusDevice& message, const std::string& whe
   return plan;
 }
 
+Result<CardPlan> make_card_plan(const proto::config::HidCard& message, const std::string& where) {
+  if (message.n_per_v() == 0) {
+    return fail(where + ": " + std::string{ScanCard::kName} + " is not calibrated: no n_per_v");
+  }
+  CardPlan plan;
+  CardInstallation& built_in = plan.installation;
+  built_in.channel = static_cast<std::uint8_t>(message.channel());
+  built_in.range = static_cast<std::uint8_t>(message.range());
+  built_in.newtons_per_volt = message.n_per_v();
+  built_in.load.force_range = message.range_n();
+  built_in.load.force_zero = message.unloaded_n();
+  built_in.load.tare_within = message.tare_within_n();
+  built_in.load.tare_noise = message.tare_noise_n();
+  built_in.load.tare_time = from_seconds(message.tare_s());
+  built_in.silence = from_milliseconds(message.silence_ms());
+  plan.serial = message.serial();
+  plan.pole = message.pole_hz();
+  plan.noise = from_milli(message.noise_mn());
+  return plan;
+}
+
 /// What the devices are together.
 Result<DevicePlans> sound(DevicePlans plans, const std::string& name) {
   if (plans.x.has_value() != plans.y.has_value()) {
@@ -162,7 +183,8 @@ Result<DevicePlans> sound(DevicePlans plans, const std::string& name) {
     return fail(name + ": " + plans.cell->profile.name + " is no force sensor");
   }
   if (!plans.normal) return fail(name + ": there is no axis along the normal");
-  if (!plans.cell && !plans.normal->profile.force) {
+  if (plans.cell && plans.card) return fail(name + ": a site has a cell or a card, not both");
+  if (!plans.cell && !plans.card && !plans.normal->profile.force) {
     return fail(name + ": there is no cell, and " + plans.normal->profile.name +
                 " does not feel its load");
   }
@@ -224,6 +246,11 @@ Result<DevicePlans> make_device_plans(std::string_view text, const std::string& 
     auto plan = make_plan(place.message, name + ": " + place.name);
     if (!plan) return tl::unexpected{plan.error()};
     place.plan = std::move(*plan);
+  }
+  if (message.has_card()) {
+    auto card = make_card_plan(message.card(), name + ": card");
+    if (!card) return tl::unexpected{card.error()};
+    plans.card = std::move(*card);
   }
   return sound(std::move(plans), name);
 }

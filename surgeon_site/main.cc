@@ -1,4 +1,5 @@
 // palp-surgeon: the surgeon's site in real time.
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -26,9 +27,12 @@
 #include "site_program/site_main.h"
 #include "site_program/site_report.h"
 #include "site_program/status_line.h"
+#include "surgeon_site/devices/master_rig.h"
+#include "surgeon_site/devices_command.h"
 #include "surgeon_site/display.h"
 #include "surgeon_site/script_reader.h"
 #include "surgeon_site/settings.h"
+#include "surgeon_site/settings_devices.h"
 #include "surgeon_site/simulated_hand.h"
 #include "surgeon_site/surgeon_node.h"
 
@@ -40,6 +44,7 @@ using site_program::exit_status_of;
 using site_program::ExitStatus;
 
 constexpr Duration kDisplayPeriod = std::chrono::milliseconds{100};
+constexpr Duration kDevicePause = std::chrono::milliseconds{20};
 
 void declare_flags(config::CommandLine& line, config::Document& document, std::string& report) {
   line.text("--report", report, "FILE", "JSON report, written also when the run fails");
@@ -47,6 +52,7 @@ void declare_flags(config::CommandLine& line, config::Document& document, std::s
   line.knob("--peer", "peer");
   line.knob("--coupling", "coupling.name");
   line.knob("--master", "hand.master");
+  line.knob("--devices", "devices");
   line.knob("--grip", "hand.grip");
   line.knob("--surface-offset-mm", "hand.surface_offset_mm");
   site_program::declare_session_flags(line);
@@ -78,11 +84,51 @@ std::optional<ExitStatus> end_of_script(const SurgeonStatus& status) {
 /// What the parts are made of, all checked.
 struct Plan {
   Settings settings;
-  GestureScript script;
+  std::optional<GestureScript> script;  ///< of a simulated hand
+  std::optional<MasterPlan> master;     ///< of a real one
+  HandFacts facts;
   coupling::SurgeonCoupling law;
   site_program::RunnerConfig runner;
   record::SessionInfo info;
 };
+
+/// Whose hand it is, of a person or of a script.
+struct HandPlan {
+  std::optional<GestureScript> script;
+  std::optional<MasterPlan> master;
+  HandFacts facts;
+};
+
+Result<HandPlan> plan_hand(const Settings& settings) {
+  HandPlan hand;
+  const KnownMaster* const product = master_named(settings.master);
+  if (product == nullptr) {
+    auto script = load_script(settings.master, {settings.hand.plant.grip.stiffness, {}});
+    if (!script) return tl::unexpected{script.error()};
+    hand.script = std::move(*script);
+    hand.facts = facts_of(settings.hand);
+    return hand;
+  }
+  if (settings.devices.empty()) {
+    return fail("master '" + settings.master + "' needs --devices FILE");
+  }
+  auto plan = read_master_plan(*product, settings.devices);
+  if (!plan) return tl::unexpected{plan.error()};
+  hand.facts = plan->facts;
+  hand.master = std::move(*plan);
+  return hand;
+}
+
+/// Null where the hand is a person's.
+std::unique_ptr<SimulatedHand> make_scripted(const SimulatedHandConfig& hand,
+                                             std::optional<GestureScript> script) {
+  return script ? std::make_unique<SimulatedHand>(hand, std::move(*script)) : nullptr;
+}
+
+/// Started, not ready; null where the hand is a script's.
+std::unique_ptr<MasterRig> start_master(const std::optional<MasterPlan>& plan, int priority) {
+  return plan ? std::make_unique<MasterRig>(*plan, std::max(0, priority - 1)) : nullptr;
+}
 
 tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   const auto bad = [](const Error& error) { return tl::unexpected{exit_status_of(error)}; };
@@ -94,9 +140,9 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   const auto address =
       site_program::site_address("--peer", settings->peer, settings->protection, 1);
   if (!address) return tl::unexpected{address.error()};
-  auto script = load_script(settings->master, {settings->hand.plant.grip.stiffness, {}});
-  if (!script) return bad(script.error());
-  auto law = coupling::make_surgeon_coupling(settings->coupling, facts_of(settings->hand));
+  auto hand = plan_hand(*settings);
+  if (!hand) return bad(hand.error());
+  auto law = coupling::make_surgeon_coupling(settings->coupling, hand->facts);
   if (!law) return bad(law.error());
   auto wrap = site_program::impaired_reception(
       settings->impairment, netem::Direction::Down, settings->seed, io::SteadyClock{}.now());
@@ -106,7 +152,7 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
                     .settings_hash = settings->agreement,
                     .coupling = settings->coupling.name,
                     .git = std::string{site_program::git_commit()},
-                    .devices = {.hand = facts_of(settings->hand), .stage = {}, .sensor = {}}};
+                    .devices = {.hand = hand->facts, .stage = {}, .sensor = {}}};
   runner.address = *address;
   runner.meeting = *meeting;
   runner.protection = settings->protection;
@@ -119,9 +165,11 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   info.metadata.emplace_back("grip", settings->grip);
   info.metadata.emplace_back("surface_offset_mm",
                              config::number_text(settings->hand.person.surface_offset * 1e3));
-  info.metadata.emplace_back("hand", describe(facts_of(settings->hand)));
+  info.metadata.emplace_back("hand", describe(hand->facts));
   return Plan{std::move(*settings),
-              std::move(*script),
+              std::move(hand->script),
+              std::move(hand->master),
+              hand->facts,
               std::move(*law),
               std::move(runner),
               std::move(info)};
@@ -133,20 +181,20 @@ class Program {
  public:
   explicit Program(Plan plan)
       : settings_{std::move(plan.settings)},
-        device_{settings_.hand, std::move(plan.script)},
+        scripted_{make_scripted(settings_.hand, std::move(plan.script))},
+        rig_{start_master(plan.master, settings_.loop.priority)},
         law_{std::move(plan.law)},
         link_{settings_.link, std::make_unique<link::WireCodec>()},
         runner_{plan.runner},
         recording_{settings_.record, proven(std::move(plan.info)), 1},
-        node_{settings_.node, {device_, law_, link_, recording_.recorder(0)}},
+        node_{settings_.node,
+              {rig_ ? rig_->device() : *scripted_, law_, link_, recording_.recorder(0)}},
         began_at_{clock_.now()},
         watch_{{.peer = settings_.peer,
                 .patience_at_first = settings_.link.closed_after,
                 .patience = settings_.give_up_after,
                 .round_trip_max = settings_.link.round_trip_max},
-               began_at_} {
-    runner_.start(link_, [this](TimePoint now) { node_.tick(now); });
-  }
+               began_at_} {}
   ~Program() { runner_.halt(); }
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
@@ -158,6 +206,9 @@ class Program {
 
  private:
   [[nodiscard]] std::optional<ExitStatus> look(TimePoint now);
+  /// nullopt: the master is ready.
+  [[nodiscard]] std::optional<ExitStatus> await_master(io::Terminal& terminal);
+  void tell_of_master();
   void show(const SurgeonStatus& status, TimePoint now);
 
   [[nodiscard]] record::SessionInfo proven(record::SessionInfo info) const {
@@ -166,7 +217,9 @@ class Program {
   }
 
   const Settings settings_;
-  SimulatedHand device_;
+  std::unique_ptr<SimulatedHand> scripted_;
+  std::unique_ptr<MasterRig> rig_;  ///< null: the scripted one
+  std::uint32_t resets_{};
   coupling::SurgeonCoupling law_;
   link::Link link_;
   site_program::Runner runner_;
@@ -180,7 +233,29 @@ class Program {
   bool advised_{};
 };
 
+std::optional<ExitStatus> Program::await_master(io::Terminal& terminal) {
+  while (rig_ && !rig_->ready()) {
+    tell_of_master();
+    if (auto why = rig_->hopeless(clock_.now() - began_at_)) {
+      return site_program::cannot_start(std::move(*why));
+    }
+    if (terminal.wait_for_stop(kDevicePause)) {
+      return ExitStatus{ExitCode::CutShort, "aborted", "aborted by the user"};
+    }
+  }
+  return std::nullopt;
+}
+
+void Program::tell_of_master() {
+  if (!rig_) return;
+  if (const auto news = rig_->news()) {
+    news->fit ? line_.info(news->sentence) : line_.warn(news->sentence);
+  }
+}
+
 ExitStatus Program::run(io::Terminal& terminal) {
+  if (auto ended = await_master(terminal)) return *ended;
+  runner_.start(link_, [this](TimePoint now) { node_.tick(now); });
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
   line_.info(
       "calling " + settings_.peer +
@@ -189,6 +264,9 @@ ExitStatus Program::run(io::Terminal& terminal) {
     const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
     recording_.mark(terminal.marks(), clock_.now());
     node_.commands().put({.emergency_stop = false, .resets = terminal.resets()});
+    // A reset frees the master first; the site hears of the next, once it is ready.
+    if (rig_ && std::exchange(resets_, terminal.resets()) != resets_) rig_->restart();
+    tell_of_master();
     if (const auto exit_status = look(clock_.now())) return *exit_status;
     if (stop) return {ExitCode::CutShort, "aborted", "aborted by the user"};
   }
@@ -247,11 +325,14 @@ int run(int argc, char** argv) {
   line.verbs_optional();
   const site_program::CertificatesCommand certificates{line};
   const site_program::CheckCommand check{line, link::Role::Surgeon};
+  const DevicesCommand devices{line};
   const auto session = [&](site_program::SiteReport& report) {
     return site_program::run_session<Program>(make_plan(document), report);
   };
   const std::vector<site_program::SideVerb> verbs{
-      {"certificates", [&] { return certificates.run(); }}, {"check", [&] { return check.run(); }}};
+      {"certificates", [&] { return certificates.run(); }},
+      {"check", [&] { return check.run(); }},
+      {"devices", [&] { return devices.run(); }}};
   return site_program::run({"surgeon", line, report_file, verbs, session}, argc, argv);
 }
 

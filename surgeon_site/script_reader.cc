@@ -383,9 +383,10 @@ Result<GestureScript> load_script(const std::string& source, const ScriptSetting
   }
   const bool replay = source.rfind(kReplay, 0) == 0;
   if (!replay && source.rfind(kScript, 0) != 0) {
-    return fail("unknown master " + quoted(source) +
-                ", expected script:standard, script:demo, script:breath, script:long, "
-                "script:FILE, replay:FILE or recording:FILE");
+    return fail(
+        "unknown master " + quoted(source) +
+        ", expected script:standard, script:demo, script:breath, script:long, "
+        "script:FILE, replay:FILE or recording:FILE, or a device: openffboard, paddle, spacemouse");
   }
   const std::string path = source.substr(replay ? kReplay.size() : kScript.size());
   const Result<std::string> text = read_file(path);

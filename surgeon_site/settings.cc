@@ -63,6 +63,7 @@ Result<Settings> make_settings(const proto::config::SurgeonConfig& message) {
   made.node.gate = make_gate(message.force_gate());
   made.node.hold_in_plane = message.hand().hold_in_plane();
   made.master = message.hand().master();
+  made.devices = message.devices();
   made.grip = message.hand().grip();
   made.hand = *hand;
   made.impairment = settings::make_impairment(message.impairment());

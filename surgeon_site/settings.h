@@ -30,6 +30,7 @@ struct Settings {
   Duration direct_round_trip_max{std::chrono::milliseconds{20}};
   bool engagement_forced{};
   std::string master{"script:standard"};
+  std::string devices;      ///< file; a master that is no script needs one
   std::string grip{"mid"};  ///< the name of what `hand` holds in numbers
   SimulatedHandConfig hand;
   settings::LoopSettings loop;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace palp::patient {
 
@@ -41,6 +42,34 @@ ForceSensorFacts sensor_facts_of(const DevicePlan& plan) noexcept {
   facts.rate = 1 / seconds(plan.profile.period);
   facts.lag = plan.lag;
   return facts;
+}
+
+ForceSensorFacts sensor_facts_of(const CardPlan& plan) noexcept {
+  constexpr double kRate = 1000;         // [Hz], of packets
+  constexpr double kCardDelay = 1.5e-3;  // [s], half a packet, and until its turn
+  constexpr double kSteps = 65'536;      // of 16 bits
+  ForceSensorFacts facts;
+  const CardInstallation& built_in = plan.installation;
+  facts.pole = plan.pole;
+  facts.step = std::abs(built_in.newtons_per_volt) * 2 *
+               card_ranges().at(built_in.range).full_scale / kSteps;
+  facts.range = built_in.load.force_range;
+  facts.noise = plan.noise;
+  facts.rate = kRate;
+  facts.lag = kCardDelay + 1 / (2 * std::numbers::pi * plan.pole);
+  return facts;
+}
+
+PatientDevices facts_of(const DevicePlans& plans) noexcept {
+  return {stage_facts_of(plans),
+          plans.card   ? sensor_facts_of(*plans.card)
+          : plans.cell ? sensor_facts_of(*plans.cell)
+                       : sensor_facts_of(*plans.normal)};
+}
+
+Duration sensor_silence_of(const DevicePlans& plans) noexcept {
+  if (plans.card) return plans.card->installation.silence;
+  return (plans.cell ? *plans.cell : *plans.normal).profile.silence;
 }
 
 }  // namespace palp::patient

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/core/check.h"
+#include "common/io/device/hid_port.h"
 #include "common/io/device/modbus_port.h"
 
 namespace palp::patient {
@@ -20,6 +21,22 @@ std::string sentence_of(DeviceThread& device) {
   return why.empty() ? text : text + ", " + why;
 }
 
+std::string sentence_of(const CardReading& card) {
+  const std::string text =
+      "force sensor (" + std::string{ScanCard::kName} + "): " + std::string{to_string(card.state)};
+  return card.why.empty() ? text : text + ", " + std::string{card.why};
+}
+
+std::unique_ptr<CardThread> make_card(const CardPlan& plan, int priority) {
+  CardThread::Ports ports;
+  for (std::size_t i = 0; i < ports.size(); ++i) {
+    io::HidAddress address = ScanCard::address(static_cast<int>(i));
+    address.serial = plan.serial;
+    ports[i] = std::make_unique<io::HidPort>(std::move(address));
+  }
+  return std::make_unique<CardThread>(plan.installation, std::move(ports), priority);
+}
+
 }  // namespace
 
 DeviceRig::DeviceRig(const DevicePlans& plans, int priority) {
@@ -30,7 +47,12 @@ DeviceRig::DeviceRig(const DevicePlans& plans, int priority) {
   DeviceThread* const cell = add("force sensor", plans.cell, priority);
   const PatientDevices facts = facts_of(plans);
   stage_ = std::make_unique<RegisterStage>(std::array<DeviceThread*, 3>{normal, x, y}, facts.stage);
-  force_ = std::make_unique<RegisterForce>(cell != nullptr ? *cell : *normal, facts.sensor);
+  if (plans.card) {
+    card_ = make_card(*plans.card, priority);
+    force_ = std::make_unique<CardForce>(*card_, facts.sensor);
+  } else {
+    force_ = std::make_unique<RegisterForce>(cell != nullptr ? *cell : *normal, facts.sensor);
+  }
 }
 
 DeviceThread* DeviceRig::add(const std::string& name,
@@ -47,6 +69,7 @@ DeviceThread* DeviceRig::add(const std::string& name,
 }
 
 bool DeviceRig::ready() noexcept {
+  if (card_ && card_->status().state != CardState::Ready) return false;
   return std::ranges::all_of(
       threads_, [](const auto& device) { return device->status().state == DeviceState::Ready; });
 }
@@ -58,11 +81,21 @@ std::optional<std::string> DeviceRig::hopeless(Duration waited) {
     const Duration patience = state == DeviceState::Absent ? kReachPatience : kStartPatience;
     if (state == DeviceState::Fault || waited >= patience) return sentence_of(*device);
   }
-  return std::nullopt;
+  if (!card_) return std::nullopt;
+  const CardReading& card = card_->status();
+  if (card.state == CardState::Ready) return std::nullopt;
+  const bool given_up = card.state == CardState::Fault || waited >= kReachPatience;
+  return given_up ? std::optional{sentence_of(card)} : std::nullopt;
 }
 
 std::vector<DeviceNews> DeviceRig::news() {
   std::vector<DeviceNews> all;
+  if (card_) {
+    const CardReading& card = card_->status();
+    const bool same_state = std::exchange(card_state_, card.state) == card.state;
+    const bool same_why = std::exchange(card_why_, card.why) == card.why;
+    if (!same_state || !same_why) all.push_back({sentence_of(card), card.why.empty()});
+  }
   for (std::size_t i = 0; i < threads_.size(); ++i) {
     const DeviceReading& reading = threads_[i]->status();
     const Known before = std::exchange(known_[i], {reading.state, reading.reason});
@@ -75,6 +108,7 @@ std::vector<DeviceNews> DeviceRig::news() {
 
 void DeviceRig::restart() noexcept {
   for (const auto& device : threads_) device->restart();
+  if (card_) card_->restart();
 }
 
 }  // namespace palp::patient

@@ -3,9 +3,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/core/time.h"
+#include "patient_site/devices/card_thread.h"
 #include "patient_site/devices/device_plans.h"
 #include "patient_site/devices/register_stage.h"
 
@@ -47,7 +49,10 @@ class DeviceRig {
   std::vector<std::unique_ptr<DeviceThread>> threads_;
   std::vector<Known> known_;  ///< as told last, of each
   std::unique_ptr<RegisterStage> stage_;
-  std::unique_ptr<RegisterForce> force_;
+  std::unique_ptr<CardThread> card_;  ///< null: the force is felt over Modbus
+  CardState card_state_{};            ///< as told last
+  std::string_view card_why_;         ///< as told last
+  std::unique_ptr<ForceSensor> force_;
 };
 
 }  // namespace palp::patient

@@ -109,6 +109,10 @@ const std::vector<Arrow>& arrows() {
         "common/io/*",
         "netem/*"}},
       {"surgeon_site/devices/*", {"surgeon_site/haptic_device.h", "common/io/*"}},
+      {"surgeon_site/devices_command.*",
+       {"surgeon_site/devices", "common/config", "common/io/device", "site_program"}},
+      {"surgeon_site/settings_devices.*",
+       {"surgeon_site/devices", "common/io/device", "common/config", "common/settings"}},
       {"surgeon_site/settings.*",
        {"common/message",
         "common/coupling",
@@ -223,6 +227,7 @@ const std::vector<std::string_view>& protobuf_files() {
 const std::vector<Fence>& fences() {
   static const std::vector<Fence> table{
       {"modbus/", {"common/io/device/modbus_port.cc"}},
+      {"hidapi/", {"common/io/device/hid_port.cc"}},
       {"boost/", {"common/io/net/*.cc", "common/io/secure/*.cc"}},
       {"google/protobuf/", protobuf_files()},
       {"zstd", {"common/record/mcap_*.cc"}},

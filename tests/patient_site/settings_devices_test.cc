@@ -73,5 +73,19 @@ TEST(DevicePlansTest, AllProfilesOfTheHouseAreSound) {
   }
 }
 
+TEST(DevicePlansTest, ACardTakesThePlaceOfTheCell) {
+  const std::string axis = "normal { profile: \"iai\" address: \"tcp:127.0.0.1:502\" } ";
+  const auto plans = make_device_plans(axis + "card { n_per_v: 5 range: 1 channel: 3 }", "rig");
+  ASSERT_TRUE(plans) << plans.error().text;
+  EXPECT_EQ(plans->card->installation.channel, 3);
+  const ForceSensorFacts sensor = facts_of(*plans).sensor;
+  EXPECT_NEAR(sensor.step, 0.76e-3, 0.01e-3);
+  EXPECT_EQ(sensor.rate, 1000);
+  EXPECT_EQ(sensor_silence_of(*plans), std::chrono::milliseconds{5});
+  EXPECT_THAT(refusal(axis + "card { channel: 1 }"), HasSubstr("not calibrated: no n_per_v"));
+  EXPECT_THAT(refusal(std::string{kThreeAxes} + "card { n_per_v: 5 }"), HasSubstr("not both"));
+  EXPECT_THAT(refusal(axis + "card { n_per_v: 5 channel: 8 }"), HasSubstr("rig:1"));
+}
+
 }  // namespace
 }  // namespace palp::patient

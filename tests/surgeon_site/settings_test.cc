@@ -34,6 +34,7 @@ std::string text_of(const Settings& settings) {
       .add("gate.fade_guard", settings.node.gate.fade_guard)
       .add("link_status_every", settings.node.link_status_every)
       .add("master", settings.master)
+      .add("devices", settings.devices)
       .add("grip", settings.grip)
       .add("grip.mass", settings.hand.plant.grip.mass)
       .add("grip.damping", settings.hand.plant.grip.damping)

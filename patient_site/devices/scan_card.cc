@@ -1,0 +1,274 @@
+#include "patient_site/devices/scan_card.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace palp::patient {
+namespace {
+
+using io::PortFault;
+
+constexpr std::uint16_t kCardVendor = 0x09DB;
+constexpr std::uint16_t kCardProduct = 0x007D;
+constexpr Duration kCardReopenPause = std::chrono::milliseconds{500};
+constexpr Duration kMemoryPatience = std::chrono::milliseconds{200};
+constexpr Duration kMemoryWait = std::chrono::milliseconds{20};
+constexpr std::size_t kPacketBytes = 64;
+constexpr int kPacketsMax = 64;              // of one interface and cycle: the kernel keeps no more
+constexpr std::uint32_t kSameSamples = 100;  // no sensor of 16 bits is as quiet
+constexpr double kNearFull = 0.99;           // [-], of the scale
+constexpr Duration kPacketHalf = std::chrono::microseconds{500};
+constexpr std::uint8_t kStopScan = 0x12;
+constexpr int kInterfaces = 6;  // of data
+
+std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) noexcept {
+  return static_cast<std::uint16_t>(bytes[at] | (bytes[at + 1] << 8U));
+}
+
+double float_at(std::span<const std::uint8_t> bytes) noexcept {
+  const std::uint32_t bits = word_at(bytes, 0) | (std::uint32_t{word_at(bytes, 2)} << 16U);
+  return static_cast<double>(std::bit_cast<float>(bits));
+}
+
+}  // namespace
+
+std::string_view to_string(CardState state) noexcept {
+  switch (state) {
+    case CardState::Absent:
+      return "absent";
+    case CardState::Starting:
+      return "starting";
+    case CardState::Ready:
+      return "ready";
+    case CardState::Fault:
+      return "fault";
+  }
+  return "?";
+}
+
+io::HidAddress ScanCard::address(int interface_number) {
+  return {.vendor = kCardVendor,
+          .product = kCardProduct,
+          .interface_number = interface_number,
+          .usage_page = 0,
+          .serial = {}};
+}
+
+CardReading ScanCard::cycle(const Clock& clock, std::uint32_t restarts) {
+  const TimePoint began = clock.now();
+  if (std::exchange(restarts_, restarts) != restarts && now_.state == CardState::Fault) {
+    load_.begin_tare();
+    load_.resume();
+    now_.state = CardState::Starting;
+    now_.why = {};
+    same_ = 0;
+  }
+  if (now_.state == CardState::Absent) reach(clock);
+  if (now_.state == CardState::Absent) return now_;
+  sum_ = 0;
+  count_ = 0;
+  full_ = false;
+  if (!drain()) {
+    vanish(io::to_string(PortFault::Lost), began);
+    return now_;
+  }
+  const TimePoint now = clock.now();
+  if (count_ > 0) {
+    heard_at_ = now;
+    finish(now);
+  } else if (now - heard_at_ > installation_.silence) {
+    vanish("it fell silent", now);
+  }
+  return now_;
+}
+
+void ScanCard::stop() {
+  if (now_.state == CardState::Absent) return;
+  (void)ports_[0]->write(std::array<std::uint8_t, 1>{kStopScan});
+}
+
+void ScanCard::reach(const Clock& clock) {
+  if (tried_ && clock.now() < reopen_at_) return;
+  tried_ = true;
+  reopen_at_ = clock.now() + kCardReopenPause;
+  const bool open = std::ranges::all_of(
+      ports_, [](io::ReportPort* port) { return port->open() == PortFault::None; });
+  if (!open) {
+    now_.why = io::to_string(PortFault::NotOpen);
+  } else if (!read_calibration(clock)) {
+    now_.why = "its calibration cannot be read";
+  } else if (!start_scan()) {
+    now_.why = "it does not begin to sample";
+  } else {
+    now_.state = CardState::Starting;
+    now_.why = {};
+    index_known_ = false;
+    same_ = 0;
+    load_.resume();
+    heard_at_ = clock.now() + kMemoryPatience;
+    return;
+  }
+  close_all();
+}
+
+bool ScanCard::start_scan() {
+  std::array<std::uint8_t, 9> queue{0x13};
+  std::fill(queue.begin() + 1, queue.end(), installation_.range);
+  // 30,959.75 Hz, without end; about a packet a millisecond, at once.
+  const std::uint8_t channel = installation_.channel;
+  const std::array<std::uint8_t, 11> scan{0x11, channel, channel, 0, 0, 0, 0, 0, 0x43, 0x01, 0x04};
+  return ports_[0]->write(queue) == PortFault::None && ports_[0]->write(scan) == PortFault::None;
+}
+
+bool ScanCard::read_calibration(const Clock& clock) {
+  // A scan that a dead host left running would mix into the answers.
+  (void)ports_[0]->write(std::array<std::uint8_t, 1>{kStopScan});
+  const CardRange& range = card_ranges().at(installation_.range);
+  const std::uint16_t channel = installation_.channel;
+  std::array<std::uint8_t, 4> ground{};
+  std::array<std::uint8_t, 4> plus{};
+  std::array<std::uint8_t, 4> minus{};
+  std::array<std::uint8_t, 4> pair{};
+  std::array<std::uint8_t, 2> minus_raw{};
+  const auto at = [&](unsigned base, unsigned size) {
+    return static_cast<std::uint16_t>(base + size * channel);
+  };
+  if (!read_memory(clock, kGroundReferenceAt, ground) || !read_memory(clock, range.plus_at, plus) ||
+      !read_memory(clock, range.minus_at, minus) ||
+      !read_memory(clock, at(range.pairs_at, 4), pair) ||
+      !read_memory(clock, at(range.minus_raw_at, 2), minus_raw)) {
+    return false;
+  }
+  CardReferences references{.ground_x = static_cast<double>(word_at(pair, 0)),
+                            .ground_y = target_of(float_at(ground), range),
+                            .plus_x = static_cast<double>(word_at(pair, 2)),
+                            .plus_y = target_of(float_at(plus), range),
+                            .minus_x = {},
+                            .minus_y = target_of(float_at(minus), range)};
+  // A memory of version 1.0 has no negative values: it is blank there.
+  const std::uint16_t raw = word_at(minus_raw, 0);
+  if (raw != 0 && raw != 0xFFFF && float_at(minus) < 0) references.minus_x = raw;
+  const auto line = line_through(references);
+  if (line) line_ = *line;
+  return line && line->slope > 0.5 && line->slope < 2;
+}
+
+bool ScanCard::read_memory(const Clock& clock,
+                           std::uint16_t address,
+                           std::span<std::uint8_t> bytes) {
+  const auto count = static_cast<std::uint8_t>(bytes.size());
+  const std::array<std::uint8_t, 5> request{0x30,
+                                            static_cast<std::uint8_t>(address & 0xFFU),
+                                            static_cast<std::uint8_t>(address >> 8U),
+                                            0,
+                                            count};
+  if (ports_[0]->write(request) != PortFault::None) return false;
+  const TimePoint end = clock.now() + kMemoryPatience;
+  std::array<std::uint8_t, kPacketBytes> reply{};
+  for (int tries = 0; tries < 10 && clock.now() <= end; ++tries) {
+    std::size_t length{};
+    if (ports_[0]->read(reply, length, kMemoryWait) != PortFault::None) return false;
+    if (length < bytes.size() + 1 || reply[0] != 0x30) continue;
+    std::copy_n(reply.begin() + 1, bytes.size(), bytes.begin());
+    return true;
+  }
+  return false;
+}
+
+bool ScanCard::drain() {
+  packets_.clear();
+  std::array<std::uint8_t, kPacketBytes + 1> bytes{};
+  for (std::size_t i = 1; i < kPorts; ++i) {
+    for (int n = 0; n < kPacketsMax; ++n) {
+      std::size_t length{};
+      if (ports_[i]->read(bytes, length, Duration{0}) != PortFault::None) return false;
+      if (length == 0) break;
+      if (length != kPacketBytes) {
+        ++now_.broken;
+        continue;
+      }
+      Packet packet;
+      packet.index = word_at(bytes, kPacketBytes - 2);
+      for (std::size_t s = 0; s < packet.samples.size(); ++s) {
+        packet.samples[s] = word_at(bytes, 2 * s);
+      }
+      packets_.push_back(packet);
+    }
+  }
+  if (!index_known_ && !packets_.empty()) {
+    index_ = std::ranges::min_element(packets_, {}, &Packet::index)->index;
+    index_known_ = true;
+  }
+  std::ranges::sort(packets_, {}, [this](const Packet& one) {
+    return static_cast<std::int16_t>(one.index - index_);  // also over its end at 65535
+  });
+  for (const Packet& packet : packets_) take(packet);
+  return true;
+}
+
+void ScanCard::take(const Packet& packet) {
+  const auto ahead = static_cast<std::int16_t>(packet.index - index_);
+  if (ahead < -kInterfaces || (ahead < 0 && now_.lost == 0)) {
+    ++now_.broken;
+    return;
+  }
+  if (ahead < 0) {
+    --now_.lost;  // late: its interface had been read already when it came
+  } else {
+    now_.lost += static_cast<std::uint64_t>(ahead);
+    index_ = static_cast<std::uint16_t>(packet.index + 1);
+  }
+  ++now_.packets;
+  const CardRange& range = card_ranges().at(installation_.range);
+  for (const std::uint16_t raw : packet.samples) {
+    same_ = raw == std::exchange(last_raw_, raw) ? same_ + 1 : 0;
+    const double calibrated = line_.slope * raw + line_.offset;
+    full_ = full_ || std::abs(volts_of(calibrated, range)) >= kNearFull * range.full_scale ||
+            raw == 0 || raw == 0xFFFF;
+    sum_ += calibrated;
+    ++count_;
+  }
+}
+
+void ScanCard::finish(TimePoint now) {
+  ++now_.number;
+  now_.sampled_at = now - kPacketHalf;
+  now_.volts = volts_of(sum_ / count_, card_ranges().at(installation_.range));
+  const bool stuck = same_ >= kSameSamples && !full_;
+  const LoadCheck::Verdict verdict =
+      load_.take(now_.volts * installation_.newtons_per_volt, now_.sampled_at);
+  now_.saturated = full_ || verdict == LoadCheck::Verdict::Saturated;
+  now_.zero = load_.zero();
+  now_.force = now_.volts * installation_.newtons_per_volt - load_.zero();
+  if (now_.state == CardState::Fault) return;
+  if (stuck || verdict == LoadCheck::Verdict::Stuck) return fail("the reading is stuck");
+  if (verdict == LoadCheck::Verdict::NotFinite) return fail("a reading is no number");
+  if (verdict == LoadCheck::Verdict::Touched) {
+    return fail("the tare was refused: something touches the sensor");
+  }
+  if (now_.state == CardState::Starting && load_.tared()) {
+    now_.state = CardState::Ready;
+    ++now_.starts;
+  }
+}
+
+void ScanCard::vanish(std::string_view why, TimePoint now) {
+  stop();
+  close_all();
+  now_.state = CardState::Absent;
+  now_.why = why;
+  reopen_at_ = now + kCardReopenPause;
+}
+
+void ScanCard::fail(std::string_view why) {
+  now_.state = CardState::Fault;
+  now_.why = why;
+}
+
+void ScanCard::close_all() {
+  for (io::ReportPort* const port : ports_) port->close();
+}
+
+}  // namespace palp::patient

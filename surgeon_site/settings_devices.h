@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "common/core/result.h"
+#include "surgeon_site/devices/master_plan.h"
+
+namespace palp::surgeon {
+
+/// `text` is that of a SurgeonDeviceFile (proto/devices.proto), `name` its file, `master` as the
+/// flag names it. The sentence names line, field and range.
+[[nodiscard]] Result<MasterPlan> make_master_plan(const KnownMaster& master,
+                                                  std::string_view text,
+                                                  const std::string& name);
+[[nodiscard]] Result<MasterPlan> read_master_plan(const KnownMaster& master,
+                                                  const std::string& path);
+
+}  // namespace palp::surgeon
