@@ -43,7 +43,8 @@ std::optional<std::string> flaw_in(const HandFacts& hand) {
                  {{"axes", static_cast<double>(hand.axes), "", 1, kAxesMax},
                   {"peak force", hand.force_peak, " N", 0.01, 1000},
                   {"continuous force", hand.force_continuous, " N", 0.01, hand.force_peak},
-                  {"rate", hand.rate, " Hz", 1, kRateMax}});
+                  {"rate", hand.rate, " Hz", 1, kRateMax},
+                  {"lag", hand.lag, " s", 0, 10}});
 }
 
 std::optional<std::string> flaw_in(const StageFacts& stage) {
@@ -80,7 +81,8 @@ std::optional<std::string> flaw_of(const DeviceFacts& facts) {
 
 std::string describe(const HandFacts& hand) {
   return std::to_string(hand.axes) + " axes, " + digits(hand.force_peak) + " N, " +
-         digits(hand.force_continuous) + " N for ever, " + digits(hand.rate) + " Hz";
+         digits(hand.force_continuous) + " N for ever, " + digits(hand.rate) + " Hz, lag " +
+         digits(hand.lag) + " s";
 }
 
 std::string describe(const StageFacts& stage) {

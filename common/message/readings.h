@@ -140,7 +140,8 @@ inline constexpr auto fields<S> = list({},
                                        field<1, &S::axes>("axes", always),
                                        field<2, &S::force_peak>("force_peak_n", always),
                                        field<3, &S::force_continuous>("force_continuous_n", always),
-                                       field<4, &S::rate>("rate_hz", always));
+                                       field<4, &S::rate>("rate_hz", always),
+                                       field<20, &S::lag>("lag_s", always));
 
 template <std::same_as<StageFacts> S>
 inline constexpr auto fields<S> = list({},

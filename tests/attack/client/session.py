@@ -15,6 +15,7 @@ PARKED, CLUTCHED, ENGAGED, HOLD, RETRACT, STOPPED = (
 
 NO_DEVICES = {
     "hand_axes": 0, "hand_force_peak_n": 0.0, "hand_force_continuous_n": 0.0, "hand_rate_hz": 0.0,
+    "hand_lag_s": 0.0,
     "stage_axes": 0, "stage_travel_min_m": 0.0, "stage_travel_max_m": 0.0,
     "stage_travel_side_m": 0.0, "stage_speed_m_per_s": 0.0, "stage_acceleration_m_per_s2": 0.0,
     "stage_rate_hz": 0.0, "stage_lag_s": 0.0, "stage_drags": 0, "sensor_pole_hz": 0.0,

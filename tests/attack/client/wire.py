@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from cryptography.exceptions import InvalidTag
 from cryptography.hazmat.primitives.ciphers.aead import AESGCM
 
-PROTOCOL_VERSION = 5
+PROTOCOL_VERSION = 6
 EXPORTER_LABEL = b"EXPORTER-palp-session"
 
 DATA, CONTROL, PATH, CLOSE = range(4)

@@ -66,7 +66,7 @@ TEST(DeviceFactsTest, NoNumberIsLeftOut) {
 }
 
 TEST(DeviceFactsTest, PeopleReadThemInOneLine) {
-  EXPECT_EQ(describe(HandFacts{}), "3 axes, 8.5 N, 1.4 N for ever, 1000 Hz");
+  EXPECT_EQ(describe(HandFacts{}), "3 axes, 8.5 N, 1.4 N for ever, 1000 Hz, lag 0 s");
   EXPECT_EQ(describe(StageFacts{}),
             "3 axes, -0.2 to 0.2 m, +-0.25 m, 0.15 m/s, 8 m/s^2, 1000 Hz, lag 0.0143 s, drags");
   EXPECT_EQ(describe(ForceSensorFacts{}),

@@ -60,7 +60,7 @@ TEST(CodecControlTest, HelloComesBack) {
 
 TEST(CodecControlTest, HelloOfAHandComesBack) {
   Hello sent = some_hello();
-  sent.devices = {.hand = HandFacts{3, 4, 0.5, 600}, .stage = {}, .sensor = {}};
+  sent.devices = {.hand = HandFacts{3, 4, 0.5, 600, 0.02}, .stage = {}, .sensor = {}};
   const auto received = decode_hello(encode(sent).view());
   ASSERT_TRUE(received);
   ASSERT_TRUE(received->devices.hand);
@@ -68,6 +68,7 @@ TEST(CodecControlTest, HelloOfAHandComesBack) {
   EXPECT_EQ(received->devices.hand->force_peak, 4);
   EXPECT_EQ(received->devices.hand->force_continuous, 0.5);
   EXPECT_EQ(received->devices.hand->rate, 600);
+  EXPECT_EQ(received->devices.hand->lag, 0.02);
   EXPECT_FALSE(received->devices.stage);
   EXPECT_FALSE(received->devices.sensor);
 }
