@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 
 #include <gtest/gtest.h>
 
@@ -105,8 +106,9 @@ struct PlainFile {
           payload.begin(), payload.end(), writer.add_message({channel, i, i, i}, payload.size()));
     }
     writer.close();
-    const auto found = std::ranges::search(sink.bytes(), payload);
-    payload_at = static_cast<std::size_t>(found.begin() - sink.bytes().begin());
+    const std::span<const std::byte> bytes = sink.bytes();
+    const auto found = std::search(bytes.begin(), bytes.end(), payload.begin(), payload.end());
+    payload_at = static_cast<std::size_t>(found - bytes.begin());
   }
 };
 

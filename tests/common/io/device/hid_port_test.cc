@@ -27,7 +27,7 @@ class HidPortTest : public testing::Test {
     made.serial = L"12\n34";
     return made;
   }
-  static constexpr HidAddress kFirst{
+  inline static const HidAddress kFirst{
       .vendor = 0x16C0, .product = 0x0486, .interface_number = 0, .usage_page = 0, .serial = {}};
 };
 
