@@ -21,7 +21,7 @@ constexpr int CHANGE = 4;
 
 /// The board.
 struct Board {
-  std::uint32_t us{};
+  std::uint64_t us{};
   std::array<int, 16> pins{};
   std::array<int, 16> duty{};
   std::deque<Report> from_host;
@@ -35,8 +35,8 @@ void analogWrite(int pin, int duty) { board.duty.at(static_cast<std::size_t>(pin
 void pinMode(int /*pin*/, int /*mode*/) {}
 int digitalPinToInterrupt(int pin) { return pin; }
 void attachInterrupt(int /*pin*/, void (*handler)(), int /*mode*/) { board.interrupt = handler; }
-std::uint32_t micros() { return board.us; }
-std::uint32_t millis() { return board.us / 1000; }
+std::uint32_t micros() { return static_cast<std::uint32_t>(board.us); }
+std::uint32_t millis() { return static_cast<std::uint32_t>(board.us / 1000); }
 
 struct {
   int recv(std::uint8_t* report, int /*wait_ms*/) {
@@ -54,7 +54,17 @@ struct {
 } RawHID;
 // NOLINTEND(readability-identifier-naming)
 
+// Twice: as it comes, and as somebody calibrated it.
+namespace plain {
 #include "surgeon_site/devices/firmware/paddle/paddle.ino"
+}  // namespace plain
+namespace calibrated {
+#undef PADDLE_NANOMETRES_PER_COUNT
+#undef PADDLE_DUTY_PER_NEWTON
+#define PADDLE_NANOMETRES_PER_COUNT 10'000
+#define PADDLE_DUTY_PER_NEWTON 100
+#include "surgeon_site/devices/firmware/paddle/paddle.ino"
+}  // namespace calibrated
 
 palp_paddle::State newest() {
   palp_paddle::State told{};
@@ -73,7 +83,7 @@ void say(std::uint16_t flags, std::uint16_t valid_for_ms) {
   board.from_host.push_back(report);
 }
 
-void run_for_ms(int span) {
+void run_for_ms(int span, void (*loop)() = plain::loop) {
   for (int i = 0; i < 4 * span; ++i) {
     board.us += 250;
     loop();
@@ -81,7 +91,8 @@ void run_for_ms(int span) {
 }
 
 TEST(PaddleFirmwareTest, TellsItsStateEachMillisecondAndWhenTheHostsWordRanOut) {
-  setup();
+  board = {};
+  plain::setup();
   board.pins.at(7) = HIGH;
   run_for_ms(10);
   EXPECT_NEAR(static_cast<double>(board.to_host.size()), 10, 1);
@@ -101,6 +112,26 @@ TEST(PaddleFirmwareTest, TellsItsStateEachMillisecondAndWhenTheHostsWordRanOut) 
   EXPECT_NE(newest().flags & palp_paddle::kStateEmergencyStop, 0);
   EXPECT_NE(newest().flags & palp_paddle::kStateBadCommand, 0);
   EXPECT_EQ(board.duty.at(4), 0) << "a paddle without calibration does not push";
+}
+
+TEST(PaddleFirmwareTest, PushesAsLongAsTheHostSaysAndNeverAgainOnAnOldWord) {
+  board = {};
+  calibrated::setup();
+  say(palp_paddle::kCommandEnable, 20);
+  run_for_ms(10, calibrated::loop);
+  EXPECT_EQ(board.duty.at(4), 100) << "one newton";
+  run_for_ms(11, calibrated::loop);
+  EXPECT_EQ(board.duty.at(4), 0);
+  constexpr std::uint64_t kHalfOfTheClock = std::uint64_t{1} << 31U;  // [ms], 24.9 days
+  board.us += kHalfOfTheClock * 1000;
+  run_for_ms(2, calibrated::loop);
+  EXPECT_EQ(board.duty.at(4), 0) << "its clock came round";
+  say(palp_paddle::kCommandEnable, 20);
+  run_for_ms(2, calibrated::loop);
+  EXPECT_EQ(board.duty.at(4), 100);
+  board.pins.at(6) = HIGH;
+  run_for_ms(1, calibrated::loop);
+  EXPECT_EQ(board.duty.at(4), 0) << "emergency stop";
 }
 
 }  // namespace

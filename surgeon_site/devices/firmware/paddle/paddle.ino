@@ -4,10 +4,17 @@
 // calibrated, and the host then gives no force.
 #include "paddle_report.h"
 
+#ifndef PADDLE_NANOMETRES_PER_COUNT
+#define PADDLE_NANOMETRES_PER_COUNT 0  // from a ruler: handle's way over encoder counts
+#endif
+#ifndef PADDLE_DUTY_PER_NEWTON
+#define PADDLE_DUTY_PER_NEWTON 0  // from a scale: PWM counts per newton at the handle
+#endif
+
 namespace {
 
-constexpr double kNanometresPerCount = 0;  // from a ruler: handle's way over encoder counts
-constexpr double kDutyPerNewton = 0;       // from a scale: PWM counts per newton at the handle
+constexpr double kNanometresPerCount = PADDLE_NANOMETRES_PER_COUNT;
+constexpr double kDutyPerNewton = PADDLE_DUTY_PER_NEWTON;
 constexpr int kDutyMost = 200;             // of 255
 constexpr int kEncoderA = 2;
 constexpr int kEncoderB = 3;
@@ -63,7 +70,9 @@ void set_flag(std::uint16_t flag, bool on) {
 void push() {
   const bool stopped = digitalRead(kEmergencyStop) == HIGH;
   const bool calibrated = kDutyPerNewton != 0 && kNanometresPerCount != 0;
-  const bool expired = !commanded || static_cast<std::int32_t>(good_until_ms - millis()) <= 0;
+  // For good: the clock wraps, and in 25 days an old word would be in time again.
+  if (static_cast<std::int32_t>(good_until_ms - millis()) <= 0) commanded = false;
+  const bool expired = !commanded;
   const bool enabled =
       calibrated && !stopped && !expired && (command.flags & palp_paddle::kCommandEnable) != 0;
   drive(enabled ? command.force_un * 1e-6 : 0);
