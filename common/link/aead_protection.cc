@@ -1,5 +1,6 @@
 #include "common/link/aead_protection.h"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -45,6 +46,37 @@ CipherContext make_context(const AeadKey& key, bool encrypts) {
   return context;
 }
 
+/// One block at a time; the mask is made, never undone.
+CipherContext make_masking(const Secret<AeadKey::kKeySize>& key) {
+  CipherContext context{EVP_CIPHER_CTX_new()};
+  if (context == nullptr ||
+      EVP_EncryptInit_ex2(
+          context.get(), EVP_aes_256_ecb(), octets(key.bytes()), nullptr, nullptr) != 1 ||
+      EVP_CIPHER_CTX_set_padding(context.get(), 0) != 1) {
+    throw std::runtime_error{"cannot prepare AES-256: OpenSSL has none"};
+  }
+  return context;
+}
+
+using Tag = std::span<const std::byte, AeadProtection::kTagSize>;
+
+/// Hides what is behind the clear part of a header, or shows it again.
+bool mask(const CipherContext& masking,
+          Tag tag,
+          std::span<std::byte, kHeaderSize - kClearSize> part) noexcept {
+  std::array<std::uint8_t, AeadProtection::kTagSize> block{};
+  int done = 0;
+  if (EVP_EncryptUpdate(masking.get(),
+                        block.data(),
+                        &done,
+                        octets(std::span<const std::byte>{tag}),
+                        static_cast<int>(block.size())) != 1) {
+    return false;
+  }
+  for (std::size_t i = 0; i < part.size(); ++i) part[i] ^= static_cast<std::byte>(block[i]);
+  return true;
+}
+
 }  // namespace
 
 struct AeadProtection::Generation {
@@ -53,7 +85,9 @@ struct AeadProtection::Generation {
         send_salt{keys.send.salt},
         receive_salt{keys.receive.salt},
         sealing{make_context(keys.send, kEncrypt)},
-        opening{make_context(keys.receive, kDecrypt)} {
+        opening{make_context(keys.receive, kDecrypt)},
+        hiding{make_masking(keys.send.header_key)},
+        showing{make_masking(keys.receive.header_key)} {
     PALP_CHECK(id <= kKeyMax, "a key id has two bits");
   }
   [[nodiscard]] static Nonce nonce(const Secret<AeadKey::kSaltSize>& salt,
@@ -82,6 +116,8 @@ struct AeadProtection::Generation {
   Secret<AeadKey::kSaltSize> receive_salt;
   CipherContext sealing;
   CipherContext opening;
+  CipherContext hiding;    ///< of the headers we send
+  CipherContext showing;   ///< of those that come
   std::uint64_t sealed{};  ///< packets
 };
 
@@ -143,6 +179,10 @@ void AeadProtection::Generation::touch() noexcept {
     (void)EVP_CipherInit_ex2(context, nullptr, nullptr, any.data(), kAsItWas, nullptr);
     (void)EVP_CipherUpdate(context, nullptr, &done, kNothing.data(), kHeaderSize);
   }
+  constexpr std::array<std::byte, kTagSize> kNoTag{};
+  std::array<std::byte, kHeaderSize - kClearSize> any{};
+  (void)mask(hiding, kNoTag, any);
+  (void)mask(showing, kNoTag, any);
 }
 
 AeadProtection::AeadProtection(const TrafficKeys& keys)
@@ -175,26 +215,50 @@ std::size_t AeadProtection::seal(const Header& header,
   number_least_ = header.number + 1;
   ++keys.sealed;
   const bool done =
-      keys.seal(header.number, out.first(kHeaderSize), plain, out.subspan(kHeaderSize));
+      keys.seal(header.number, out.first(kHeaderSize), plain, out.subspan(kHeaderSize)) &&
+      mask(keys.hiding,
+           out.first(kHeaderSize + size).last<kTagSize>(),
+           out.first<kHeaderSize>().subspan<kClearSize>());
   return done ? kHeaderSize + size : 0;
 }
 
-tl::expected<std::size_t, Rejection> AeadProtection::open(std::span<const std::byte> datagram,
+AeadProtection::Generation* AeadProtection::keys_of(const Header& header) noexcept {
+  if (header.key == present_->id) return present_.get();
+  if (next_ != nullptr && header.key == next_->id) return next_.get();
+  return nullptr;
+}
+
+tl::expected<Header, Rejection> AeadProtection::read_header(
+    std::span<const std::byte> datagram) noexcept {
+  const std::optional<Header> clear = parse_clear_part(datagram);
+  if (!clear || clear->length < kTagSize) return tl::unexpected(Rejection::Malformed);
+  const Generation* keys = keys_of(*clear);
+  if (keys == nullptr) return tl::unexpected(Rejection::Foreign);
+  std::array<std::byte, kHeaderSize - kClearSize> part{};
+  std::ranges::copy(datagram.subspan(kClearSize, part.size()), part.begin());
+  if (!mask(keys->showing, datagram.last<kTagSize>(), part)) {
+    return tl::unexpected(Rejection::Foreign);
+  }
+  const std::optional<Header> header = parse_hidden_part(*clear, part);
+  if (!header) return tl::unexpected(Rejection::Foreign);  // under another mask it is anything
+  return *header;
+}
+
+tl::expected<std::size_t, Rejection> AeadProtection::open(const Header& header,
+                                                          std::span<const std::byte> datagram,
                                                           std::span<std::byte> plain) noexcept {
-  const std::optional<Header> header = parse_header(datagram);
-  if (!header || header->length < kTagSize) return tl::unexpected(Rejection::Malformed);
-  const std::size_t size = header->length - kTagSize;
+  PALP_CHECK(header.length >= kTagSize && datagram.size() == kHeaderSize + header.length,
+             "a header that was read");
+  const std::size_t size = header.length - kTagSize;
   if (size > plain.size()) return tl::unexpected(Rejection::Malformed);
-  const bool by_next = next_ != nullptr && header->key == next_->id;
-  if (!by_next && header->key != present_->id) return tl::unexpected(Rejection::Foreign);
-  Generation& keys = by_next ? *next_ : *present_;
-  if (!keys.open(header->number,
-                 datagram.first(kHeaderSize),
-                 datagram.subspan(kHeaderSize),
-                 plain.first(size))) {
+  Generation* keys = keys_of(header);
+  PALP_CHECK(keys != nullptr, "a header that was read");
+  std::array<std::byte, kHeaderSize> shown{};
+  pack_header(header, shown);
+  if (!keys->open(header.number, shown, datagram.subspan(kHeaderSize), plain.first(size))) {
     return tl::unexpected(Rejection::Forged);
   }
-  seals_with_next_ = seals_with_next_ || by_next;
+  seals_with_next_ = seals_with_next_ || keys == next_.get();
   return size;
 }
 

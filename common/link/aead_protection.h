@@ -11,11 +11,12 @@
 
 namespace palp::link {
 
-/// Header authenticated, payload sealed: AES-256-GCM (NIST SP 800-38D). The nonce is the salt of
-/// the direction xor the packet number (as in RFC 8446, 5.3), so that it is new as long as the
-/// number is. Holds the keys of up to two generations: in a changeover what is under way under the
-/// old one still opens. Thread: made off rt; then its owner's. Allocates and locks nothing after
-/// construction.
+/// Header authenticated, payload sealed: AES-256-GCM (NIST SP 800-38D). Connection id and number
+/// are hidden by a mask that a key of its own makes of the tag (as in RFC 9001, 5.4): who listens
+/// cannot tell that two datagrams are of one session. The nonce is the salt of the direction xor
+/// the packet number (as in RFC 8446, 5.3), so that it is new as long as the number is. Holds the
+/// keys of up to two generations: in a changeover what is under way under the old one still opens.
+/// Thread: made off rt; then its owner's. Allocates and locks nothing after construction.
 class AeadProtection final : public PacketProtection {
  public:
   static constexpr std::size_t kTagSize = 16;  ///< [bytes]
@@ -42,12 +43,17 @@ class AeadProtection final : public PacketProtection {
   std::size_t seal(const Header& header,
                    std::span<const std::byte> plain,
                    std::span<std::byte> out) noexcept override;
-  tl::expected<std::size_t, Rejection> open(std::span<const std::byte> datagram,
+  tl::expected<Header, Rejection> read_header(
+      std::span<const std::byte> datagram) noexcept override;
+  tl::expected<std::size_t, Rejection> open(const Header& header,
+                                            std::span<const std::byte> datagram,
                                             std::span<std::byte> plain) noexcept override;
   void warm_up(std::span<const std::byte> plain, std::span<std::byte> room) noexcept override;
 
  private:
   struct Generation;
+  /// null: no keys of this id.
+  [[nodiscard]] Generation* keys_of(const Header& header) noexcept;
 
   std::unique_ptr<Generation> present_;
   std::unique_ptr<Generation> next_;     ///< null: no changeover

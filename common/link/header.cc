@@ -45,7 +45,7 @@ void pack_header(const Header& header, std::span<std::byte, kHeaderSize> out) no
   put(header.number, out.subspan(8, 8));
 }
 
-std::optional<Header> parse_header(std::span<const std::byte> datagram) noexcept {
+std::optional<Header> parse_clear_part(std::span<const std::byte> datagram) noexcept {
   if (datagram.size() < kHeaderSize || datagram.size() > kDatagramSizeMax) return std::nullopt;
   const auto first = std::to_integer<unsigned>(datagram[0]);
   const auto second = std::to_integer<unsigned>(datagram[1]);
@@ -55,11 +55,23 @@ std::optional<Header> parse_header(std::span<const std::byte> datagram) noexcept
   const Header header{.type = static_cast<PacketType>(first & 0x0FU),
                       .key = static_cast<std::uint8_t>(second >> 6U),
                       .length = take<std::uint16_t>(datagram.subspan(2, 2)),
-                      .connection = take<std::uint32_t>(datagram.subspan(4, 4)),
-                      .number = take<std::uint64_t>(datagram.subspan(8, 8))};
+                      .connection = 0,
+                      .number = 0};
   if (header.length != datagram.size() - kHeaderSize) return std::nullopt;
-  if (header.number > message::kNumberMax) return std::nullopt;
   return header;
+}
+
+std::optional<Header> parse_hidden_part(Header clear, HiddenPart hidden) noexcept {
+  clear.connection = take<std::uint32_t>(hidden.first(4));
+  clear.number = take<std::uint64_t>(hidden.subspan(4));
+  if (clear.number > message::kNumberMax) return std::nullopt;
+  return clear;
+}
+
+std::optional<Header> parse_header(std::span<const std::byte> datagram) noexcept {
+  const std::optional<Header> clear = parse_clear_part(datagram);
+  if (!clear) return std::nullopt;
+  return parse_hidden_part(*clear, datagram.first<kHeaderSize>().subspan<kClearSize>());
 }
 
 }  // namespace palp::link

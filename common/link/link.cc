@@ -188,7 +188,7 @@ void Link::drain(TimePoint now) noexcept {
       count(Rejection::Malformed);
       continue;
     }
-    const auto opened = open(std::span{datagram_}.first(received->size));
+    const auto opened = open(std::span{datagram_}.first(received->size), now);
     if (!opened) {
       count(opened.error());
       continue;
@@ -209,13 +209,17 @@ void Link::drain(TimePoint now) noexcept {
   }
 }
 
-tl::expected<Link::Opened, Rejection> Link::open(std::span<const std::byte> datagram) noexcept {
-  const std::optional<Header> header = parse_header(datagram);
-  if (!header) return tl::unexpected(Rejection::Malformed);
-  if (session_id_ == 0 || header->type != PacketType::Data ||
-      header->connection != receive_connection_) {
+tl::expected<Link::Opened, Rejection> Link::open(std::span<const std::byte> datagram,
+                                                 TimePoint now) noexcept {
+  if (session_id_ == 0) {
+    return tl::unexpected(parse_clear_part(datagram) ? Rejection::Foreign : Rejection::Malformed);
+  }
+  const auto header = protection_->read_header(datagram);
+  if (!header) return tl::unexpected(header.error());
+  if (header->type != PacketType::Data || header->connection != receive_connection_) {
     return tl::unexpected(Rejection::Foreign);
   }
+  transport_->recognised(now);
   switch (session_state_.received.judge(header->number)) {
     case ReplayWindow::Verdict::Seen:
       return tl::unexpected(Rejection::Replayed);
@@ -224,29 +228,19 @@ tl::expected<Link::Opened, Rejection> Link::open(std::span<const std::byte> data
     case ReplayWindow::Verdict::New:
       break;
   }
-  const auto size = protection_->open(datagram, plain_);
+  const auto size = protection_->open(*header, datagram, plain_);
   if (!size) return tl::unexpected(size.error());
   return Opened{header->number, header->key, *size};
 }
 
 void Link::count(Rejection rejection) noexcept {
-  switch (rejection) {
-    case Rejection::Malformed:
-      ++counters_.malformed;
-      return;
-    case Rejection::Foreign:
-      ++counters_.foreign;
-      return;
-    case Rejection::Replayed:
-      ++counters_.replayed;
-      return;
-    case Rejection::TooOld:
-      ++counters_.too_old;
-      return;
-    case Rejection::Forged:
-      ++counters_.forged;
-      return;
-  }
+  // In the order of Rejection.
+  constexpr std::array kCounters{&LinkHealth::malformed,
+                                 &LinkHealth::foreign,
+                                 &LinkHealth::replayed,
+                                 &LinkHealth::too_old,
+                                 &LinkHealth::forged};
+  ++(counters_.*kCounters[static_cast<std::size_t>(rejection)]);
 }
 
 void Link::take(const WireTelegram& wire, std::uint64_t number, TimePoint arrived_at) noexcept {

@@ -120,7 +120,8 @@ class Link {
   [[nodiscard]] WireTelegram compose(const Telegram& telegram, TimePoint now) const noexcept;
   void attach_older(WireTelegram& wire, TimePoint now) const noexcept;
   void drain(TimePoint now) noexcept;
-  [[nodiscard]] tl::expected<Opened, Rejection> open(std::span<const std::byte> datagram) noexcept;
+  [[nodiscard]] tl::expected<Opened, Rejection> open(std::span<const std::byte> datagram,
+                                                     TimePoint now) noexcept;
   void count(Rejection rejection) noexcept;
   void take(const WireTelegram& wire, std::uint64_t number, TimePoint arrived_at) noexcept;
   void accept(const WireTelegram& wire, std::uint64_t number, TimePoint arrived_at) noexcept;

@@ -17,11 +17,17 @@ std::size_t PlainProtection::seal(const Header& header,
   return kHeaderSize + plain.size();
 }
 
-tl::expected<std::size_t, Rejection> PlainProtection::open(std::span<const std::byte> datagram,
-                                                           std::span<std::byte> plain) noexcept {
+tl::expected<Header, Rejection> PlainProtection::read_header(
+    std::span<const std::byte> datagram) noexcept {
   const std::optional<Header> header = parse_header(datagram);
   if (!header) return tl::unexpected(Rejection::Malformed);
   if (header->key != 0) return tl::unexpected(Rejection::Foreign);
+  return *header;
+}
+
+tl::expected<std::size_t, Rejection> PlainProtection::open(const Header& /*header*/,
+                                                           std::span<const std::byte> datagram,
+                                                           std::span<std::byte> plain) noexcept {
   const std::span<const std::byte> payload = datagram.subspan(kHeaderSize);
   if (payload.size() > plain.size()) return tl::unexpected(Rejection::Malformed);
   std::copy(payload.begin(), payload.end(), plain.begin());

@@ -31,9 +31,15 @@ class PacketProtection {
   virtual std::size_t seal(const Header& header,
                            std::span<const std::byte> plain,
                            std::span<std::byte> out) noexcept = 0;
-  /// Writes the payload and changes no state: a refused datagram leaves no trace here.
+  /// What the header says; nothing of it is proven. Where it is hidden and not for us, connection
+  /// and number are anything.
+  virtual tl::expected<Header, Rejection> read_header(
+      std::span<const std::byte> datagram) noexcept = 0;
+  /// Writes the payload and changes no state: a refused datagram leaves no trace here. `header` is
+  /// what read_header() said of this datagram.
   /// @returns bytes written into `plain`.
-  virtual tl::expected<std::size_t, Rejection> open(std::span<const std::byte> datagram,
+  virtual tl::expected<std::size_t, Rejection> open(const Header& header,
+                                                    std::span<const std::byte> datagram,
                                                     std::span<std::byte> plain) noexcept = 0;
   /// Seals `plain` and opens it again under keys that protect nothing, in `room`: only so that code
   /// and tables are in the processor's caches when they are needed. Changes nothing that counts.
@@ -49,7 +55,10 @@ class PlainProtection final : public PacketProtection {
   std::size_t seal(const Header& header,
                    std::span<const std::byte> plain,
                    std::span<std::byte> out) noexcept override;
-  tl::expected<std::size_t, Rejection> open(std::span<const std::byte> datagram,
+  tl::expected<Header, Rejection> read_header(
+      std::span<const std::byte> datagram) noexcept override;
+  tl::expected<std::size_t, Rejection> open(const Header& header,
+                                            std::span<const std::byte> datagram,
                                             std::span<std::byte> plain) noexcept override;
 };
 

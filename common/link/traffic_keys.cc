@@ -11,7 +11,10 @@ class Cutter {
 
   AeadKey key() noexcept {
     const Secret<AeadKey::kKeySize> key{take<AeadKey::kKeySize>()};
-    return {.key = key, .salt = Secret<AeadKey::kSaltSize>{take<AeadKey::kSaltSize>()}};
+    const Secret<AeadKey::kSaltSize> salt{take<AeadKey::kSaltSize>()};
+    return {.key = key,
+            .salt = salt,
+            .header_key = Secret<AeadKey::kKeySize>{take<AeadKey::kKeySize>()}};
   }
   /// Never 0, which means "none" in a header.
   std::uint32_t connection() noexcept {

@@ -30,13 +30,14 @@ class Secret {
   std::array<std::byte, kSize> bytes_{};
 };
 
-/// Of AES-256-GCM, one direction.
+/// Of AES-256-GCM and of the mask over its headers, one direction.
 struct AeadKey {
   static constexpr std::size_t kKeySize = 32;   ///< [bytes]
   static constexpr std::size_t kSaltSize = 12;  ///< [bytes], as long as a nonce
 
   Secret<kKeySize> key;
   Secret<kSaltSize> salt;
+  Secret<kKeySize> header_key;  ///< of AES-256: hides connection id and number
 };
 
 /// Both directions of a plane, as one end uses them. A number must be sealed once at most under
@@ -52,7 +53,7 @@ struct TrafficKeys {
 struct SessionKeys {
   /// [bytes] to be exported from a handshake: two planes, two directions, two ids.
   static constexpr std::size_t kExportedSize =
-      4 * (AeadKey::kKeySize + AeadKey::kSaltSize) + 2 * sizeof(std::uint32_t);
+      4 * (2 * AeadKey::kKeySize + AeadKey::kSaltSize) + 2 * sizeof(std::uint32_t);
 
   TrafficKeys data;
   TrafficKeys control;

@@ -26,6 +26,8 @@ class Transport {
   /// @returns nullopt: none waiting.
   virtual std::optional<Datagram> receive(std::span<std::byte, kDatagramSizeMax> buffer,
                                           TimePoint now) noexcept = 0;
+  /// What receive() gave last bears the connection id of the session. Nothing more is known of it.
+  virtual void recognised(TimePoint /*now*/) noexcept {}
   /// In spare time: touches what receive() and send() will need. Takes nothing, sends nothing.
   virtual void warm_up() noexcept {}
 };

@@ -20,6 +20,7 @@ class ImpairedTransport final : public link::Transport {
   bool send(std::span<const std::byte> datagram, TimePoint now) noexcept override;
   std::optional<link::Datagram> receive(std::span<std::byte, link::kDatagramSizeMax> buffer,
                                         TimePoint now) noexcept override;
+  void recognised(TimePoint now) noexcept override { inner_->recognised(now); }
   void warm_up() noexcept override { inner_->warm_up(); }
 
   [[nodiscard]] const Channel& channel() const noexcept { return channel_; }

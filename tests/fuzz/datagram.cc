@@ -5,11 +5,14 @@
 #include <vector>
 
 #include "common/core/check.h"
+#include "common/link/aead_protection.h"
 #include "common/link/codec_control.h"
 #include "common/link/codec_wire.h"
 #include "common/link/packet_protection.h"
 #include "common/link/transport.h"
 #include "tests/common/link/protobuf_codec.h"
+#include "tests/common/link/some_keys.h"
+#include "tests/common/link/whole_open.h"
 #include "tests/common/message/same.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -25,7 +28,8 @@ bool equal(std::span<const std::byte> a, std::span<const std::byte> b) {
 void header_laws(std::span<const std::byte> datagram) {
   const auto header = parse_header(datagram);
   std::array<std::byte, kDatagramSizeMax> plain{};
-  const auto opened = PlainProtection{}.open(datagram, plain);
+  PlainProtection protection;
+  const auto opened = whole_open(protection, datagram, plain);
   if (!header) {
     PALP_CHECK(!opened, "nothing opens without a header");
     return;
@@ -35,8 +39,15 @@ void header_laws(std::span<const std::byte> datagram) {
   PALP_CHECK(equal(packed, datagram.first(kHeaderSize)), "a header packs as it was");
   if (!opened) return;
   std::array<std::byte, kHeaderSize + kDatagramSizeMax> sealed{};
-  const std::size_t size = PlainProtection{}.seal(*header, std::span{plain}.first(*opened), sealed);
+  const std::size_t size = protection.seal(*header, std::span{plain}.first(*opened), sealed);
   PALP_CHECK(equal(std::span{sealed}.first(size), datagram), "what opens seals as it was");
+}
+
+/// Nobody has sealed it under these keys: its header may say anything, but nothing opens.
+void hidden_header_laws(std::span<const std::byte> datagram) {
+  static AeadProtection protection{some_keys(1, Role::Patient).data};
+  std::array<std::byte, kDatagramSizeMax> plain{};
+  PALP_CHECK(!whole_open(protection, datagram, plain), "a tag cannot be guessed");
 }
 
 /// Said here once more, so that the limits do not vouch for themselves.
@@ -129,6 +140,7 @@ void bye_laws(std::span<const std::byte> bytes) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto datagram = palp::fuzz::as_bytes(data, size);
   palp::link::header_laws(datagram);
+  palp::link::hidden_header_laws(datagram);
   const auto content = datagram.subspan(std::min(size, palp::link::kHeaderSize));
   palp::link::telegram_laws(content);
   palp::link::hello_laws(content);

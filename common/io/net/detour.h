@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 
 #include "common/core/time.h"
 #include "common/io/net/endpoint.h"
@@ -33,10 +32,9 @@ class Detour {
   void begin_tick(TimePoint now) noexcept {
     if (!straight_at_) straight_at_ = now;
   }
-  /// A telegram of the peer's own address. It is not opened here, but has to be of the session.
-  void heard_straight(std::span<const std::byte> datagram, TimePoint now) noexcept {
-    if (!connection_ || connection_of(datagram) == connection_) straight_at_ = now;
-  }
+  /// A telegram of the peer's own address that bears the connection id of the session. It may be a
+  /// copy of one that came by another way.
+  void heard_straight(TimePoint now) noexcept { straight_at_ = now; }
   [[nodiscard]] TimePoint straight_at() const noexcept {
     return straight_at_.value_or(TimePoint{});
   }
@@ -50,14 +48,13 @@ class Detour {
     return now - arrived_at > kSilence ? Fate::Drop : Fate::Wait;
   }
   /// One that was taken; io has opened it.
-  void heard(const Endpoint& from, std::span<const std::byte> datagram) noexcept {
-    connection_ = connection_of(datagram);
+  void heard(const Endpoint& from, std::size_t size) noexcept {
     if (!(places_[0].to == from) && !(places_[1].to == from)) {
       places_[1] = places_[0];
       places_[0] = {.to = from};
     }
     Place& place = places_[places_[0].to == from ? 0 : 1];
-    place.credit = std::min(place.credit + kShare * datagram.size(), kCreditMax);
+    place.credit = std::min(place.credit + kShare * size, kCreditMax);
   }
   /// Where a copy of `size` bytes may go, if it may: then it counts. `at`: below kPlaces.
   [[nodiscard]] const Endpoint* spend(std::size_t at, std::size_t size, TimePoint now) noexcept {
@@ -75,23 +72,12 @@ class Detour {
     Endpoint to;
     std::size_t credit{};  ///< [bytes]
   };
-  using Connection = std::array<std::byte, 4>;  ///< as in the header (WIRE.md)
-
-  [[nodiscard]] static std::optional<Connection> connection_of(
-      std::span<const std::byte> datagram) noexcept {
-    constexpr std::size_t kAt = 4;
-    Connection connection{};
-    if (datagram.size() < kAt + connection.size()) return std::nullopt;
-    std::copy_n(datagram.begin() + kAt, connection.size(), connection.begin());
-    return connection;
-  }
   [[nodiscard]] bool silent(TimePoint now) const noexcept {
     return straight_at_ && now - *straight_at_ >= kSilence;
   }
 
   Endpoint former_;
   std::optional<TimePoint> straight_at_;
-  std::optional<Connection> connection_;
   std::array<Place, kPlaces> places_;
 };
 

@@ -224,7 +224,7 @@ std::optional<link::Datagram> UdpSocket::receive(
       ++counting.without_stamp;
     }
     if (size > 0 && bytes.front() == kDataFirstByte) {
-      detour_.heard_straight(bytes, now);
+      straight_ = true;
       std::memcpy(buffer.data(), bytes.data(), bytes.size());
       return link::Datagram{.size = size, .arrived_at = arrived_at};
     }
@@ -250,13 +250,18 @@ std::optional<link::Datagram> UdpSocket::take_detour(
                                .arrived_at = std::min(waiting->arrived_at, now)};
     if (fate == Detour::Fate::Take) {
       // Unless it was proven meanwhile.
-      if (!(waiting->from == peer_)) detour_.heard(waiting->from, waiting->datagram());
+      if (!(waiting->from == peer_)) detour_.heard(waiting->from, waiting->size);
+      straight_ = false;
       std::ranges::copy(waiting->datagram(), buffer.begin());
     }
     (void)inbox_.detours.pop();
     if (fate == Detour::Fate::Take) return taken;
   }
   return std::nullopt;
+}
+
+void UdpSocket::recognised(TimePoint now) noexcept {
+  if (straight_) detour_.heard_straight(now);
 }
 
 void UdpSocket::warm_up() noexcept {

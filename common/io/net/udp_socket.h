@@ -58,6 +58,8 @@ class UdpSocket final : public link::Transport {
   /// kernel's stamp, never after `now`.
   std::optional<link::Datagram> receive(std::span<std::byte, link::kDatagramSizeMax> buffer,
                                         TimePoint now) noexcept override;
+  /// Where it came over the peer's own address, that one delivers.
+  void recognised(TimePoint now) noexcept override;
   void warm_up() noexcept override;
 
   /// io, before rt gets the socket: between bind and connect the kernel gave it datagrams of
@@ -88,6 +90,7 @@ class UdpSocket final : public link::Transport {
   SideInbox& inbox_;
   std::unique_ptr<Batch> batch_;
   Detour detour_;
+  bool straight_{};  ///< what receive() gave last came from the peer's address
   TimePoint tick_{TimePoint::min()};
   std::size_t taken_{};  ///< in this tick
   int errors_{};         ///< in this tick

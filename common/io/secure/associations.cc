@@ -106,32 +106,38 @@ void Associations::collect(Attempt& attempt, TimePoint now) {
   newly_made_.push_back(made_);
 }
 
+Association* Associations::sender_of(std::span<const std::byte> datagram, link::Header& header) {
+  for (Association& one : kept_) {
+    const auto read = one.control->read_header(datagram);
+    if (!read || read->connection != one.proof.keys.receive_connection) continue;
+    header = *read;
+    return &one;
+  }
+  return nullptr;
+}
+
 /// Whoever copies words and is faster than their sender must not use up their numbers: those of
 /// control count from the peer's address only. The answer to a question about an address comes from
 /// there, so it may come from anywhere; it is good for nothing but what its nonce was drawn for.
 std::optional<Associations::Opened> Associations::open(std::span<const std::byte> datagram,
                                                        const Endpoint& from,
                                                        TimePoint now) {
-  const std::optional<link::Header> header = link::parse_header(datagram);
-  if (!header) return std::nullopt;
-  const auto found = std::ranges::find_if(kept_, [&](const Association& one) {
-    return one.proof.keys.receive_connection == header->connection;
-  });
-  if (found == kept_.end()) return std::nullopt;
-  const bool answer =
-      credentials_.role() == Role::Patient && header->type == link::PacketType::Path;
-  const bool is_new = found->received.judge(header->number) == link::ReplayWindow::Verdict::New;
+  link::Header header;
+  Association* found = sender_of(datagram, header);
+  if (found == nullptr) return std::nullopt;
+  const bool answer = credentials_.role() == Role::Patient && header.type == link::PacketType::Path;
+  const bool is_new = found->received.judge(header.number) == link::ReplayWindow::Verdict::New;
   if (!answer && (!is_new || !(from == found->peer))) return std::nullopt;
   std::array<std::byte, link::kDatagramSizeMax> plain{};
-  const auto size = found->control->open(datagram, plain);
+  const auto size = found->control->open(header, datagram, plain);
   if (!size) return std::nullopt;
-  if (!answer) found->received.mark(header->number);
+  if (!answer) found->received.mark(header.number);
   found->heard = true;
   found->heard_at = now;
-  Opened opened{.association = &*found,
+  Opened opened{.association = found,
                 .datagram = std::vector<std::byte>(link::kHeaderSize + *size)};
   link::PlainProtection frame;
-  frame.seal(*header, std::span{plain}.first(*size), opened.datagram);
+  frame.seal(header, std::span{plain}.first(*size), opened.datagram);
   return opened;
 }
 

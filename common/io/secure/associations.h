@@ -82,6 +82,9 @@ class Associations {
   [[nodiscard]] std::optional<DtlsFailure> take_failure();
 
  private:
+  /// Whose header says so under its own mask. nullptr: none's.
+  [[nodiscard]] Association* sender_of(std::span<const std::byte> datagram, link::Header& header);
+
   struct Attempt {
     Endpoint peer;
     std::optional<ClientRandom> random;  ///< patient: tells repetitions from another attempt

@@ -14,6 +14,7 @@
 
 #include "common/core/whole_file.h"
 #include "common/io/process/system_text.h"
+#include "common/io/secure/dtls_failure.h"
 #include "common/io/secure/openssl_context.h"
 #include "common/io/secure/openssl_handles.h"
 #include "common/io/secure/site_certificate.h"
@@ -93,6 +94,32 @@ unsigned server_key(SSL* ssl, const char* identity, unsigned char* out, unsigned
   return std::strcmp(identity, kBenchIdentity) == 0 ? give_key(ssl, out, size_max) : 0;
 }
 
+/// As RFC 7301 has it: the name behind its length.
+std::vector<unsigned char> version_offered() {
+  const std::string name = protocol_name();
+  std::vector<unsigned char> offered{static_cast<unsigned char>(name.size())};
+  offered.insert(offered.end(), name.begin(), name.end());
+  return offered;
+}
+
+/// A surgeon that offers other versions only gets an alert that says so.
+int choose_version(SSL* /*ssl*/,
+                   const unsigned char** out,
+                   unsigned char* size,
+                   const unsigned char* theirs,
+                   unsigned theirs_size,
+                   void* /*data*/) {
+  const std::vector<unsigned char> ours = version_offered();
+  unsigned char* chosen = nullptr;
+  if (SSL_select_next_proto(
+          &chosen, size, theirs, theirs_size, ours.data(), static_cast<unsigned>(ours.size())) !=
+      OPENSSL_NPN_NEGOTIATED) {
+    return SSL_TLSEXT_ERR_ALERT_FATAL;
+  }
+  *out = chosen;  // within theirs
+  return SSL_TLSEXT_ERR_OK;
+}
+
 std::unique_ptr<Credentials::Context> make_context(Role role) {
   auto context = std::make_unique<Credentials::Context>();
   context->peer = role == Role::Surgeon ? Role::Patient : Role::Surgeon;
@@ -110,6 +137,9 @@ std::unique_ptr<Credentials::Context> make_context(Role role) {
                           SSL_OP_NO_ENCRYPT_THEN_MAC);
   SSL_CTX_set_session_cache_mode(ssl, SSL_SESS_CACHE_OFF);
   SSL_CTX_set1_groups_list(ssl, "X25519:P-256");
+  const std::vector<unsigned char> offered = version_offered();
+  SSL_CTX_set_alpn_protos(ssl, offered.data(), static_cast<unsigned>(offered.size()));
+  SSL_CTX_set_alpn_select_cb(ssl, choose_version, nullptr);
   return context;
 }
 

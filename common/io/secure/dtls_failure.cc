@@ -4,6 +4,8 @@
 #include <openssl/ssl.h>
 #include <openssl/x509_vfy.h>
 
+#include "common/link/codec_control.h"
+
 namespace palp::io {
 namespace {
 
@@ -53,6 +55,14 @@ DtlsFailure failure_of_certificate(long verdict) {
   }
 }
 
+std::string protocol_name() { return "palp/" + std::to_string(link::kProtocolVersion); }
+
+DtlsFailure failure_of_version() {
+  return {"the peer does not speak " + protocol_name() +
+              ", the protocol of this program: install the same version of Palp at both sites",
+          false};
+}
+
 DtlsFailure failure_of_handshake(unsigned long error) {
   switch (ERR_GET_REASON(error)) {
     case SSL_R_TLSV1_ALERT_UNKNOWN_CA:
@@ -73,6 +83,9 @@ DtlsFailure failure_of_handshake(unsigned long error) {
           "the peer refuses this site's certificate: its own log says why; is it of this role and "
           "in the peer's peers.txt?",
           false};
+    case SSL_R_NO_APPLICATION_PROTOCOL:
+    case SSL_R_TLSV1_ALERT_NO_APPLICATION_PROTOCOL:
+      return failure_of_version();
     case SSL_R_NO_SHARED_CIPHER:
     case SSL_R_SSLV3_ALERT_HANDSHAKE_FAILURE:
       return {kTwoKinds, false};

@@ -14,6 +14,11 @@ struct DtlsFailure {
 
 /// `verdict`: an X509_V_ERR_..., but not X509_V_OK, about the peer's certificate.
 [[nodiscard]] DtlsFailure failure_of_certificate(long verdict);
+/// How our protocol names itself in a handshake (RFC 7301): `palp/` and its version. Sites whose
+/// names differ would not understand each other's first word.
+[[nodiscard]] std::string protocol_name();
+/// The peer offers or has chosen no version that we speak.
+[[nodiscard]] DtlsFailure failure_of_version();
 /// `error`: of OpenSSL's queue; 0: none.
 [[nodiscard]] DtlsFailure failure_of_handshake(unsigned long error);
 

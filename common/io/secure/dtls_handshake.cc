@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -249,6 +250,13 @@ void DtlsHandshake::finish() {
   state_ = State::Failed;
   if (SSL_get_extms_support(ssl) != 1) {  // RFC 7627: else exported keys may not be unique
     failure_ = {"the peer offers no extended master secret", false};
+    return;
+  }
+  const unsigned char* name = nullptr;  // a peer that knows no names chooses none
+  unsigned name_size = 0;
+  SSL_get0_alpn_selected(ssl, &name, &name_size);
+  if (std::string_view{reinterpret_cast<const char*>(name), name_size} != protocol_name()) {
+    failure_ = failure_of_version();
     return;
   }
   if (parts_->certificates) {

@@ -61,7 +61,7 @@ void DtlsSession::hear_sealed(std::span<const std::byte> datagram,
                               const Endpoint& from,
                               TimePoint now,
                               SessionEndpointOutput& out) {
-  const std::optional<link::Header> header = link::parse_header(datagram);
+  const std::optional<link::Header> header = link::parse_clear_part(datagram);
   if (!header) {
     ++malformed_;
     return;
@@ -250,16 +250,18 @@ Roaming::Straight DtlsSession::straight(TimePoint now) const {
 bool DtlsSession::hear_data(std::span<const std::byte> datagram,
                             const Endpoint& from,
                             TimePoint now) {
-  const link::Header header = *link::parse_header(datagram);
-  const bool follows = config_.session.role == Role::Patient && opener_ != nullptr &&
-                       header.connection == data_connection_;
+  tl::expected<link::Header, link::Rejection> header = tl::unexpected(link::Rejection::Foreign);
+  if (config_.session.role == Role::Patient && opener_ != nullptr) {
+    header = opener_->read_header(datagram);
+  }
   std::array<std::byte, link::kDatagramSizeMax> plain{};
-  if (!follows || !roaming_.counts(header.number, from, straight(now)) ||
-      !opener_->open(datagram, plain)) {
+  if (!header || header->connection != data_connection_ ||
+      !roaming_.counts(header->number, from, straight(now)) ||
+      !opener_->open(*header, datagram, plain)) {
     ++foreign_;
     return false;
   }
-  roaming_.note(header.number, from, datagram.size(), straight(now), now);
+  roaming_.note(header->number, from, datagram.size(), straight(now), now);
   return true;
 }
 

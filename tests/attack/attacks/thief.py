@@ -55,7 +55,7 @@ class Observer:
         self.surgeon = source
         self._later(now + DELAY_S, self.back, datagram, self.patient)
         lead = self.lead(now - self._began) if self.robs else None
-        if lead is not None and wire.read_header(datagram):
+        if lead is not None and wire.kind_of(datagram) is not None:
             self._later(now + DELAY_S - lead, self.thief, datagram, self.patient)
 
     def _from_patient(self, datagram: bytes, now: float) -> None:
@@ -64,8 +64,7 @@ class Observer:
             self.seen["telegrams to the surgeon"] += datagram[0] == 0x80 | wire.DATA
 
     def _at_thief(self, datagram: bytes, now: float) -> None:
-        head = wire.read_header(datagram)
-        if head and head.kind == wire.PATH:
+        if wire.kind_of(datagram) == wire.PATH:
             self.asked_at.append(now)
             self.seen["questions"] += 1
             self._later(now, self.front, datagram, self.surgeon)  # The hand-over.

@@ -31,6 +31,8 @@ def _context(identity: Identity | None) -> SSL.Context:
     context = SSL.Context(SSL.DTLS_METHOD)
     context.set_options(_NO_QUERY_MTU | _NO_TICKET)
     context.set_cipher_list(b"ECDHE+AESGCM")
+    context.set_alpn_protos([wire.PROTOCOL_NAME])
+    context.set_alpn_select_callback(lambda _, offered: wire.PROTOCOL_NAME)
     context.set_verify(SSL.VERIFY_PEER, lambda *_: True)
     if identity is not None:
         pem = crypto.FILETYPE_PEM

@@ -181,8 +181,8 @@ class Site:
                 continue
             if is_record(datagram):
                 self.on_record(datagram, source)
-            elif head := wire.read_header(datagram):
-                self.on_ours(head, datagram, source)
+            elif (kind := wire.kind_of(datagram)) is not None:
+                self.on_ours(kind, datagram, source)
 
     def on_record(self, datagram: bytes, source: Address) -> None:
         handshake = self.handshakes.get(source)
@@ -202,29 +202,28 @@ class Site:
             if self.surgeon:
                 self.send_hello(self.keys, source)
 
-    def on_ours(self, head: wire.Header, datagram: bytes, source: Address) -> None:
+    def on_ours(self, kind: int, datagram: bytes, source: Address) -> None:
         session = self.session
-        if head.kind == wire.DATA:
-            if session and head.connection == self.connection_in:
-                self.on_data(head, session.keys.data_in.open(datagram))
+        if kind == wire.DATA:
+            if session:
+                self.on_data(session.keys.data_in.open(datagram, self.connection_in))
             return
         for keys in {id(k): k for k in (self.keys, session and session.keys) if k}.values():
-            if head.connection == keys.control_id_in and (
-                message := keys.control_in.open(datagram)
-            ) is not None:
-                self.on_control(head.kind, message, keys, source)
+            if opened := keys.control_in.open(datagram, keys.control_id_in):
+                self.on_control(kind, opened[1], keys, source)
                 return
 
-    def on_data(self, head: wire.Header, message: bytes | None) -> None:
-        if message is None:
+    def on_data(self, opened: tuple[int, bytes] | None) -> None:
+        if opened is None:
             self.counts["forged"] += 1
             return
+        number, message = opened
         told = decode("Telegram", message)
         session = self.session
         session.telegrams += 1
-        if head.number > session.heard.newest:
+        if number > session.heard.newest:
             self.peer_site, self.peer_sample = told["site"], told["sample"]
-        session.heard.note(head.number, told["sent_at_ns"], time.monotonic())
+        session.heard.note(number, told["sent_at_ns"], time.monotonic())
         self.counts["telegrams"] += 1
 
     def on_control(self, kind: int, message: bytes, keys: wire.Keys, source: Address) -> None:

@@ -6,13 +6,17 @@ import struct
 from dataclasses import dataclass, field
 
 from cryptography.exceptions import InvalidTag
+from cryptography.hazmat.primitives.ciphers import Cipher, algorithms, modes
 from cryptography.hazmat.primitives.ciphers.aead import AESGCM
 
-PROTOCOL_VERSION = 6
+PROTOCOL_VERSION = 7
+PROTOCOL_NAME = b"palp/7"
 EXPORTER_LABEL = b"EXPORTER-palp-session"
 
 DATA, CONTROL, PATH, CLOSE = range(4)
 HEADER_BYTES = 16
+CLEAR_BYTES = 4
+TAG_BYTES = 16
 DATAGRAM_BYTES_MAX = 1200
 NUMBER_MAX = 1 << 53
 
@@ -26,20 +30,11 @@ def header(kind: int, key_id: int, length: int, connection: int, number: int) ->
     )
 
 
-@dataclass(frozen=True)
-class Header:
-    kind: int
-    key_id: int
-    connection: int
-    number: int
-
-
-def read_header(datagram: bytes) -> Header | None:
+def kind_of(datagram: bytes) -> int | None:
     """None: not one of ours (DTLS, or broken)."""
-    if len(datagram) < HEADER_BYTES or datagram[0] >> 4 != 8:
+    if len(datagram) < HEADER_BYTES + TAG_BYTES or datagram[0] >> 4 != 8:
         return None
-    first, second, _, connection, number = struct.unpack_from(">BBHIQ", datagram)
-    return Header(first & 0xF, second >> 6, connection, number)
+    return datagram[0] & 0xF
 
 
 def path_message(what: int, rest: bytes) -> bytes:
@@ -56,15 +51,17 @@ def path_answer(message: bytes) -> bytes | None:
 
 @dataclass
 class Sealer:
-    """One direction of one plane: a key, a salt, and the count of what was sealed."""
+    """One direction of one plane: two keys, a salt, and the count of what was sealed."""
 
     key: bytes
     salt: bytes
+    header_key: bytes
     number: int = 0
     _gcm: AESGCM = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         self._gcm = AESGCM(self.key)
+        self._block = Cipher(algorithms.AES(self.header_key), modes.ECB()).encryptor()
 
     def _nonce(self, number: int) -> bytes:
         last = int.from_bytes(self.salt[4:], "big") ^ number
@@ -74,18 +71,29 @@ class Sealer:
         head = header(kind, key_id, len(message) + 16, connection, self.number)
         sealed = head + self._gcm.encrypt(self._nonce(self.number), message, head)
         self.number += 1
-        return sealed
+        return self._masked(sealed)
 
-    def open(self, datagram: bytes) -> bytes | None:
-        """None: the tag does not fit."""
-        head, number = datagram[:HEADER_BYTES], int.from_bytes(datagram[8:16], "big")
+    def _masked(self, datagram: bytes) -> bytes:
+        """With connection and number hidden, or shown again."""
+        mask = self._block.update(datagram[-TAG_BYTES:])
+        part = bytes(a ^ b for a, b in zip(datagram[CLEAR_BYTES:HEADER_BYTES], mask))
+        return datagram[:CLEAR_BYTES] + part + datagram[HEADER_BYTES:]
+
+    def open(self, datagram: bytes, connection: int) -> tuple[int, bytes] | None:
+        """Number and message. None: of another connection, or the tag does not fit."""
+        shown = self._masked(datagram)
+        told, number = struct.unpack_from(">IQ", shown, CLEAR_BYTES)
+        if told != connection:
+            return None
         try:
-            return self._gcm.decrypt(self._nonce(number), datagram[HEADER_BYTES:], head)
+            head, rest = shown[:HEADER_BYTES], shown[HEADER_BYTES:]
+            return number, self._gcm.decrypt(self._nonce(number), rest, head)
         except InvalidTag:
             return None
 
 
-EXPORTED_BYTES = 4 * 44 + 8
+KEY_BYTES = 32 + 12 + 32
+EXPORTED_BYTES = 4 * KEY_BYTES + 8
 
 
 @dataclass
@@ -96,9 +104,9 @@ class Keys:
     surgeon: bool
 
     def __post_init__(self) -> None:
-        parts = [self.exported[44 * i : 44 * i + 44] for i in range(4)]
-        sealers = [Sealer(part[:32], part[32:]) for part in parts]
-        ids = struct.unpack(">II", self.exported[176:184])
+        parts = [self.exported[KEY_BYTES * i :][:KEY_BYTES] for i in range(4)]
+        sealers = [Sealer(part[:32], part[32:44], part[44:]) for part in parts]
+        ids = struct.unpack(">II", self.exported[4 * KEY_BYTES :])
         own, peer = (0, 1) if self.surgeon else (1, 0)
         self.data_out, self.data_in = sealers[own], sealers[peer]
         self.control_out, self.control_in = sealers[2 + own], sealers[2 + peer]

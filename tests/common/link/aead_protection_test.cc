@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "tests/common/link/some_keys.h"
+#include "tests/common/link/whole_open.h"
 
 namespace palp::link {
 namespace {
@@ -28,7 +30,7 @@ struct Ends {
   Bytes room = Bytes(2000);
 
   tl::expected<std::size_t, Rejection> at_patient(std::span<const std::byte> datagram) {
-    return patient.open(datagram, room);
+    return whole_open(patient, datagram, room);
   }
 };
 
@@ -39,7 +41,10 @@ RC_GTEST_PROP(AeadProtectionTest, OpensWhatThePeerSealed, (std::uint32_t number)
   Ends ends;
   const Bytes datagram = sealed(ends.surgeon, {.connection = 7, .number = number}, plain);
   RC_ASSERT(datagram.size() == kHeaderSize + plain.size() + AeadProtection::kTagSize);
-  RC_ASSERT(parse_header(datagram)->number == number);
+  const auto header = ends.patient.read_header(datagram);
+  RC_ASSERT(header.has_value());
+  RC_ASSERT(header->number == number);
+  RC_ASSERT(header->connection == 7U);
   const auto size = ends.at_patient(datagram);
   RC_ASSERT(size.has_value());
   RC_ASSERT(std::ranges::equal(plain, std::span{ends.room}.first(*size)));
@@ -105,19 +110,19 @@ TEST(AeadProtectionTest, EveryTruncationAndEveryGluedByteIsRefused) {
 TEST(AeadProtectionTest, OwnWordsSentBackAreRefused) {
   Ends ends;
   const Bytes datagram = sealed(ends.patient, {.number = 5}, Bytes(20));
-  EXPECT_EQ(ends.at_patient(datagram).error(), Rejection::Forged);
+  EXPECT_FALSE(ends.at_patient(datagram));
 }
 
 TEST(AeadProtectionTest, TheOtherPlaneIsRefused) {
   AeadProtection control{some_keys(1, Role::Surgeon).control};
   Ends ends;
-  EXPECT_EQ(ends.at_patient(sealed(control, {.number = 5}, Bytes(20))).error(), Rejection::Forged);
+  EXPECT_FALSE(ends.at_patient(sealed(control, {.number = 5}, Bytes(20))));
 }
 
 TEST(AeadProtectionTest, AnotherHandshakeIsRefused) {
   AeadProtection before{some_keys(2, Role::Surgeon).data};
   Ends ends;
-  EXPECT_EQ(ends.at_patient(sealed(before, {.number = 5}, Bytes(20))).error(), Rejection::Forged);
+  EXPECT_FALSE(ends.at_patient(sealed(before, {.number = 5}, Bytes(20))));
 }
 
 TEST(AeadProtectionTest, TheSamePlainTextNeverLooksTheSame) {
@@ -130,6 +135,42 @@ TEST(AeadProtectionTest, TheSamePlainTextNeverLooksTheSame) {
                                   std::span{second}.subspan(kHeaderSize, plain.size())));
   for (const Bytes& one : {first, second}) {
     EXPECT_FALSE(std::ranges::search(one, std::span{plain}.first(4)).begin() != one.end());
+  }
+}
+
+/// How many bits of the hidden part of two headers differ.
+int bits_apart(const Bytes& a, const Bytes& b) {
+  int count = 0;
+  for (std::size_t i = kClearSize; i < kHeaderSize; ++i) {
+    count += std::popcount(std::to_integer<unsigned>(a[i] ^ b[i]));
+  }
+  return count;
+}
+
+// Of 96 bits half differ, as of any two strangers' datagrams: 48, with a standard deviation of 4.9
+// for one pair and 0.1 for the mean of these.
+TEST(AeadProtectionTest, ConnectionAndNumberCannotBeFollowed) {
+  Ends ends;
+  constexpr int kPairs = 2000;
+  double apart = 0;
+  Bytes before = sealed(ends.surgeon, {.connection = 7, .number = 0}, Bytes(40));
+  for (std::uint64_t number = 1; number <= kPairs; ++number) {
+    Bytes now = sealed(ends.surgeon, {.connection = 7, .number = number}, Bytes(40));
+    apart += bits_apart(before, now);
+    before = std::move(now);
+  }
+  EXPECT_NEAR(apart / kPairs, 48, 0.6);
+}
+
+TEST(AeadProtectionTest, TheWholeTagMakesTheMask) {
+  Ends ends;
+  const Bytes datagram = sealed(ends.surgeon, {.connection = 7, .number = 5}, Bytes(40));
+  EXPECT_EQ(ends.patient.read_header(datagram)->number, 5U);
+  for (std::size_t bit = 0; bit < 8 * AeadProtection::kTagSize; ++bit) {
+    Bytes spoiled = datagram;
+    spoiled[spoiled.size() - 1 - bit / 8] ^= static_cast<std::byte>(1U << bit % 8);
+    const auto header = ends.patient.read_header(spoiled);
+    EXPECT_FALSE(header && header->connection == 7U);
   }
 }
 
@@ -146,7 +187,8 @@ TEST(AeadProtectionTest, SealsNothingWhereTheRoomIsTooSmall) {
   EXPECT_EQ(protection.seal({.number = 1}, Bytes(21), out), 0U);
   EXPECT_EQ(protection.seal({.number = 1}, Bytes(20), out), out.size());
   Bytes room(19);
-  EXPECT_EQ(protection.open(out, room).error(), Rejection::Malformed);
+  AeadProtection peer{some_keys(1, Role::Patient).data};
+  EXPECT_EQ(whole_open(peer, out, room).error(), Rejection::Malformed);
 }
 
 /// A changeover from handshake 1 to handshake 2, seen from `role`.
@@ -162,30 +204,30 @@ TEST(ChangeoverTest, BothGenerationsOpenAndTheLeaderSealsWithTheNewer) {
 
   const Bytes late = sealed(surgeon_before, {.number = 10}, Bytes(20));
   const Bytes still = sealed(patient, {.number = 0}, Bytes(20));
-  EXPECT_EQ(parse_header(still)->key, 0U) << "the peer may not have the newer keys yet";
-  EXPECT_TRUE(surgeon.open(still, room));
+  EXPECT_EQ(parse_clear_part(still)->key, 0U) << "the peer may not have the newer keys yet";
+  EXPECT_TRUE(whole_open(surgeon, still, room));
 
   const Bytes newer = sealed(surgeon, {.number = 11}, Bytes(20));
-  EXPECT_EQ(parse_header(newer)->key, 1U);
-  ASSERT_TRUE(patient.open(newer, room));
-  EXPECT_EQ(parse_header(sealed(patient, {.number = 1}, Bytes(20)))->key, 1U);
-  EXPECT_TRUE(patient.open(late, room)) << "it was under way during the changeover";
+  EXPECT_EQ(parse_clear_part(newer)->key, 1U);
+  ASSERT_TRUE(whole_open(patient, newer, room));
+  EXPECT_EQ(parse_clear_part(sealed(patient, {.number = 1}, Bytes(20)))->key, 1U);
+  EXPECT_TRUE(whole_open(patient, late, room)) << "it was under way during the changeover";
 }
 
 TEST(ChangeoverTest, ForgedTrafficOfTheNewerGenerationMovesNothing) {
   AeadProtection patient = changing(Role::Patient, Lead::Peer);
   AeadProtection stranger{some_keys(3, Role::Surgeon, 1).data};
   Bytes room(2000);
-  EXPECT_EQ(patient.open(sealed(stranger, {.number = 1}, Bytes(20)), room).error(),
-            Rejection::Forged);
-  EXPECT_EQ(parse_header(sealed(patient, {.number = 1}, Bytes(20)))->key, 0U);
+  EXPECT_FALSE(whole_open(patient, sealed(stranger, {.number = 1}, Bytes(20)), room));
+  EXPECT_EQ(parse_clear_part(sealed(patient, {.number = 1}, Bytes(20)))->key, 0U);
 }
 
 TEST(ChangeoverTest, WhatIsOverDoesNotOpenAnyMore) {
   AeadProtection after{some_keys(2, Role::Patient, 1).data};
   AeadProtection before{some_keys(1, Role::Surgeon, 0).data};
   Bytes room(2000);
-  EXPECT_EQ(after.open(sealed(before, {.number = 1}, Bytes(20)), room).error(), Rejection::Foreign);
+  EXPECT_EQ(whole_open(after, sealed(before, {.number = 1}, Bytes(20)), room).error(),
+            Rejection::Foreign);
 }
 
 }  // namespace

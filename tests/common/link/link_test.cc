@@ -305,9 +305,15 @@ class TaggedProtection final : public PacketProtection {
     std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(body), kTag, sum(out.first(body)));
     return body + kTag;
   }
-  tl::expected<std::size_t, Rejection> open(std::span<const std::byte> datagram,
+  tl::expected<Header, Rejection> read_header(
+      std::span<const std::byte> datagram) noexcept override {
+    const auto header = parse_header(datagram);
+    if (!header || header->length < kTag) return tl::unexpected(Rejection::Malformed);
+    return *header;
+  }
+  tl::expected<std::size_t, Rejection> open(const Header& /*header*/,
+                                            std::span<const std::byte> datagram,
                                             std::span<std::byte> plain) noexcept override {
-    if (datagram.size() < kHeaderSize + kTag) return tl::unexpected(Rejection::Malformed);
     const auto body = datagram.first(datagram.size() - kTag);
     for (const std::byte tag : datagram.last(kTag)) {
       if (tag != sum(body)) return tl::unexpected(Rejection::Forged);

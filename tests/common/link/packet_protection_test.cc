@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "tests/common/link/whole_open.h"
+
 namespace palp::link {
 namespace {
 
@@ -23,7 +25,7 @@ RC_GTEST_PROP(PlainProtectionTest, OpensWhatItSealed, ()) {
   RC_ASSERT(header.has_value());
   RC_ASSERT(header->number == 9U);
   std::vector<std::byte> opened(2000);
-  const auto opened_size = protection.open(datagram, opened);
+  const auto opened_size = whole_open(protection, datagram, opened);
   RC_ASSERT(opened_size.has_value());
   RC_ASSERT(std::equal(plain.begin(),
                        plain.end(),
@@ -45,9 +47,11 @@ TEST(PlainProtectionTest, RefusesToOpenWhatIsNotWholeOrDoesNotFit) {
   std::array<std::byte, kHeaderSize + 10> datagram{};
   ASSERT_EQ(protection.seal({}, plain, datagram), datagram.size());
   std::array<std::byte, 10> room{};
-  EXPECT_EQ(protection.open(std::span{datagram}.first(20), room).error(), Rejection::Malformed);
-  EXPECT_EQ(protection.open(datagram, std::span{room}.first(9)).error(), Rejection::Malformed);
-  EXPECT_EQ(protection.open(datagram, room).value(), 10U);
+  EXPECT_EQ(whole_open(protection, std::span{datagram}.first(20), room).error(),
+            Rejection::Malformed);
+  EXPECT_EQ(whole_open(protection, datagram, std::span{room}.first(9)).error(),
+            Rejection::Malformed);
+  EXPECT_EQ(whole_open(protection, datagram, room).value(), 10U);
 }
 
 }  // namespace

@@ -142,12 +142,13 @@ std::size_t TaggedProtection::seal(const link::Header& header,
 }
 
 tl::expected<std::size_t, link::Rejection> TaggedProtection::open(
-    std::span<const std::byte> datagram, std::span<std::byte> plain) noexcept {
-  const auto header = link::parse_header(datagram);
-  const auto size = plain_.open(datagram, plain);
-  if (!header || !size) return tl::unexpected(link::Rejection::Malformed);
+    const link::Header& header,
+    std::span<const std::byte> datagram,
+    std::span<std::byte> plain) noexcept {
+  const auto size = plain_.open(header, datagram, plain);
+  if (!size) return tl::unexpected(link::Rejection::Malformed);
   if (*size < kTagSize) return tl::unexpected(link::Rejection::Malformed);
-  const std::uint64_t tag = checksum(header->number, plain.first(*size - kTagSize));
+  const std::uint64_t tag = checksum(header.number, plain.first(*size - kTagSize));
   for (std::size_t i = 0; i < kTagSize; ++i) {
     if (plain[*size - kTagSize + i] != byte_of(tag, i)) {
       return tl::unexpected(link::Rejection::Forged);

@@ -60,7 +60,12 @@ class TaggedProtection final : public link::PacketProtection {
   std::size_t seal(const link::Header& header,
                    std::span<const std::byte> plain,
                    std::span<std::byte> out) noexcept override;
-  tl::expected<std::size_t, link::Rejection> open(std::span<const std::byte> datagram,
+  tl::expected<link::Header, link::Rejection> read_header(
+      std::span<const std::byte> datagram) noexcept override {
+    return plain_.read_header(datagram);
+  }
+  tl::expected<std::size_t, link::Rejection> open(const link::Header& header,
+                                                  std::span<const std::byte> datagram,
                                                   std::span<std::byte> plain) noexcept override;
 
  private:

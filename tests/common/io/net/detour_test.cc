@@ -1,7 +1,5 @@
 #include "common/io/net/detour.h"
 
-#include <vector>
-
 #include <gtest/gtest.h>
 
 namespace palp::io {
@@ -15,13 +13,6 @@ const Endpoint kThird = *resolve_endpoint("192.0.2.3:1000");
 
 TimePoint at(int ms) { return TimePoint{milliseconds{ms}}; }
 
-/// A telegram of a session: the bytes of its connection id count.
-std::vector<std::byte> telegram(std::uint8_t connection, std::size_t size = 100) {
-  std::vector<std::byte> bytes(size, std::byte{connection});
-  bytes[0] = std::byte{0x80};
-  return bytes;
-}
-
 class DetourTest : public testing::Test {
  protected:
   DetourTest() { detour_.begin_tick(at(0)); }
@@ -29,36 +20,26 @@ class DetourTest : public testing::Test {
 };
 
 TEST_F(DetourTest, AsLongAsTheStraightWayDeliversNothingIsTakenFromElsewhereOrSentThere) {
-  detour_.heard(kThere, telegram(1));
+  detour_.heard(kThere, 100);
   for (int ms = 0; ms < 1000; ++ms) {
-    if (ms % 9 == 0) detour_.heard_straight(telegram(1), at(ms));
+    if (ms % 9 == 0) detour_.heard_straight(at(ms));
     EXPECT_NE(detour_.fate(kThere, at(ms), at(ms)), Detour::Fate::Take);
     EXPECT_EQ(detour_.spend(0, 50, at(ms)), nullptr);
   }
 }
 
 TEST_F(DetourTest, WhatCameFromElsewhereWaitsUntilTheStraightWayIsSilentAndIsDroppedIfItIsNot) {
-  detour_.heard_straight(telegram(1), at(5));
+  detour_.heard_straight(at(5));
   EXPECT_EQ(detour_.fate(kThere, at(6), at(7)), Detour::Fate::Wait);
   EXPECT_EQ(detour_.fate(kThere, at(6), at(15)), Detour::Fate::Take);
-  detour_.heard_straight(telegram(1), at(15));
+  detour_.heard_straight(at(15));
   EXPECT_EQ(detour_.fate(kThere, at(6), at(17)), Detour::Fate::Drop);
-}
-
-TEST_F(DetourTest, OnlyTelegramsOfTheSessionCountForTheStraightWay) {
-  ASSERT_EQ(detour_.fate(kThere, at(1), at(20)), Detour::Fate::Take);
-  detour_.heard(kThere, telegram(7));
-  detour_.heard_straight(telegram(8), at(20));
-  detour_.heard_straight({}, at(20));
-  EXPECT_EQ(detour_.fate(kThere, at(20), at(20)), Detour::Fate::Take);
-  detour_.heard_straight(telegram(7), at(20));
-  EXPECT_EQ(detour_.fate(kThere, at(20), at(20)), Detour::Fate::Wait);
 }
 
 TEST_F(DetourTest, NoPlaceGetsMoreThanTwoBytesForEachThatCameFromThere) {
   std::size_t sent = 0;
-  detour_.heard(kThere, telegram(1, 300));
-  detour_.heard(kThird, telegram(1, 10));
+  detour_.heard(kThere, 300);
+  detour_.heard(kThird, 10);
   for (int i = 0; i < 100; ++i) {
     for (std::size_t place = 0; place < Detour::kPlaces; ++place) {
       const Endpoint* to = detour_.spend(place, 50, at(20));
@@ -71,9 +52,9 @@ TEST_F(DetourTest, NoPlaceGetsMoreThanTwoBytesForEachThatCameFromThere) {
 }
 
 TEST_F(DetourTest, TheAddressThatWasLeftIsHeardAndToldEverythingIfItDelivers) {
-  detour_.heard_straight(telegram(1), at(1));
+  detour_.heard_straight(at(1));
   EXPECT_EQ(detour_.fate(kHere, at(1), at(1)), Detour::Fate::Take);
-  detour_.heard(kHere, telegram(1));
+  detour_.heard(kHere, 100);
   const Endpoint* to = detour_.spend(0, 100, at(1));
   ASSERT_NE(to, nullptr);
   EXPECT_TRUE(*to == kHere);

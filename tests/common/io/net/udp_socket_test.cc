@@ -30,6 +30,7 @@ class UdpSocketTest : public testing::Test {
     std::vector<link::Datagram> taken;
     while (const auto datagram = socket_->receive(buffer_, now)) {
       taken.push_back(*datagram);
+      socket_->recognised(now);
     }
     return taken;
   }

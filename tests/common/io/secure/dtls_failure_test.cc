@@ -31,6 +31,7 @@ TEST(DtlsFailureTest, WhatThePeerOnlySaysIsNeverHopeless) {
                            SSL_R_SSLV3_ALERT_CERTIFICATE_REVOKED,
                            SSL_R_SSLV3_ALERT_BAD_CERTIFICATE,
                            SSL_R_SSLV3_ALERT_HANDSHAKE_FAILURE,
+                           SSL_R_NO_APPLICATION_PROTOCOL,
                            SSL_R_NO_SHARED_CIPHER}) {
     const DtlsFailure failure = failure_of_handshake(ERR_PACK(ERR_LIB_SSL, 0, reason));
     EXPECT_FALSE(failure.hopeless) << failure.sentence;

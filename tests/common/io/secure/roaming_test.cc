@@ -25,7 +25,7 @@ using test::Parcel;
 using test::World;
 
 bool is_path(std::span<const std::byte> bytes) {
-  const auto header = link::parse_header(bytes);
+  const auto header = link::parse_clear_part(bytes);
   return header && header->type == link::PacketType::Path;
 }
 
@@ -46,9 +46,14 @@ class LongWords final : public link::PacketProtection {
     EXPECT_EQ(inner_->seal(header, zeros, kept_), wanted_);
     return 0;  // the link sends nothing
   }
-  tl::expected<std::size_t, link::Rejection> open(std::span<const std::byte> datagram,
+  tl::expected<link::Header, link::Rejection> read_header(
+      std::span<const std::byte> datagram) noexcept override {
+    return inner_->read_header(datagram);
+  }
+  tl::expected<std::size_t, link::Rejection> open(const link::Header& header,
+                                                  std::span<const std::byte> datagram,
                                                   std::span<std::byte> plain) noexcept override {
-    return inner_->open(datagram, plain);
+    return inner_->open(header, datagram, plain);
   }
 
  private:

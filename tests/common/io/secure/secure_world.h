@@ -34,8 +34,14 @@ inline link::SessionConfig session_of(Role role) {
 
 /// Datagrams that wait for a Link, and those it has sent.
 struct Wire {
-  std::deque<std::vector<std::byte>> in;
+  struct Waiting {
+    std::vector<std::byte> bytes;
+    bool straight{};  ///< came over the peer's address
+  };
+  std::deque<Waiting> in;
   std::deque<std::vector<std::byte>> out;
+  Detour detour;
+  bool straight{};  ///< what was taken last
 };
 
 class WireEnd final : public link::Transport {
@@ -48,10 +54,14 @@ class WireEnd final : public link::Transport {
   std::optional<link::Datagram> receive(std::span<std::byte, link::kDatagramSizeMax> buffer,
                                         TimePoint now) noexcept override {
     if (wire_.in.empty()) return std::nullopt;
-    const auto bytes = std::move(wire_.in.front());
+    wire_.straight = wire_.in.front().straight;
+    const auto bytes = std::move(wire_.in.front().bytes);
     wire_.in.pop_front();
     std::copy_n(bytes.begin(), std::min(bytes.size(), buffer.size()), buffer.begin());
     return link::Datagram{bytes.size(), now};
+  }
+  void recognised(TimePoint now) noexcept override {
+    if (wire_.straight) wire_.detour.heard_straight(now);
   }
 
  private:
@@ -74,7 +84,7 @@ struct Site {
     for (Letter& letter : output.letters) letters.push_back(std::move(letter));
     if (output.moved_to) {
       moved_to.push_back(*output.moved_to);
-      detour = Detour{output.moved_from};
+      wire.detour = Detour{output.moved_from};
       hears = *output.moved_to;
     }
     if (output.event) {
@@ -109,14 +119,15 @@ struct Site {
   }
   /// As UdpSocket does.
   void take_detours(TimePoint now) {
-    detour.begin_tick(now);
+    wire.detour.begin_tick(now);
     for (; !aside.empty(); aside.pop_front()) {
       const SideDatagram& one = aside.front();
-      const Detour::Fate fate = detour.fate(one.from, one.arrived_at, now);
+      const Detour::Fate fate = wire.detour.fate(one.from, one.arrived_at, now);
       if (fate == Detour::Fate::Wait) return;
       if (fate == Detour::Fate::Drop) continue;
-      if (!(one.from == hears)) detour.heard(one.from, one.datagram());
-      wire.in.emplace_back(one.datagram().begin(), one.datagram().end());
+      if (!(one.from == hears)) wire.detour.heard(one.from, one.datagram().size());
+      const auto bytes = one.datagram();
+      wire.in.push_back({.bytes = {bytes.begin(), bytes.end()}, .straight = false});
     }
   }
   void tick(TimePoint now) {
@@ -130,13 +141,12 @@ struct Site {
                                 .session_id = health.session_id,
                                 .newest_number = health.newest_number,
                                 .key = health.key,
-                                .peer_heard_at = detour.straight_at()}),
+                                .peer_heard_at = wire.detour.straight_at()}),
          now);
   }
 
   Endpoint at;
   Endpoint hears;  ///< whom the data socket is connected to
-  Detour detour;   ///< of that socket
   std::deque<SideDatagram> aside;
   DtlsSession session_endpoint;
   link::Link link{{}, std::make_unique<link::WireCodec>()};
@@ -215,7 +225,7 @@ class World {
       if (cut || (lose && lose())) continue;
       if (from.at == kSurgeonAt) recorded.push_back(bytes);
       for (std::size_t at = 0; at < Detour::kPlaces; ++at) {
-        const Endpoint* copied_to = from.detour.spend(at, bytes.size(), now);
+        const Endpoint* copied_to = from.wire.detour.spend(at, bytes.size(), now);
         if (copied_to != nullptr) set_out(false, *copied_to, bytes);
       }
       set_out(false, from.hears, std::move(bytes));
@@ -233,8 +243,7 @@ class World {
     if (!(parcel.to == (to.at == kSurgeonAt ? surgeon_seen_at : to.at))) return;
     // As the kernel does: rt's socket is connected to the peer's address, the others go to io.
     if (!parcel.letter && parcel.from == to.hears) {
-      to.detour.heard_straight(parcel.bytes, now);
-      to.wire.in.push_back(std::move(parcel.bytes));
+      to.wire.in.push_back({.bytes = std::move(parcel.bytes), .straight = true});
       return;
     }
     if (parcel.letter) control.push_back(parcel.bytes);
