@@ -22,6 +22,7 @@ struct WaveConfig {
   double drift_speed{0.02};     ///< [m/s], at most
   double contact_zero{0.03};    ///< [N], a mean force below it is none
   double fade{1};               ///< [s], in Retract
+  double told_slew{25};  ///< [N/s], of what comes as waves, beside what the hand's way explains
   PortTankConfig tank;
   double period{1e-3};  ///< [s]
 };
@@ -34,7 +35,9 @@ struct WaveConfig {
 /// F_h = b v - sqrt(2b) w; sends the integral and the energy of u = (b v + F_h)/sqrt(2b). While a
 /// tick was late the device held its force: the waves of that time are those of this force, and
 /// what they brought the hand was played.
-/// Waves push or pull no harder than the tank of the port allows, whatever the other end declares.
+/// Waves push or pull no harder than the tank of the port allows, whatever the other end declares,
+/// and not faster than told_slew and the stiffest tissue along the hand's way: no news and no pause
+/// of them, true or not, is a kick.
 class WaveSurgeon {
  public:
   explicit WaveSurgeon(const WaveConfig& config, const PatientDevices& devices = {}) noexcept;
@@ -45,7 +48,8 @@ class WaveSurgeon {
   [[nodiscard]] double tank() const noexcept { return tank_.level(); }  ///< [J]
 
  private:
-  [[nodiscard]] HeldWave account(const SurgeonInput& in, const Lapse& lapse) noexcept;
+  [[nodiscard]] HeldWave account(const SurgeonInput& in, double way, const Lapse& lapse) noexcept;
+  [[nodiscard]] double told_force(double wanted, double way, const Lapse& lapse) noexcept;
 
   WaveConfig config_;
   double impedance_;  ///< [N s/m]
@@ -54,6 +58,7 @@ class WaveSurgeon {
   PlayOut play_out_;
   WavePayload sent_;
   Ramp presence_{1};
+  double told_{};  ///< [N], of the waves, as the hand gets it
   PortTank tank_;
 };
 

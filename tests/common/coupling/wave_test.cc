@@ -236,6 +236,38 @@ TEST(WaveTest, BothPortsCarryThePowerOfTheirWaves) {
   EXPECT_NEAR(force, 10 * 0.02, 1e-6) << "drag is b v";
 }
 
+/// What a surgeon's half gives a hand that stands still, while waves come and break off.
+std::vector<double> forces_of_a_liar(const WaveConfig& config) {
+  WaveSurgeon surgeon{config};
+  surgeon.begin_epoch(0);
+  std::vector<double> forces;
+  WavePayload said;
+  for (std::uint64_t tick = 0; tick < 2000; ++tick) {
+    const double now = kPeriod * static_cast<double>(tick);
+    const double wave = random_normal(7, 0, tick / 97) > 0 ? -3.0 : 3.0;
+    said.wave_integral += wave * kPeriod;
+    said.wave_energy += 0.5 * wave * wave * kPeriod;
+    const std::array arrived{wave_sample(tick, said, now)};
+    SurgeonInput in;
+    in.now = TimePoint{from_seconds(now)};
+    in.state = SiteState::Engaged;
+    in.force_applied = forces.empty() ? 0 : forces.back();
+    if (tick % 300 < 200) in.arrived = arrived;
+    forces.push_back(surgeon.step(in, std::chrono::milliseconds{1}).force);
+  }
+  return forces;
+}
+
+TEST(WaveTest, NoNewsAndNoPauseOfItIsAKickForAHandThatStandsStill) {
+  WaveConfig config;
+  const std::vector<double> forces = forces_of_a_liar(config);
+  EXPECT_GT(*std::ranges::max_element(forces), 0.8) << "the waves are felt";
+  for (std::size_t tick = 1; tick < forces.size(); ++tick) {
+    ASSERT_LE(std::abs(forces[tick] - forces[tick - 1]), config.told_slew * kPeriod + 1e-12)
+        << tick;
+  }
+}
+
 TEST(WaveTest, AtTheTipNoMorePowerGoesIntoTheTissueThanTheWavesBring) {
   for (const int trip_ms : {0, 70, 500}) {
     WaveConfig config;
