@@ -1,5 +1,6 @@
 // What security adds to the time on the wire, beside a raw path in the same run:
-//   link_latency_bench [SECONDS [KEPT]]     of a round (10); pairs of rounds to keep (5)
+//   link_latency_bench [SECONDS [KEPT [filtered]]]   of a round (10); pairs of rounds to keep (5)
+// `filtered`: under the filter of system calls that the programs have; then both are.
 // Two sites with certificates, handshake and all threads of a link exchange telegrams at 1 kHz over
 // loopback; in every other round two raw loops exchange structs. Latency is
 //   (writing a telegram begins -> the kernel's receive stamp) + (drain begins -> sample ready)
@@ -11,11 +12,13 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include <unistd.h>
 
+#include "common/io/process/system_call_filter.h"
 #include "common/io/realtime/steady_clock.h"
 #include "tests/bench/raw_loop.h"
 #include "tests/bench/secure_site.h"
@@ -248,5 +251,11 @@ int run(int span_s, std::size_t wanted) {
 int main(int argc, char** argv) {
   const int span_s = argc > 1 ? std::atoi(argv[1]) : 10;
   const int kept = argc > 2 ? std::atoi(argv[2]) : 5;
+  if (argc > 3 && std::string_view{argv[3]} == "filtered") {
+    if (const auto refused = palp::io::refuse_system_calls()) {
+      std::fprintf(stderr, "%s\n", refused->c_str());
+      return 2;
+    }
+  }
   return palp::bench::run(std::max(1, span_s), static_cast<std::size_t>(std::max(1, kept)));
 }

@@ -228,6 +228,7 @@ const std::vector<Fence>& fences() {
   static const std::vector<Fence> table{
       {"modbus/", {"common/io/device/modbus_port.cc"}},
       {"hidapi/", {"common/io/device/hid_port.cc"}},
+      {"seccomp.h", {"common/io/process/system_call_filter.cc"}},
       {"boost/", {"common/io/net/*.cc", "common/io/secure/*.cc"}},
       {"google/protobuf/", protobuf_files()},
       {"zstd", {"common/record/mcap_*.cc"}},

@@ -127,7 +127,7 @@ KINDS: dict[str, Maker] = {
 }
 
 
-def _junk(r: random.Random, ear: Ear) -> Iterator[bytes]:
+def junk(r: random.Random, ear: Ear) -> Iterator[bytes]:
     while True:
         for make in KINDS.values():
             yield make(r, ear)
@@ -135,7 +135,7 @@ def _junk(r: random.Random, ear: Ear) -> Iterator[bytes]:
 
 def _attack(bench: Bench, site: Site, program: Program, strangers: list[socket.socket]) -> Verdict:
     ear = Ear()
-    junk = _junk(random.Random(bench.seed), ear)
+    made = junk(random.Random(bench.seed), ear)
     seal = site.seal
     sent = 0
 
@@ -148,7 +148,7 @@ def _attack(bench: Bench, site: Site, program: Program, strangers: list[socket.s
         nonlocal sent
         for i in range(PER_TICK):
             # Every second one in the peer's own name.
-            site.send(next(junk), via=strangers[sent // 2 % len(strangers)] if i % 2 else None)
+            site.send(next(made), via=strangers[sent // 2 % len(strangers)] if i % 2 else None)
             sent += 1
 
     site.seal = overheard

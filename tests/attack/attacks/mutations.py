@@ -12,9 +12,12 @@ from client import wire
 from client.attack import Attack, Verdict, learn_settings
 from client.mutation import Mutator
 from client.programs import Bench, Program
-from client.schema import MESSAGES, encode
+from client.schema import BYTES, MESSAGES, encode, unpack
+from client.session import STOPPED
 from client.site import Patient, Site, Surgeon
 
+(SITE,) = (e for e in MESSAGES["Telegram"] if e.name == "site")
+(STATE,) = (e for e in MESSAGES[SITE.kind] if e.name == "state")
 PAYLOADS = ("wave", "tdpa", "model")
 
 
@@ -35,11 +38,27 @@ def _everything(site: Site, which: int) -> dict:
     return told
 
 
+def _says_stopped(message: bytes) -> bool:
+    """Whether any reading of it could be the state that ends a surgeon's script."""
+    try:
+        inner = [f[2] for f in unpack(message) if f[0] == SITE.number and f[1] == BYTES]
+        states = [f[2] for one in inner for f in unpack(bytes(one)) if f[0] == STATE.number]
+    except (ValueError, IndexError, KeyError):
+        return False  # No telegram at all.
+    return any(isinstance(s, int) and s & 0xFFFFFFFF == STOPPED for s in states)
+
+
+def _telegram_mutant(site: Site, count: int, mutator: Mutator) -> bytes:
+    told = encode("Telegram", _everything(site, count))
+    while _says_stopped(mutant := mutator.mutate("Telegram", told)):
+        pass
+    return mutant
+
+
 def _mutant(site: Site, count: int, mutator: Mutator) -> tuple[int, bytes]:
     """Of each ten eight telegrams; a goodbye says another session, or there would be none left."""
     if count % 10 < 8:
-        told = encode("Telegram", _everything(site, count))
-        return wire.DATA, mutator.mutate("Telegram", told)
+        return wire.DATA, _telegram_mutant(site, count, mutator)
     if count % 10 == 8:
         told = wire.path_message(count // 10 % 2, mutator.random.randbytes(wire.PATH_REST_BYTES))
         return wire.PATH, mutator.mutate("path", told)
@@ -74,7 +93,7 @@ def _attack(bench: Bench, site: Site, program: Program) -> Verdict:
     return Verdict(
         f"{sent} mutations, {refused} refused as malformed, {spoke} telegrams in the last 0.5 s, "
         f"{sessions} session, memory {grown:+d} kB, exit code {code}",
-        sent > 0 and spoke > 250 and sessions == 1 and bench.memory_is_kept(grown)
+        sent >= (bench.count or 1) and spoke > 250 and sessions == 1 and bench.memory_is_kept(grown)
         and code in (0, 4) and refused > sent / 5,
     )  # fmt: skip
 
@@ -92,7 +111,7 @@ def of_surgeon(bench: Bench) -> Verdict:
         return _attack(bench, patient, surgeon)
 
 
-def _edit_hellos(site: Site, mutator: Mutator) -> None:
+def edit_hellos(site: Site, mutator: Mutator) -> None:
     """Each Hello of the site, whenever it says one."""
     seal = site.seal_control
 
@@ -105,39 +124,79 @@ def _edit_hellos(site: Site, mutator: Mutator) -> None:
     site.seal_control = edited
 
 
-def hellos(bench: Bench) -> Verdict:
-    """A peer whose Hello is wrong is refused, so each begins anew; then an honest one comes in."""
+class _Round:
+    """Half of the time, or so many edited Hellos."""
+
+    def __init__(self, bench: Bench) -> None:
+        self.end = time.monotonic() + bench.seconds / 2
+        self.count = bench.count
+        self.sent = 0
+
+    def goes_on(self) -> bool:
+        return time.monotonic() < self.end and (self.count is None or self.sent < self.count)
+
+
+def _at_patient(bench: Bench) -> tuple[_Round, bool, int | None]:
+    """Each call begins anew. Then whether an honest surgeon comes in, and the exit code."""
     settings = learn_settings(bench)
     patient = bench.patient()
     mutator = Mutator(bench.seed)
-    end = time.monotonic() + bench.seconds / 2
-    sent = began = 0
-    while time.monotonic() < end:
+    told = _Round(bench)
+    while told.goes_on() and patient.running:
         with Surgeon(bench.identity("surgeon"), patient.address(), settings) as site:
-            _edit_hellos(site, mutator)
-            site.on_tick = lambda now: _ask_again(site)
-            began += site.run(0.5, lambda: site.established)
-            sent += site.counts["edited"]
+            edit_hellos(site, mutator)
+            site.on_tick = lambda now: ask_again(site)
+            site.run(0.5, lambda: site.established)
+            told.sent += site.counts["edited"]
     with Surgeon(bench.identity("surgeon"), patient.address(), settings) as surgeon:
         honest = surgeon.run(10, lambda: surgeon.established)
-    codes = {patient.finish()}
-    end = time.monotonic() + bench.seconds / 2
-    while time.monotonic() < end:
+    return told, honest, patient.finish()
+
+
+def _at_surgeon(bench: Bench) -> tuple[_Round, bool, set[int | None]]:
+    """Each surgeon hears some thousand; then whether one gets an honest patient."""
+    mutator = Mutator(bench.seed)
+    told = _Round(bench)
+    codes = set()
+    while told.goes_on():
         with Patient(bench.identity("patient")) as site:
             program = bench.surgeon(site.address, "--master", bench.script("hold 600"))
-            _edit_hellos(site, mutator)
-            site.run(1, lambda: not program.running)
-            sent += site.counts["edited"]
+            edit_hellos(site, mutator)
+            site.on_tick = lambda now: _offer_again(site)
+            site.run(3, lambda: not program.running)
+            told.sent += site.counts["edited"]
         codes.add(program.finish())
+    with Patient(bench.identity("patient")) as site:
+        program = bench.surgeon(site.address, "--master", bench.script("hold 600"))
+        honest = site.run(10, lambda: site.established)
+        codes.add(program.finish())
+    return told, honest, codes
+
+
+def hellos(bench: Bench) -> Verdict:
+    """A peer whose Hello is wrong is refused; then an honest one comes in, at both sites."""
+    at_patient, honest_surgeon, code = _at_patient(bench)
+    at_surgeon, honest_patient, codes = _at_surgeon(bench)
+    codes.add(code)
+    least = bench.count or 1
     return Verdict(
-        f"{sent} edited hellos, {began} sessions all the same, an honest surgeon "
-        + ("came in" if honest else "did not come in") + f", exit codes {sorted(map(str, codes))}",
-        honest and codes <= {0, 3, 4},
+        f"{at_patient.sent} edited hellos at the patient, {at_surgeon.sent} at the surgeon; then "
+        f"an honest surgeon {'came in' if honest_surgeon else 'did not come in'}, an honest "
+        f"patient {'was taken' if honest_patient else 'was not taken'}; "
+        f"exit codes {sorted(map(str, codes))}",
+        honest_surgeon and honest_patient and codes <= {0, 3, 4}
+        and min(at_patient.sent, at_surgeon.sent) >= least,
     )  # fmt: skip
 
 
-def _ask_again(site: Surgeon) -> None:
+def ask_again(site: Surgeon) -> None:
     if site.session is None and site.keys:
+        for _ in range(3):
+            site.send_hello(site.keys, site.peer)
+
+
+def _offer_again(site: Patient) -> None:
+    if site.keys and site.peer:
         for _ in range(3):
             site.send_hello(site.keys, site.peer)
 

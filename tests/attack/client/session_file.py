@@ -60,6 +60,16 @@ def messages(path: Path, topic: str) -> Iterator[tuple[int, dict]]:
                 yield published, decode(wanted[channel], body[22:], LOG_MESSAGES)
 
 
+def instants(path: Path, topic: str) -> Iterator[int]:
+    """Instants [ns] of a topic's messages, which stay folded."""
+    wanted: set[int] = set()
+    for kind, body in _unfolded(path):
+        if kind == CHANNEL and _text(body, 4)[0] == topic:
+            wanted.add(struct.unpack_from("<H", body)[0])
+        elif kind == MESSAGE and struct.unpack_from("<H", body)[0] in wanted:
+            yield struct.unpack_from("<HIQQ", body)[3]
+
+
 @dataclass
 class HandTold:
     """What the surgeon's hand felt in a session."""

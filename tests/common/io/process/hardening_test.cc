@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include <gtest/gtest.h>
+#include <linux/seccomp.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -50,6 +51,18 @@ TEST(HardeningTest, LimitFlagAndRightsAreGivenUp) {
       },
       dumped);
   EXPECT_EQ(ended, 0);
+}
+
+// But under a sanitizer, which needs what is refused (PALP_FILTER_CALLS, set by CMake).
+TEST(HardeningTest, SystemCallsAreFiltered) {
+  bool dumped = false;
+  const int mode = in_another_process(
+      [] {
+        if (harden_process()) return 1;
+        return ::prctl(PR_GET_SECCOMP, 0, 0, 0, 0);
+      },
+      dumped);
+  EXPECT_EQ(mode, PALP_FILTER_CALLS != 0 ? SECCOMP_MODE_FILTER : SECCOMP_MODE_DISABLED);
 }
 
 }  // namespace
