@@ -113,11 +113,11 @@ class Translator(Observer):
 
     def _from_surgeon(self, datagram: bytes, source: Address, now: float) -> None:
         super()._from_surgeon(datagram, source, now)
-        head = wire.read_header(datagram)
+        kind = wire.kind_of(datagram)
         counts = self.world.counts
         self.world.surgeon_port.value = source[1]
-        counts["hellos"].value += head is not None and head.kind == wire.CONTROL
-        counts["copies"].value += self.robs and head is not None
+        counts["hellos"].value += kind == wire.CONTROL
+        counts["copies"].value += self.robs and kind is not None
         try:
             self.world.tell.send(datagram)
         except OSError:
