@@ -147,6 +147,7 @@ MotionAnswer MotionGate::pass(const MotionRequest& request, const Lapse& lapse) 
     const double excess = request.contact_force - config_.force_limit;
     const double speed = config_.retreat_speed * std::min(3.0, 1 + 4 * excess);
     move_out(request.tip, config_.travel_min, speed, span);
+    ceiling_.hit(command_);
     condition = NoteCode::ForceRetreat;
     note_once(answer, condition, request.contact_force);
   } else if (request.state == SiteState::Retract || request.state == SiteState::Parked) {
@@ -162,10 +163,15 @@ MotionAnswer MotionGate::pass(const MotionRequest& request, const Lapse& lapse) 
     condition = NoteCode::NotFinite;
     note_once(answer, condition, 0);
   } else {
-    const double target = within_limits(request.position);
-    if (target != request.position) {
+    if (outside(request.tip)) ceiling_.forget();
+    const double allowed = within_limits(request.position);
+    const double target = ceiling_.bound(allowed, std::max(felt_, request.contact_force), span);
+    if (allowed != request.position) {
       condition = NoteCode::MotionGateLimited;
       note_once(answer, condition, request.position);
+    } else if (target != allowed) {
+      condition = NoteCode::ForceRetreat;  // it was said when the retreat began
+      noted_ = condition;
     }
     follow_place(request, span, answer);
     leave_place(request.tip);

@@ -9,6 +9,7 @@
 #include "common/core/site_state.h"
 #include "common/core/time.h"
 #include "common/record/notes.h"
+#include "patient_site/force_ceiling.h"
 #include "patient_site/plane_motion.h"
 
 namespace palp::patient {
@@ -25,7 +26,8 @@ struct MotionGateConfig {
   double acceleration_max{8};      ///< [m/s^2]
   double step_free{50e-6};         ///< [m], a step of the target taken at once: encoder counts, not
                                    ///< motion
-  double force_limit{3};           ///< [N], above it the tip retreats whatever is asked
+  double force_limit{3};           ///< [N], above it the tip retreats whatever is asked, and then
+                                   ///< goes no deeper than its force allows
   double force_stop{5};            ///< [N], above it the site stops
   double retreat_speed{0.03};      ///< [m/s], at force_limit; up to three times that above it
   double retract_speed{5e-3};      ///< [m/s], state Retract
@@ -69,6 +71,7 @@ class MotionGate {
                       const ForceSensorFacts& sensor = {},
                       double period = 1e-3) noexcept  ///< [s], of the calls of feel()
       : config_{config},
+        ceiling_{{.limit = config.force_limit}},
         co_filter_{sensor.pole, period},
         plane_{config.plane},
         noise_square_{config.contact_force * config.contact_force / 4} {}
@@ -105,6 +108,7 @@ class MotionGate {
   void note_once(MotionAnswer& answer, record::NoteCode code, double detail) noexcept;
 
   MotionGateConfig config_;
+  ForceCeiling ceiling_;
   LowPass co_filter_;  ///< [m], of the tip: the sensor's pole, as the force has it
   double command_{};   ///< [m]
   double velocity_{};  ///< [m/s], of the command

@@ -29,6 +29,7 @@ WaveSurgeon::WaveSurgeon(const WaveConfig& config, const PatientDevices& devices
       root_{std::sqrt(2 * impedance_)},
       velocity_{config.velocity_cut_off, config.period},
       play_out_{config.period},
+      told_{{.stiffness = config.stiffness_expected}},
       tank_{config.tank} {}
 
 void WaveSurgeon::meet(const PatientDevices& devices) noexcept {
@@ -42,7 +43,7 @@ void WaveSurgeon::begin_epoch(double position) noexcept {
   play_out_.restart();
   sent_ = {};
   presence_.set(1);
-  told_ = 0;
+  told_.set(0);
 }
 
 /// What went through the port since the last tick. @returns what came out of it as a wave.
@@ -55,24 +56,15 @@ HeldWave WaveSurgeon::account(const SurgeonInput& in, double way, const Lapse& l
   return {(pace - in.force_applied) / root_, lapse.held()};
 }
 
-/// The force that the waves want, as far as the hand may get it in this tick.
-double WaveSurgeon::told_force(double wanted, double way, const Lapse& lapse) noexcept {
-  // Of the way of a late tick only one period's share explains what is done now.
-  const double span = seconds(lapse.period);
-  const double moved = std::abs(way) * span / seconds(lapse.passed());
-  const double step = config_.told_slew * span + config_.stiffness_expected * moved;
-  const double most = tank_.force_max();
-  told_ = std::clamp(step_towards(told_, wanted, step), -most, most);
-  return told_;
-}
-
 SurgeonOutput WaveSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexcept {
   const double way = tank_.account(in.force_applied, in.position);
   const HeldWave held = account(in, way, lapse);
   const double speed = velocity_.step(in.position, lapse.periods);
   const double wave = play_out_.step(in.now, in.arrived, held);
   if (in.state == SiteState::Retract) presence_.fall(seconds(lapse.period), config_.fade);
-  const double told = told_force(root_ * wave, way, lapse);
+  const double most = tank_.force_max();
+  const double told = std::clamp(told_.step(root_ * wave, way, lapse), -most, most);
+  told_.set(told);
   const double force = (impedance_ * speed - told) * presence_.value();
   // Only in Engaged does the hand speak: a wave sent in Hold would be a step when it is over.
   if (in.state == SiteState::Engaged) {

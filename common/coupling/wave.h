@@ -6,6 +6,7 @@
 #include "common/coupling/coupling.h"
 #include "common/coupling/play_out.h"
 #include "common/coupling/port_tank.h"
+#include "common/coupling/told_force.h"
 
 /// Coupling `wave`: wave variables. Passive over any path, and as soft as a spring of 2b/RTT in
 /// series with the tissue: a tool for short paths, and a baseline.
@@ -22,7 +23,6 @@ struct WaveConfig {
   double drift_speed{0.02};     ///< [m/s], at most
   double contact_zero{0.03};    ///< [N], a mean force below it is none
   double fade{1};               ///< [s], in Retract
-  double told_slew{25};  ///< [N/s], of what comes as waves, beside what the hand's way explains
   PortTankConfig tank;
   double period{1e-3};  ///< [s]
 };
@@ -36,8 +36,7 @@ struct WaveConfig {
 /// tick was late the device held its force: the waves of that time are those of this force, and
 /// what they brought the hand was played.
 /// Waves push or pull no harder than the tank of the port allows, whatever the other end declares,
-/// and not faster than told_slew and the stiffest tissue along the hand's way: no news and no pause
-/// of them, true or not, is a kick.
+/// and no faster than ToldForce follows.
 class WaveSurgeon {
  public:
   explicit WaveSurgeon(const WaveConfig& config, const PatientDevices& devices = {}) noexcept;
@@ -49,7 +48,6 @@ class WaveSurgeon {
 
  private:
   [[nodiscard]] HeldWave account(const SurgeonInput& in, double way, const Lapse& lapse) noexcept;
-  [[nodiscard]] double told_force(double wanted, double way, const Lapse& lapse) noexcept;
 
   WaveConfig config_;
   double impedance_;  ///< [N s/m]
@@ -58,7 +56,7 @@ class WaveSurgeon {
   PlayOut play_out_;
   WavePayload sent_;
   Ramp presence_{1};
-  double told_{};  ///< [N], of the waves, as the hand gets it
+  ToldForce told_;
   PortTank tank_;
 };
 

@@ -1,4 +1,8 @@
+#include <algorithm>
+#include <fstream>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -20,11 +24,37 @@ struct Press {
   double later{};   ///< [-], the same at the end of the press
   double energy{};  ///< [J], most that the hand got
   bool unstable{};
+  int turns{};           ///< of the tip, by more than 0.3 mm, from 1 s after contact on
   bool told_short{};     ///< the last word of it before the hand lifted: the force is incomplete
   double missing_max{};  ///< [N], in the log
 };
 
 constexpr double kLift = 5;  // phase of the script
+
+/// How often the tip turned round, ripples left out, from 1 s after contact to 5 s.
+int turns_of_tip(const std::vector<judge::RunTick>& ticks) {
+  constexpr double kRipple = 0.3e-3;  // [m]
+  std::optional<double> began_at;     // [s]
+  std::optional<double> low, high;    // [m], since the last turn
+  int heading = 0;
+  int turns = 0;
+  for (const judge::RunTick& tick : ticks) {
+    if (!began_at && tick.contact_force > 0.05) began_at = tick.at;
+    if (!began_at || tick.at < *began_at + 1 || tick.at > *began_at + 5) continue;
+    low = std::min(low.value_or(tick.tip), tick.tip);
+    high = std::max(high.value_or(tick.tip), tick.tip);
+    if (heading <= 0 && tick.tip > *low + kRipple) {
+      turns += heading < 0 ? 1 : 0;
+      heading = 1;
+      high = tick.tip;
+    } else if (heading >= 0 && tick.tip < *high - kRipple) {
+      turns += heading > 0 ? 1 : 0;
+      heading = -1;
+      low = tick.tip;
+    }
+  }
+  return turns;
+}
 
 /// What the surgeon's file says of the force, up to the end of the press.
 void read_log(std::span<const std::byte> file, Press& press) {
@@ -73,7 +103,8 @@ Press first_press(const std::string& tissue, const std::string& grip, int round_
   Press press{.share = share(since, since + 0.3),
               .later = share(5, 5.5),
               .energy = result.metrics.energy_operator,
-              .unstable = result.metrics.unstable};
+              .unstable = result.metrics.unstable,
+              .turns = turns_of_tip(result.ticks)};
   read_log(surgeon.bytes(), press);
   return press;
 }
@@ -86,6 +117,20 @@ TEST(FirstPressTest, IsFeltWholeWhereTheEnergyOfHoldingItIsThere) {
     EXPECT_LE(press.energy, 1e-3) << grip;
     EXPECT_FALSE(press.unstable) << grip;
     EXPECT_FALSE(press.told_short) << grip;
+  }
+}
+
+/// Ten times as stiff as the tissue that the law knows best: a blind hand goes beyond the limit.
+TEST(FirstPressTest, InStiffTissueTheTipDoesNotHammerAtItsLimit) {
+  const std::string table = testing::TempDir() + "stiff.csv";
+  std::ofstream{table} << "d_mm,F_N\n0,0\n1,1.5\n2,3\n4,6\n8,12\n";
+  for (const char* grip : {"mid", "firm"}) {
+    for (const int round_trip_ms : {100, 200, 500}) {
+      const Press press = first_press("file:" + table, grip, round_trip_ms);
+      EXPECT_LE(press.turns, 2) << grip << ", " << round_trip_ms << " ms";
+      EXPECT_FALSE(press.unstable) << grip << ", " << round_trip_ms << " ms";
+      EXPECT_LE(press.energy, 1e-3) << grip << ", " << round_trip_ms << " ms";
+    }
   }
 }
 
