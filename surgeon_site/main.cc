@@ -333,7 +333,9 @@ int run(int argc, char** argv) {
       {"certificates", [&] { return certificates.run(); }},
       {"check", [&] { return check.run(); }},
       {"devices", [&] { return devices.run(); }}};
-  return site_program::run({"surgeon", line, report_file, verbs, session}, argc, argv);
+  const auto session_file = [&] { return session_file_of(document); };
+  return site_program::run(
+      {"surgeon", line, report_file, session_file, verbs, session}, argc, argv);
 }
 
 }  // namespace palp::surgeon
