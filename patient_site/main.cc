@@ -327,9 +327,7 @@ int run(int argc, char** argv) {
   };
   const std::vector<site_program::SideVerb> verbs{{"check", [&] { return check.run(); }},
                                                   {"devices", [&] { return devices.run(); }}};
-  const auto session_file = [&] { return session_file_of(document); };
-  return site_program::run(
-      {"patient", line, report_file, session_file, verbs, session}, argc, argv);
+  return site_program::run({"patient", line, report_file, verbs, session}, argc, argv);
 }
 
 }  // namespace palp::patient

@@ -152,10 +152,6 @@ Result<Settings> make_settings(const config::Document& document) {
   return make_settings(document.as<proto::config::PatientConfig>());
 }
 
-std::string session_file_of(const config::Document& document) {
-  return document.as<proto::config::PatientConfig>().record().file();
-}
-
 MotionGateConfig within_tables(MotionGateConfig gate,
                                double surface_offset,
                                double depth_max) noexcept {

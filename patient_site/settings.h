@@ -45,9 +45,6 @@ struct Settings {
 [[nodiscard]] Result<Settings> make_settings(const config::Document& document);
 [[nodiscard]] Result<Settings> make_settings(const proto::config::PatientConfig& message);
 
-/// The one of the whole run; empty: none. Also of a document that did not pass.
-[[nodiscard]] std::string session_file_of(const config::Document& document);
-
 /// `gate` for a simulated tissue whose surface truly lies at `surface_offset` [m] and whose tables
 /// end `depth_max` [m] below it: the tip stops short of what nobody computed.
 [[nodiscard]] MotionGateConfig within_tables(MotionGateConfig gate,

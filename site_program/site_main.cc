@@ -7,7 +7,6 @@
 
 #include "common/config/program_run.h"
 #include "common/config/report.h"
-#include "common/core/printable.h"
 #include "common/io/process/hardening.h"
 
 namespace palp::site_program {
@@ -45,14 +44,11 @@ int run(const SiteMain& program, int argc, const char* const* argv) {
   (void)::mallopt(M_MMAP_THRESHOLD, 8 * kHeapSpare);
   SiteReport report;
   report.site = program.site;
-  const auto ended = program.line.parse(argc, argv);
-  // A report in its place would put an end to a session file, also to an old one.
-  const bool in_one_place = config::same_file(program.report_file, program.session_file());
-  if (ended) {
-    if (ended->code == config::ExitCode::Done || program.report_file.empty() || in_one_place) {
-      return config::leave(program.line, *ended);
+  if (const auto exit_status = program.line.parse(argc, argv)) {
+    if (exit_status->code == config::ExitCode::Done || program.report_file.empty()) {
+      return config::leave(program.line, *exit_status);
     }
-    report.exit_status = exit_status_of(*ended);
+    report.exit_status = exit_status_of(*exit_status);
     return finish(report, program.report_file);
   }
   const auto verb = std::ranges::find(program.verbs, program.line.chosen_verb(), &SideVerb::name);
@@ -62,11 +58,6 @@ int run(const SiteMain& program, int argc, const char* const* argv) {
     const std::string sentence =
         exit_status.reason.empty() ? "" : program.line.program() + ": " + exit_status.reason;
     return config::leave(program.line, {exit_status.code, sentence});
-  }
-  if (in_one_place) {
-    return config::leave({config::ExitCode::BadInput,
-                          program.line.program() + ": --report and --session-file name one file, " +
-                              printable(program.report_file)});
   }
   if (!program.report_file.empty()) {
     if (const auto can = config::can_write_file(program.report_file); !can) {

@@ -30,7 +30,6 @@ struct SiteMain {
   std::string site;  ///< "surgeon" or "patient"
   config::CommandLine& line;
   const std::string& report_file;
-  std::function<std::string()> session_file;  ///< once the flags are read; empty: none
   std::vector<SideVerb> verbs;
   /// Fills in the report; may throw where the site cannot start.
   std::function<ExitStatus(SiteReport& report)> session;

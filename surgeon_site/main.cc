@@ -333,9 +333,7 @@ int run(int argc, char** argv) {
       {"certificates", [&] { return certificates.run(); }},
       {"check", [&] { return check.run(); }},
       {"devices", [&] { return devices.run(); }}};
-  const auto session_file = [&] { return session_file_of(document); };
-  return site_program::run(
-      {"surgeon", line, report_file, session_file, verbs, session}, argc, argv);
+  return site_program::run({"surgeon", line, report_file, verbs, session}, argc, argv);
 }
 
 }  // namespace palp::surgeon

@@ -78,8 +78,4 @@ Result<Settings> make_settings(const config::Document& document) {
   return make_settings(document.as<proto::config::SurgeonConfig>());
 }
 
-std::string session_file_of(const config::Document& document) {
-  return document.as<proto::config::SurgeonConfig>().record().file();
-}
-
 }  // namespace palp::surgeon

@@ -45,7 +45,4 @@ struct Settings {
 [[nodiscard]] Result<Settings> make_settings(const config::Document& document);
 [[nodiscard]] Result<Settings> make_settings(const proto::config::SurgeonConfig& message);
 
-/// The one of the whole run; empty: none. Also of a document that did not pass.
-[[nodiscard]] std::string session_file_of(const config::Document& document);
-
 }  // namespace palp::surgeon

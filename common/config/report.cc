@@ -92,25 +92,7 @@ Result<Destination> destination_of(const std::string& path) {
   return to;
 }
 
-/// Where a file would be made that is opened by this path.
-std::filesystem::path way_to(std::filesystem::path path) {
-  constexpr int kLinksMax = 40;  // as the system follows
-  std::error_code ignored;
-  for (int i = 0; i < kLinksMax && std::filesystem::is_symlink(path, ignored); ++i) {
-    path = path.parent_path() / std::filesystem::read_symlink(path, ignored);
-  }
-  const auto whole = std::filesystem::weakly_canonical(path, ignored);
-  return whole.is_absolute() ? whole : std::filesystem::absolute(whole, ignored);
-}
-
 }  // namespace
-
-bool same_file(const std::string& one, const std::string& other) {
-  if (one.empty() || other.empty()) return false;
-  std::error_code neither;
-  if (std::filesystem::equivalent(one, other, neither)) return true;  // second names as well
-  return way_to(one) == way_to(other);
-}
 
 Result<void> can_write_file(const std::string& path) {
   const auto to = destination_of(path);

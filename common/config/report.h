@@ -21,10 +21,6 @@ namespace palp::config {
 /// The same of several; nobody asked for those whose path is empty.
 [[nodiscard]] Result<void> can_write_files(const std::vector<std::string>& paths);
 
-/// Whether both lead to one file, there already or not yet, by whatever name or link. Nobody asked
-/// for one whose path is empty.
-[[nodiscard]] bool same_file(const std::string& one, const std::string& other);
-
 /// Of a run that came to nothing, as JSON: schema, outcome ("bad input" or "cannot start"), reason.
 [[nodiscard]] std::string failure_report(const std::string& schema, const ExitStatus& exit_status);
 

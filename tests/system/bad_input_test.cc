@@ -104,26 +104,6 @@ TEST_F(BadInputTest, AReportThatCannotBeWrittenIsToldBeforeTheSession) {
   }
 }
 
-TEST_F(BadInputTest, AReportInPlaceOfTheSessionFileIsToldBeforeTheSession) {
-  const std::string old = folder_ + "/old.mcap";
-  const std::string report = " --report " + folder_ + "/report";
-  std::ofstream{old} << "an old session";
-  std::filesystem::create_hard_link(old, folder_ + "/report");
-  const auto kept = [&] { return text("old.mcap") == "an old session"; };
-  for (const std::string program : {"palp-patient --listen 127.0.0.1:0 --insecure",
-                                    "palp-surgeon --peer 127.0.0.1:9 --insecure"}) {
-    const std::string sentence = "--report and --session-file name one file";
-    expect_refusal(
-        program + report + " --session-file " + folder_ + "/report", kBadInput, sentence);
-    expect_refusal(program + report + " --session-file " + old, kBadInput, sentence);
-    expect_refusal(program + report + " --set record.file=" + old, kBadInput, sentence);
-    EXPECT_TRUE(kept());
-    // What is wrong besides is told; no report of it in that place.
-    expect_refusal(program + report + " --session-file " + old + " --loss 9", kBadInput, "0 to 1");
-    EXPECT_TRUE(kept());
-  }
-}
-
 TEST_F(BadInputTest, KeysOfTwoAuthoritiesAreToldWithTheRemedyAndNotRetried) {
   const std::string ours = folder_ + "/ours";
   const std::string theirs = folder_ + "/theirs";

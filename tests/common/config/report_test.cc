@@ -57,25 +57,6 @@ TEST_F(ReportTest, SaysBeforehandWhetherAFileCanBeWrittenAndLeavesNothing) {
   EXPECT_FALSE(can_write_file(path("")));
 }
 
-TEST_F(ReportTest, KnowsOneFileByAllItsNames) {
-  namespace fs = std::filesystem;
-  EXPECT_TRUE(same_file(path("new"), path("new")));
-  EXPECT_TRUE(same_file(path("new"), path("no/../new")));
-  EXPECT_TRUE(same_file("new", fs::current_path() / "." / "new"));
-  EXPECT_FALSE(same_file(path("new"), path("other")));
-  EXPECT_FALSE(same_file("", ""));
-  fs::create_symlink("new", path("link"));
-  fs::create_directory_symlink(".", path("folder"));
-  EXPECT_TRUE(same_file(path("link"), path("new"))) << "a link to what is not there yet";
-  EXPECT_TRUE(same_file(path("folder/new"), path("new")));
-  ASSERT_TRUE(write_whole_file(path("old"), "old"));
-  fs::create_hard_link(path("old"), path("second name"));
-  EXPECT_TRUE(same_file(path("second name"), path("old")));
-  EXPECT_FALSE(same_file(path("new"), path("old")));
-  fs::create_symlink("round", path("round"));
-  EXPECT_FALSE(same_file(path("round"), path("old")));
-}
-
 TEST_F(ReportTest, AReaderOfTheOldFileKeepsIt) {
   ASSERT_TRUE(write_whole_file(path("a.json"), "old"));
   std::filesystem::create_hard_link(path("a.json"), path("held"));
