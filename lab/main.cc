@@ -1,7 +1,6 @@
 /// palp-lab: whole sessions in virtual time.
 
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -11,7 +10,7 @@
 #include "common/config/exit_code.h"
 #include "common/config/program_run.h"
 #include "common/config/report.h"
-#include "common/core/whole_file.h"
+#include "common/config/submission.h"
 #include "common/io/process/parallel.h"
 #include "common/io/process/process_time.h"
 #include "lab/depth_command.h"
@@ -21,7 +20,6 @@
 #include "lab/report/visibility.h"
 #include "lab/run/run.h"
 #include "lab/scenarios_command.h"
-#include "lab/submission.h"
 #include "lab/verbs.h"
 
 namespace palp::lab {
@@ -123,22 +121,6 @@ ExitStatus run(const Arguments& arguments) {
   return exit_status_of(result.outcome, run_summary(*scenario, result, account));
 }
 
-/// Writes the scripts and becomes what starts them, or prints its lines.
-ExitStatus submit(Submission submission, int argc, char** argv) {
-  std::error_code unknown;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  submission.command.assign(argv, argv + argc);
-  if (!unknown) submission.command.front() = program.string();
-  const auto start = write_submission(submission);
-  if (!start) return refusal(start.error());
-  if (submission.engine == "print") {
-    const auto lines = read_whole_file(*start);
-    return lines ? ExitStatus{ExitCode::Done, *lines} : refusal(lines.error());
-  }
-  (void)::execl("/bin/sh", "sh", start->c_str(), static_cast<char*>(nullptr));
-  return {ExitCode::CannotOpen, "palp-lab: cannot start /bin/sh"};
-}
-
 Machine machine() {
   return {.processors = io::processors(),
           .for_each_index = io::for_each_index,
@@ -176,14 +158,16 @@ int main(int argc, char** argv) {
   palp::lab::BatchArguments batch;
   palp::lab::declare_batch_verbs(line, batch);
   const palp::lab::ScenariosCommand scenarios{line};
-  const palp::lab::ProgressCommand progress{line};
+  const palp::config::ProgressCommand progress{line};
   palp::lab::DepthFlags depth;
   declare_depth(line.verb("depth", "how well a depth is estimated, over many phantoms"), depth);
   palp::lab::VisibilityFlags visible;
   declare_visible(line.verb("visible", "the smallest inclusion the sensor sees"), visible);
   return palp::config::run_program(line, argc, argv, [&]() -> palp::config::ExitStatus {
     const std::string verb = line.chosen_verb();
-    if (!batch.submission.engine.empty()) return palp::lab::submit(batch.submission, argc, argv);
+    if (!batch.submission.engine.empty()) {
+      return palp::config::submit(batch.submission, argc, argv);
+    }
     if (verb == "progress") return progress.run();
     if (auto exit_status = palp::lab::run_batch_verb(verb, batch, palp::lab::machine()))
       return *exit_status;

@@ -288,10 +288,18 @@ void declare_running(config::CommandLine& verb, BatchArguments& arguments, const
 void declare_spread(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {
   declare_running(verb, arguments, schema);
   verb.toggle("--resume", arguments.resume, "only the cases that FILE.partial of --cases lacks");
-  declare_submission(verb, arguments.submission);
+  config::declare_submission(verb, arguments.submission);
 }
 
 }  // namespace
+
+config::ShardForm shard_form() {
+  return {.program = "palp-lab",
+          .part_flag = "--cases",
+          .part_ending = ".csv",
+          .resume = "--resume",
+          .of_merge = {"--report", "--cases", "--svg", "--metric", "--csv"}};
+}
 
 void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   const auto tissue_flag = [&](config::CommandLine& verb) {

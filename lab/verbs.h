@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/config/command_line.h"
-#include "lab/submission.h"
+#include "common/config/submission.h"
 
 /// The verbs of palp-lab that run many cases.
 namespace palp::lab {
@@ -22,6 +22,9 @@ struct Machine {
   std::function<std::pair<double, double>()> used;  ///< [s] of processor time, [s] of wall time
   bool watched{};                                   ///< somebody sees standard error
 };
+
+/// Of all verbs that are spread over machines.
+[[nodiscard]] config::ShardForm shard_form();
 
 struct BatchArguments {
   std::string set;  ///< empty: mc; of a merge: whatever its cases are
@@ -40,7 +43,7 @@ struct BatchArguments {
   std::uint64_t cores{};
   bool resume{};          ///< takes only what an interrupted batch has not
   bool keeps_rows{true};  ///< as they come, beside `cases`
-  Submission submission;  ///< of montecarlo, adversary, map and sweep
+  config::Submission submission{.form = shard_form()};  ///< of montecarlo, adversary, map, sweep
 };
 
 /// Declares the verbs; `arguments` outlives the command line.

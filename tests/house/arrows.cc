@@ -89,7 +89,7 @@ const std::vector<Arrow>& arrows() {
         "common/record",
         "common/io/*",
         "netem/*"}},
-      {"fem/main.cc", {"common/config"}},
+      {"fem/main.cc", {"common/config", "common/io/process/process_time.h"}},
       {"fem/*_command.*", {"common/config", "common/plot"}},
       // How far off the database is between its points: read as the estimators read it.
       {"fem/interpolation_check.cc", {"depth/depth_database.h"}},
