@@ -1,6 +1,7 @@
 /// palp-lab: whole sessions in virtual time.
 
 #include <cstdio>
+#include <fstream>
 #include <optional>
 #include <string>
 
@@ -21,6 +22,7 @@
 #include "lab/run/run.h"
 #include "lab/scenarios_command.h"
 #include "lab/verbs.h"
+#include "site_program/build_info.h"
 
 namespace palp::lab {
 namespace {
@@ -121,6 +123,19 @@ ExitStatus run(const Arguments& arguments) {
   return exit_status_of(result.outcome, run_summary(*scenario, result, account));
 }
 
+/// Bits agree where these do, and mostly where they do not.
+std::string made_by() {
+  std::ifstream processors{"/proc/cpuinfo"};
+  std::string processor = "unknown processor";
+  for (std::string line; std::getline(processors, line);) {
+    if (line.rfind("model name", 0) != 0 || line.find(": ") == std::string::npos) continue;
+    processor = line.substr(line.find(": ") + 2);
+    break;
+  }
+  return "commit " + std::string{site_program::git_commit()} + "; " +
+         std::string{site_program::compiler()} + "; " + processor;
+}
+
 Machine machine() {
   return {.processors = io::processors(),
           .for_each_index = io::for_each_index,
@@ -129,7 +144,8 @@ Machine machine() {
                 const io::ProcessTime used = io::process_time();
                 return std::pair{seconds(used.cpu), seconds(used.wall)};
               },
-          .watched = isatty(STDERR_FILENO) != 0};
+          .watched = isatty(STDERR_FILENO) != 0,
+          .made_by = made_by()};
 }
 
 }  // namespace
@@ -165,14 +181,14 @@ int main(int argc, char** argv) {
   declare_visible(line.verb("visible", "the smallest inclusion the sensor sees"), visible);
   return palp::config::run_program(line, argc, argv, [&]() -> palp::config::ExitStatus {
     const std::string verb = line.chosen_verb();
-    if (!batch.submission.engine.empty()) {
-      return palp::config::submit(batch.submission, argc, argv);
+    for (const auto& submission : {batch.submission, depth.submission}) {
+      if (!submission.engine.empty()) return palp::config::submit(submission, argc, argv);
     }
     if (verb == "progress") return progress.run();
     if (auto exit_status = palp::lab::run_batch_verb(verb, batch, palp::lab::machine()))
       return *exit_status;
     if (verb == "scenarios") return scenarios.run();
-    if (verb == "depth") return palp::lab::run_depth(depth);
+    if (verb == "depth") return palp::lab::run_depth(depth, palp::lab::machine());
     if (verb == "visible") return palp::lab::run_visible(visible);
     return palp::lab::run(arguments);
   });

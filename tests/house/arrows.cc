@@ -183,6 +183,8 @@ const std::vector<Arrow>& arrows() {
         "common/settings"}},
       {"lab/report/*",
        {"lab/run", "lab/plan", "depth", "judge", "common/message", "common/config", "common/plot"}},
+      {"lab/main.cc",
+       {"lab/*", "common/config", "common/io/process", "site_program/build_info.h"}},
       {"lab/*",
        {"lab/*",
         "judge/metric_table.h",
