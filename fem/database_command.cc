@@ -75,11 +75,33 @@ Result<DepthTable> load(const std::string& path) {
 
 auto place(const GridCell& cell) { return std::tuple{cell.shape, cell.depth, cell.radius}; }
 
-/// One process: the cells of its share that `table` lacks.
+/// For a person: how far, how fast, how long still.
+class ShownProgress {
+ public:
+  ShownProgress(std::size_t before, std::size_t count, const std::function<double()>& wall)
+      : wall_{wall}, before_{before}, count_{count}, began_{wall()} {}
+
+  void show(std::size_t done) const {
+    std::fprintf(stderr, "\rpalp-fem: %3zu %% of the grid", 100 * done / count_);
+    const double each = (wall_() - began_) / static_cast<double>(done - before_);
+    std::fprintf(stderr,
+                 ", %.1f places a minute, %.0f s left\x1b[K",
+                 60 / std::max(each, 1e-6),
+                 each * static_cast<double>(count_ - done));
+  }
+
+ private:
+  const std::function<double()>& wall_;
+  std::size_t before_;  ///< places that were there
+  std::size_t count_;
+  double began_;  ///< [s]
+};
+
+/// One process: the cells of its share that `table` lacks. `wall`: null shows no progress.
 Result<void> solve_share(DepthTable table,
                          const Shard& shard,
                          const std::string& path,
-                         bool show_progress) {
+                         const std::function<double()>* wall) {
   std::set<std::tuple<InclusionShape, std::uint32_t, std::uint32_t>> have;
   for (const DepthMember& member : table.members) {
     have.insert({member.shape, member.depth, member.radius});
@@ -87,21 +109,23 @@ Result<void> solve_share(DepthTable table,
   std::vector<GridCell> mine;
   const std::vector<GridCell> cells = cells_of(table.grid);
   for (std::size_t i = shard.index; i < cells.size(); i += shard.count) mine.push_back(cells[i]);
+  const auto missing = std::stable_partition(
+      mine.begin(), mine.end(), [&](const auto& cell) { return have.contains(place(cell)); });
+  const auto first = static_cast<std::size_t>(missing - mine.begin());
+  std::optional<ShownProgress> shown;
+  if (wall != nullptr) shown.emplace(first, mine.size(), *wall);
   int unsaved = 0;
-  for (std::size_t i = 0; i < mine.size(); ++i) {
-    if (have.contains(place(mine[i]))) continue;
+  for (std::size_t i = first; i < mine.size(); ++i) {
     for (DepthMember& member : solve_cell(table.grid, mine[i])) {
       table.members.push_back(std::move(member));
     }
-    if (show_progress) {
-      std::fprintf(stderr, "\rpalp-fem: %3zu %% of the grid", 100 * (i + 1) / mine.size());
-    }
+    if (shown) shown->show(i + 1);
     if (++unsaved < kSaveEvery && i + 1 < mine.size()) continue;
     unsaved = 0;
     const auto written = config::write_whole_file(path, table_bytes(table));
     if (!written) return tl::unexpected<Error>(written.error());
   }
-  if (show_progress) std::fputs("\n", stderr);
+  if (shown) std::fputs("\n", stderr);
   return {};
 }
 
@@ -135,7 +159,7 @@ Result<DepthTable> start_table(const DatabaseFlags& flags) {
 struct Share {
   Shard cells;
   std::string part;
-  bool shows_progress{};
+  const std::function<double()>* wall{};  ///< of the one that shows progress
   pid_t process{};
   int starts{};
 };
@@ -148,7 +172,7 @@ struct Share {
       static_cast<void>(merge_table(table, *part));
     }
   }
-  const auto done = solve_share(std::move(table), share.cells, share.part, share.shows_progress);
+  const auto done = solve_share(std::move(table), share.cells, share.part, share.wall);
   if (!done) std::fprintf(stderr, "palp-fem: %s\n", done.error().text.c_str());
   std::_Exit(done ? 0 : kRefused);
 }
@@ -178,7 +202,7 @@ Result<void> solve_on_all_cores(const DepthTable& table,
   for (std::size_t core = 0; core < flags.cores; ++core) {
     shares.push_back({.cells = {shard.index + shard.count * core, shard.count * flags.cores},
                       .part = part_name(flags.out, core),
-                      .shows_progress = core == 0});
+                      .wall = core == 0 && flags.wall ? &flags.wall : nullptr});
     if (auto started = start(table, shares.back()); !started) return started;
   }
   std::string failed;
@@ -245,11 +269,24 @@ ExitStatus tell(const DepthTable& table, const std::string& report) {
   return {ExitCode::Done, text};
 }
 
+/// States how far the interpolation is off, of a grid that is whole.
+Result<void> check_if_asked(DepthTable& table, const DatabaseFlags& flags) {
+  if (flags.check == 0 || table.members.size() != wanted_members(table.grid)) return {};
+  return check_interpolation(table, static_cast<std::uint32_t>(flags.check), kCheckSeed);
+}
+
 ExitStatus save(const DepthTable& table, const DatabaseFlags& flags) {
   if (const auto written = config::write_whole_file(flags.out, table_bytes(table)); !written) {
     return cannot_open(written.error().text);
   }
   return tell(table, flags.report);
+}
+
+void declare_check(config::CommandLine& line, DatabaseFlags& flags) {
+  line.whole("--check",
+             flags.check,
+             {.min = 0, .max = 10'000},
+             "phantoms between the grid's points, solved to state the interpolation's error");
 }
 
 }  // namespace
@@ -258,15 +295,14 @@ void declare_database(config::CommandLine& line, DatabaseFlags& flags) {
   line.text("--out", flags.out, "FILE", "the database; an unfinished one is completed");
   line.text("--shard", flags.shard, "i/n", "one share of the grid; merge puts them together");
   line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "processes at a time");
-  line.whole("--check",
-             flags.check,
-             {.min = 0, .max = 10'000},
-             "phantoms between the grid's points, solved to state the interpolation's error");
+  declare_check(line, flags);
   line.report(flags.report, kSchema);
+  config::declare_submission(line, flags.submission);
 }
 
 void declare_merge(config::CommandLine& line, DatabaseFlags& flags) {
   line.text("--out", flags.out, "FILE", "the database");
+  declare_check(line, flags);
   line.report(flags.report, kSchema);
   line.arguments("FILE", flags.files, "databases of one grid");
 }
@@ -292,10 +328,8 @@ ExitStatus run_database(const DatabaseFlags& flags) {
     if (!part) return refused(part.error());
     if (auto merged = merge_table(*table, *part); !merged) return bad_input(merged.error().text);
   }
-  if (flags.check > 0 && table->members.size() == wanted_members(table->grid)) {
-    const auto checked =
-        check_interpolation(*table, static_cast<std::uint32_t>(flags.check), kCheckSeed);
-    if (!checked) return bad_input(checked.error().text);
+  if (auto checked = check_if_asked(*table, flags); !checked) {
+    return bad_input(checked.error().text);
   }
   const ExitStatus exit_status = save(*table, flags);
   for (std::size_t core = 0; core < flags.cores; ++core) {
@@ -317,7 +351,15 @@ ExitStatus run_merge(const DatabaseFlags& flags) {
       return bad_input(name + ": " + merged.error().text);
     }
   }
-  return save(*table, flags);
+  if (auto checked = check_if_asked(*table, flags); !checked) {
+    return bad_input(checked.error().text);
+  }
+  ExitStatus exit_status = save(*table, flags);
+  const std::size_t wanted = wanted_members(table->grid);
+  if (exit_status.code != ExitCode::Done || table->members.size() == wanted) return exit_status;
+  return {ExitCode::Missed,
+          "palp-fem: " + flags.out + " has " + std::to_string(table->members.size()) + " of " +
+              std::to_string(wanted) + " curves: merge the files of all shards"};
 }
 
 ExitStatus run_info(const DatabaseFlags& flags) {

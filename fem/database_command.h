@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "common/config/command_line.h"
+#include "common/config/submission.h"
 
 namespace palp::fem {
 
@@ -17,15 +19,24 @@ struct DatabaseFlags {
   std::string report{};
   std::vector<std::string> files{};  ///< of merge
   std::string file{};                ///< of info
+  config::Submission submission{
+      .form = {.program = "palp-fem",
+               .part_flag = "--out",
+               .part_ending = ".bin",
+               .first = 1,
+               .of_merge = {"--out", "--report", "--check"}}};  ///< of database
+  /// [s] since some instant; empty: nobody watches. main() knows clocks and terminals.
+  std::function<double()> wall{};
 };
 
 void declare_database(config::CommandLine& line, DatabaseFlags& flags);
 void declare_merge(config::CommandLine& line, DatabaseFlags& flags);
 void declare_info(config::CommandLine& line, DatabaseFlags& flags);
 
-/// Solves what the file does not hold yet, on all cores (a process each), with progress on standard
-/// error; interrupted and started again it goes on where it was.
+/// Solves what the file does not hold yet, on all cores (a process each), with progress for who
+/// watches; interrupted and started again it goes on where it was.
 [[nodiscard]] config::ExitStatus run_database(const DatabaseFlags& flags);
+/// Missed while a part of the grid is missing.
 [[nodiscard]] config::ExitStatus run_merge(const DatabaseFlags& flags);
 [[nodiscard]] config::ExitStatus run_info(const DatabaseFlags& flags);
 

@@ -1,8 +1,12 @@
 // palp-fem: the finite element solver of indented phantoms as a program.
 #include <string>
 
+#include <unistd.h>
+
 #include "common/config/command_line.h"
 #include "common/config/program_run.h"
+#include "common/config/submission.h"
+#include "common/io/process/process_time.h"
 #include "fem/curve_command.h"
 #include "fem/database_command.h"
 #include "fem/paper_command.h"
@@ -16,6 +20,9 @@ int run(int argc, char** argv) {
   CurveFlags curve;
   declare_curve(line.verb("curve", "one force-indentation curve"), curve);
   DatabaseFlags database;
+  if (::isatty(STDERR_FILENO) != 0) {
+    database.wall = [] { return seconds(io::process_time().wall); };
+  }
   declare_database(line.verb("database", "solve the depth database"), database);
   declare_merge(line.verb("merge", "put databases of one grid together"), database);
   declare_info(line.verb("info", "what a database holds"), database);
@@ -25,6 +32,9 @@ int run(int argc, char** argv) {
   declare_paper(line.verb("paper", "the paper's phantoms, hash and formula, beside ours"), paper);
   return config::run_program(line, argc, argv, [&]() -> config::ExitStatus {
     const std::string verb = line.chosen_verb();
+    if (!database.submission.engine.empty()) {
+      return config::submit(database.submission, argc, argv);
+    }
     if (verb == "database") return run_database(database);
     if (verb == "merge") return run_merge(database);
     if (verb == "info") return run_info(database);

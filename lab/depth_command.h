@@ -3,7 +3,9 @@
 #include <string>
 
 #include "common/config/command_line.h"
+#include "common/config/submission.h"
 #include "lab/plan/depth_study.h"
+#include "lab/verbs.h"
 
 namespace palp::lab {
 
@@ -24,9 +26,17 @@ struct DepthFlags {
   std::string report{};
   std::string csv{};
   std::string svg{};
+  std::string cases{};  ///< from which a run goes on, or is put together
+  std::string shard{};  ///< "i/n"; empty: all
+  bool resume{};
+  config::Submission submission{.form = shard_form()};
 };
 
 void declare_depth(config::CommandLine& line, DepthFlags& flags);
-[[nodiscard]] config::ExitStatus run_depth(const DepthFlags& flags);
+/// On a process for each core.
+[[nodiscard]] config::ExitStatus run_depth(const DepthFlags& flags, const Machine& machine = {});
+/// The cases files of all shards; `flags` say what to write.
+[[nodiscard]] config::ExitStatus merge_depth(const std::vector<std::string>& files,
+                                             const DepthFlags& flags);
 
 }  // namespace palp::lab

@@ -1,7 +1,7 @@
 /// palp-lab: whole sessions in virtual time.
 
 #include <cstdio>
-#include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
 
@@ -11,7 +11,7 @@
 #include "common/config/exit_code.h"
 #include "common/config/program_run.h"
 #include "common/config/report.h"
-#include "common/core/whole_file.h"
+#include "common/config/submission.h"
 #include "common/io/process/parallel.h"
 #include "common/io/process/process_time.h"
 #include "lab/depth_command.h"
@@ -21,8 +21,8 @@
 #include "lab/report/visibility.h"
 #include "lab/run/run.h"
 #include "lab/scenarios_command.h"
-#include "lab/submission.h"
 #include "lab/verbs.h"
+#include "site_program/build_info.h"
 
 namespace palp::lab {
 namespace {
@@ -123,20 +123,17 @@ ExitStatus run(const Arguments& arguments) {
   return exit_status_of(result.outcome, run_summary(*scenario, result, account));
 }
 
-/// Writes the scripts and becomes what starts them, or prints its lines.
-ExitStatus submit(Submission submission, int argc, char** argv) {
-  std::error_code unknown;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  submission.command.assign(argv, argv + argc);
-  if (!unknown) submission.command.front() = program.string();
-  const auto start = write_submission(submission);
-  if (!start) return refusal(start.error());
-  if (submission.engine == "print") {
-    const auto lines = read_whole_file(*start);
-    return lines ? ExitStatus{ExitCode::Done, *lines} : refusal(lines.error());
+/// Bits agree where these do, and mostly where they do not.
+std::string made_by() {
+  std::ifstream processors{"/proc/cpuinfo"};
+  std::string processor = "unknown processor";
+  for (std::string line; std::getline(processors, line);) {
+    if (line.rfind("model name", 0) != 0 || line.find(": ") == std::string::npos) continue;
+    processor = line.substr(line.find(": ") + 2);
+    break;
   }
-  (void)::execl("/bin/sh", "sh", start->c_str(), static_cast<char*>(nullptr));
-  return {ExitCode::CannotOpen, "palp-lab: cannot start /bin/sh"};
+  return "commit " + std::string{site_program::git_commit()} + "; " +
+         std::string{site_program::compiler()} + "; " + processor;
 }
 
 Machine machine() {
@@ -147,7 +144,8 @@ Machine machine() {
                 const io::ProcessTime used = io::process_time();
                 return std::pair{seconds(used.cpu), seconds(used.wall)};
               },
-          .watched = isatty(STDERR_FILENO) != 0};
+          .watched = isatty(STDERR_FILENO) != 0,
+          .made_by = made_by()};
 }
 
 }  // namespace
@@ -176,19 +174,21 @@ int main(int argc, char** argv) {
   palp::lab::BatchArguments batch;
   palp::lab::declare_batch_verbs(line, batch);
   const palp::lab::ScenariosCommand scenarios{line};
-  const palp::lab::ProgressCommand progress{line};
+  const palp::config::ProgressCommand progress{line};
   palp::lab::DepthFlags depth;
   declare_depth(line.verb("depth", "how well a depth is estimated, over many phantoms"), depth);
   palp::lab::VisibilityFlags visible;
   declare_visible(line.verb("visible", "the smallest inclusion the sensor sees"), visible);
   return palp::config::run_program(line, argc, argv, [&]() -> palp::config::ExitStatus {
     const std::string verb = line.chosen_verb();
-    if (!batch.submission.engine.empty()) return palp::lab::submit(batch.submission, argc, argv);
+    for (const auto& submission : {batch.submission, depth.submission}) {
+      if (!submission.engine.empty()) return palp::config::submit(submission, argc, argv);
+    }
     if (verb == "progress") return progress.run();
     if (auto exit_status = palp::lab::run_batch_verb(verb, batch, palp::lab::machine()))
       return *exit_status;
     if (verb == "scenarios") return scenarios.run();
-    if (verb == "depth") return palp::lab::run_depth(depth);
+    if (verb == "depth") return palp::lab::run_depth(depth, palp::lab::machine());
     if (verb == "visible") return palp::lab::run_visible(visible);
     return palp::lab::run(arguments);
   });

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <cstdio>
-#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/result.h"
+#include "lab/partial_rows.h"
 #include "lab/plan/batch.h"
 
 namespace palp::lab {
@@ -24,13 +24,8 @@ class PartialCases {
   void add(const Plan& plan, const CaseResult& result);
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const noexcept { (void)std::fclose(file); }
-  };
-  std::unique_ptr<std::FILE, Close> file_;  ///< null: nothing is kept
+  explicit PartialCases(PartialRows rows) : rows_{std::move(rows)} {}
+  PartialRows rows_;
 };
-
-/// Once the batch is whole and written elsewhere. `path`: of the cases file; may be empty.
-void remove_partial_cases(const std::string& path);
 
 }  // namespace palp::lab

@@ -9,8 +9,10 @@
 #include "common/core/whole_file.h"
 #include "common/coupling/any_coupling.h"
 #include "judge/metric_table.h"
+#include "lab/depth_command.h"
 #include "lab/partial_cases.h"
 #include "lab/report/batch_report.h"
+#include "lab/report/depth_cases.h"
 #include "lab/report/metric_plot.h"
 #include "lab/report/stability_map.h"
 
@@ -34,18 +36,6 @@ constexpr std::uint64_t kSeedMax = 9007199254740991;  // what a JSON number hold
 
 ExitStatus refusal(const Error& fault) { return config::refusal("palp-lab", fault); }
 
-/// One line that is written over, for a person: how far, how fast, how long still.
-Progress shown_progress(const Machine& machine) {
-  if (!machine.watched) return {};
-  return [&machine, begin = machine.used().second](std::size_t done, std::size_t count) {
-    const double rate = static_cast<double>(done) / std::max(1e-3, machine.used().second - begin);
-    const double left = static_cast<double>(count - done) / rate;
-    static_cast<void>(std::fprintf(
-        stderr, "\r%zu of %zu, %.1f a second, %.0f s left\x1b[K", done, count, rate, left));
-    if (done == count) static_cast<void>(std::fprintf(stderr, "\r\x1b[K"));
-  };
-}
-
 /// Writes what was asked for; the error, if any.
 std::optional<ExitStatus> write_files(
     const std::vector<std::pair<std::string, std::string>>& files) {
@@ -60,7 +50,8 @@ std::optional<ExitStatus> write_files(
 
 /// Before hours are spent on what nobody could write down.
 std::optional<ExitStatus> check_files(const BatchArguments& arguments) {
-  const auto can = config::can_write_files({arguments.cases, arguments.report, arguments.svg});
+  const auto can =
+      config::can_write_files({arguments.cases, arguments.report, arguments.svg, arguments.csv});
   if (can) return std::nullopt;
   return ExitStatus{ExitCode::CannotOpen, "palp-lab: " + can.error().text};
 }
@@ -124,6 +115,7 @@ Result<Run> run(Plan plan, const BatchArguments& arguments, const Machine& machi
     keep_shard(plan, *shard);
   }
   const std::size_t cores = arguments.cores > 0 ? arguments.cores : machine.processors;
+  plan.made_by = machine.made_by;
   const auto begin = machine.used();
   auto results = run_missing(plan, arguments, machine, cores);
   if (!results) return tl::unexpected(results.error());
@@ -148,7 +140,7 @@ ExitStatus finish(const Run& done, const BatchArguments& arguments, const std::s
                        {arguments.svg, svg}})) {
     return *failed;
   }
-  if (done.account.cores > 0) remove_partial_cases(arguments.cases);  // none of a merge
+  if (done.account.cores > 0) remove_partial_rows(arguments.cases);  // none of a merge
   return {ExitCode::Done, batch_summary(done.plan, done.results, done.account)};
 }
 
@@ -186,7 +178,7 @@ ExitStatus finish_map(const Run& done, const BatchArguments& arguments) {
                        {arguments.svg, map_svg(done.results)}})) {
     return *failed;
   }
-  if (done.account.cores > 0) remove_partial_cases(arguments.cases);  // none of a merge
+  if (done.account.cores > 0) remove_partial_rows(arguments.cases);  // none of a merge
   return {ExitCode::Done, map_text(done.results)};
 }
 
@@ -252,12 +244,25 @@ Result<void> check_meant(const Plan& plan, const BatchArguments& arguments) {
   return {};
 }
 
+ExitStatus merge_depth_of(const BatchArguments& arguments) {
+  if (!arguments.set.empty() || !arguments.coupling.empty() || !arguments.tissue.empty()) {
+    return refusal({"merge: the cases are of depth, which has no --set, --coupling or --tissue"});
+  }
+  DepthFlags flags;
+  flags.report = arguments.report;
+  flags.csv = arguments.csv;
+  flags.svg = arguments.svg;
+  flags.cases = arguments.cases;
+  return merge_depth(arguments.list, flags);
+}
+
 ExitStatus merge(const BatchArguments& arguments) {
   if (auto known = check_metric(arguments); !known) return refusal(known.error());
   Run all;
   for (const std::string& path : arguments.list) {
     const auto text = read_whole_file(path, kCasesSizeMax);
     if (!text) return {ExitCode::CannotOpen, "palp-lab: " + text.error().text};
+    if (is_depth_cases(*text)) return merge_depth_of(arguments);
     auto rows = read_cases_csv(*text, path, all.plan);
     if (!rows) return refusal(rows.error());
     all.results.insert(all.results.end(), rows->begin(), rows->end());
@@ -267,6 +272,7 @@ ExitStatus merge(const BatchArguments& arguments) {
   });
   if (auto whole = check_complete(all.plan, all.results); !whole) return refusal(whole.error());
   if (auto meant = check_meant(all.plan, arguments); !meant) return refusal(meant.error());
+  warn_of_makers(makers(all.plan, all.results));
   if (all.plan.name == kMapName) return finish_map(all, arguments);
   if (all.plan.name == kSweepName) all.account.schema = kSweep;
   return finish(all, arguments, plot(all, arguments.metric, "set " + all.plan.name));
@@ -288,10 +294,39 @@ void declare_running(config::CommandLine& verb, BatchArguments& arguments, const
 void declare_spread(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {
   declare_running(verb, arguments, schema);
   verb.toggle("--resume", arguments.resume, "only the cases that FILE.partial of --cases lacks");
-  declare_submission(verb, arguments.submission);
+  config::declare_submission(verb, arguments.submission);
 }
 
 }  // namespace
+
+Progress shown_progress(const Machine& machine) {
+  if (!machine.watched) return {};
+  return [&machine, begin = machine.used().second](std::size_t done, std::size_t count) {
+    const double rate = static_cast<double>(done) / std::max(1e-3, machine.used().second - begin);
+    const double left = static_cast<double>(count - done) / rate;
+    static_cast<void>(std::fprintf(
+        stderr, "\r%zu of %zu, %.1f a second, %.0f s left\x1b[K", done, count, rate, left));
+    if (done == count) static_cast<void>(std::fprintf(stderr, "\r\x1b[K"));
+  };
+}
+
+void warn_of_makers(const std::vector<std::string>& makers) {
+  if (makers.size() < 2) return;
+  std::string all;
+  for (const std::string& one : makers) all += (all.empty() ? "" : "; ") + one;
+  static_cast<void>(
+      std::fprintf(stderr,
+                   "palp-lab: warning: not all cases were made by one program and processor: %s\n",
+                   all.c_str()));
+}
+
+config::ShardForm shard_form() {
+  return {.program = "palp-lab",
+          .part_flag = "--cases",
+          .part_ending = ".csv",
+          .resume = "--resume",
+          .of_merge = {"--report", "--cases", "--svg", "--metric", "--csv"}};
+}
 
 void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   const auto tissue_flag = [&](config::CommandLine& verb) {
@@ -335,6 +370,7 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   joined.text("--coupling", arguments.coupling, "NAME", "refuse cases of another");
   tissue_flag(joined);
   joined.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
+  joined.text("--csv", arguments.csv, "FILE", "of depth: a line per case");
   joined.arguments("FILE", arguments.list, "as --cases wrote them");
   joined.required();
   declare_common(joined, arguments, kMontecarlo);

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "common/config/command_line.h"
-#include "lab/submission.h"
+#include "common/config/submission.h"
+#include "lab/plan/batch.h"
 
 /// The verbs of palp-lab that run many cases.
 namespace palp::lab {
@@ -21,7 +22,17 @@ struct Machine {
       for_each_index;
   std::function<std::pair<double, double>()> used;  ///< [s] of processor time, [s] of wall time
   bool watched{};                                   ///< somebody sees standard error
+  std::string made_by{};                            ///< program and processor
 };
+
+/// One line that is written over, for a person: how far, how fast, how long still. Null where
+/// nobody watches; `machine` outlives it.
+[[nodiscard]] Progress shown_progress(const Machine& machine);
+/// For a person: bits agree only where libraries and processors do.
+void warn_of_makers(const std::vector<std::string>& makers);
+
+/// Of all verbs that are spread over machines.
+[[nodiscard]] config::ShardForm shard_form();
 
 struct BatchArguments {
   std::string set;  ///< empty: mc; of a merge: whatever its cases are
@@ -32,6 +43,7 @@ struct BatchArguments {
   std::string report;
   std::string cases;
   std::string svg;
+  std::string csv;  ///< of a merge of depths
   std::string metric{"tap_a_error"};
   std::vector<std::string> list;  ///< axes of a sweep, files of a merge
   std::optional<std::uint64_t> seed;
@@ -40,7 +52,7 @@ struct BatchArguments {
   std::uint64_t cores{};
   bool resume{};          ///< takes only what an interrupted batch has not
   bool keeps_rows{true};  ///< as they come, beside `cases`
-  Submission submission;  ///< of montecarlo, adversary, map and sweep
+  config::Submission submission{.form = shard_form()};  ///< of montecarlo, adversary, map, sweep
 };
 
 /// Declares the verbs; `arguments` outlives the command line.

@@ -51,7 +51,7 @@ constexpr Duration kDevicePatience = std::chrono::seconds{90};      // a drive t
 constexpr std::size_t kContactSamples = 8192;  ///< 8 s: what a slow fit may take and far more
 
 void declare_flags(config::CommandLine& line, config::Document& document, std::string& report) {
-  line.text("--report", report, "FILE", "JSON report, written also when the run fails");
+  line.report(report, "palp.site/2");
   line.settings(document);
   line.knob("--listen", "listen");
   line.knob("--coupling", "coupling.name");

@@ -45,25 +45,20 @@ int run(const SiteMain& program, int argc, const char* const* argv) {
   SiteReport report;
   report.site = program.site;
   if (const auto exit_status = program.line.parse(argc, argv)) {
-    if (exit_status->code == config::ExitCode::Done || program.report_file.empty()) {
+    if (exit_status->code == config::ExitCode::Done || program.report_file.empty() ||
+        program.line.asked_report().clash) {
       return config::leave(program.line, *exit_status);
     }
     report.exit_status = exit_status_of(*exit_status);
     return finish(report, program.report_file);
   }
+  if (const auto closed = config::closed_report(program.line)) return config::leave(*closed);
   const auto verb = std::ranges::find(program.verbs, program.line.chosen_verb(), &SideVerb::name);
   if (verb != program.verbs.end()) {
-    if (const auto closed = config::closed_report(program.line)) return config::leave(*closed);
     const ExitStatus exit_status = verb->run();
     const std::string sentence =
         exit_status.reason.empty() ? "" : program.line.program() + ": " + exit_status.reason;
     return config::leave(program.line, {exit_status.code, sentence});
-  }
-  if (!program.report_file.empty()) {
-    if (const auto can = config::can_write_file(program.report_file); !can) {
-      return config::leave({config::ExitCode::CannotOpen,
-                            program.line.program() + ": --report: " + can.error().text});
-    }
   }
   try {
     report.exit_status = program.session(report);

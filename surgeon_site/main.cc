@@ -47,7 +47,7 @@ constexpr Duration kDisplayPeriod = std::chrono::milliseconds{100};
 constexpr Duration kDevicePause = std::chrono::milliseconds{20};
 
 void declare_flags(config::CommandLine& line, config::Document& document, std::string& report) {
-  line.text("--report", report, "FILE", "JSON report, written also when the run fails");
+  line.report(report, "palp.site/2");
   line.settings(document);
   line.knob("--peer", "peer");
   line.knob("--coupling", "coupling.name");

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/number.h"
+#include "common/config/report_clash.h"
 #include "common/config/settings_flags.h"
 #include "common/core/check.h"
 #include "common/core/printable.h"
@@ -44,6 +45,7 @@ struct CommandLine::Parts {
   std::vector<Declared> declared;
   std::vector<std::unique_ptr<CommandLine>> verbs;
   bool verb_needed{true};
+  Values words;  ///< as given to the program
 
   const CLI::Option* report{};
   std::string report_schema;
@@ -324,6 +326,7 @@ void CommandLine::required() {
 std::optional<ExitStatus> CommandLine::parse(int argc, const char* const* argv) {
   PALP_CHECK(parts_->owned != nullptr, "the program parses, not its verbs");
   CLI::App& app = *parts_->app;
+  parts_->words.assign(argv, argv + argc);
   const auto prefixed = [this](ExitStatus exit_status) {
     exit_status.text = parts_->program + ": " + exit_status.text;
     return exit_status;
@@ -365,12 +368,19 @@ bool CommandLine::given(std::string_view flag) const {
 }
 
 CommandLine::AskedReport CommandLine::asked_report() const {
-  for (const auto& verb : parts_->verbs) {
-    if (auto asked = verb->asked_report(); !asked.file.empty()) return asked;
+  AskedReport asked;
+  if (parts_->report != nullptr && !parts_->report->empty()) {
+    asked = {parts_->report->results().front(), parts_->report_schema};
   }
-  const bool given = parts_->report != nullptr && !parts_->report->empty();
-  return given ? AskedReport{parts_->report->results().front(), parts_->report_schema}
-               : AskedReport{};
+  for (const auto& verb : parts_->verbs) {
+    if (asked.file.empty()) asked = verb->asked_report();
+  }
+  const Document* settings = parts_->settings.document;
+  if (!asked.file.empty() && !parts_->words.empty()) {
+    asked.clash = report_clash(
+        asked.file, parts_->words, chosen_verb(), settings != nullptr ? settings->text() : "");
+  }
+  return asked;
 }
 
 const std::string& CommandLine::program() const { return parts_->program; }

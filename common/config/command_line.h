@@ -97,6 +97,7 @@ class CommandLine {
   struct AskedReport {
     std::string file;  ///< empty: none
     std::string schema;
+    std::optional<std::string> clash{};  ///< why it must not be written there
   };
   [[nodiscard]] AskedReport asked_report() const;
   [[nodiscard]] const std::string& program() const;

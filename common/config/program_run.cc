@@ -7,9 +7,10 @@
 namespace palp::config {
 
 std::optional<ExitStatus> closed_report(const CommandLine& line) {
-  const std::string file = line.asked_report().file;
-  if (file.empty()) return std::nullopt;
-  const auto can = can_write_file(file);
+  const CommandLine::AskedReport asked = line.asked_report();
+  if (asked.file.empty()) return std::nullopt;
+  if (asked.clash) return ExitStatus{ExitCode::BadInput, line.program() + ": " + *asked.clash};
+  const auto can = can_write_file(asked.file);
   if (can) return std::nullopt;
   return ExitStatus{ExitCode::CannotOpen, line.program() + ": --report: " + can.error().text};
 }
@@ -32,7 +33,7 @@ int leave(const CommandLine& line, const ExitStatus& exit_status) {
   const bool failed =
       exit_status.code == ExitCode::BadInput || exit_status.code == ExitCode::CannotOpen;
   const CommandLine::AskedReport asked = line.asked_report();
-  if (failed && !asked.file.empty()) {
+  if (failed && !asked.file.empty() && !asked.clash) {
     // That it cannot be written either is not worth a second sentence.
     (void)write_whole_file(asked.file, failure_report(asked.schema, exit_status));
   }

@@ -14,7 +14,8 @@ namespace palp::config {
                               const char* const* argv,
                               const std::function<ExitStatus()>& body);
 
-/// After parse(): where the report that was asked for cannot be written.
+/// After parse(): where the report that was asked for cannot be written, or would take the place of
+/// another file of the command.
 [[nodiscard]] std::optional<ExitStatus> closed_report(const CommandLine& line);
 
 /// leave(); bad input and what cannot be opened go into the report that was asked for too.

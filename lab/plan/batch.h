@@ -17,6 +17,7 @@ struct CaseResult {
   std::uint64_t index{};
   std::uint64_t seed{};
   std::vector<std::string> labels;
+  std::string made_by;  ///< empty: as the plan
   std::uint64_t digest{};
   double virtual_span{};  ///< [s]
   std::string outcome;

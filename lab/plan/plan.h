@@ -45,6 +45,7 @@ struct Plan {
   std::vector<Case> cases;
   std::uint64_t count{};  ///< of cases, before a shard was taken out
   bool lying{};           ///< the patient's site sends random models
+  std::string made_by;    ///< program and machine that run it; no part of what it is
   bool blackout{};        ///< a blackout of 2 s lies in the middle of A's deep press
 };
 

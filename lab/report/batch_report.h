@@ -26,8 +26,12 @@ struct BatchAccount {
                                         const std::vector<CaseResult>& results,
                                         const BatchAccount& account);
 
+/// The programs and machines that made the cases: one, or bits may differ.
+[[nodiscard]] std::vector<std::string> makers(const Plan& plan,
+                                              const std::vector<CaseResult>& results);
+
 /// A header line and one row per case. Each row says of which plan it is, so that rows of several
-/// files are known to belong together.
+/// files are known to belong together, who made it, and ends with a check over itself.
 [[nodiscard]] std::string cases_csv(const Plan& plan, const std::vector<CaseResult>& results);
 
 /// Rows as cases_csv() wrote them, of one shard or all. `plan` gets what they say of their plan;

@@ -7,6 +7,8 @@
 #include "common/core/conventions.h"
 #include "common/core/median.h"
 #include "lab/plan/depth_study.h"
+#include "lab/report/depth_cases.h"
+#include "lab/run/digest.h"
 
 namespace palp::lab {
 namespace {
@@ -208,6 +210,7 @@ std::string depth_report(const DepthStudy& study,
   json["reference_taps"] = study.reference_taps;
   json["rtt_ms"] = study.round_trip * 1e3;
   json["loss"] = study.loss;
+  json["digest"] = hexadecimal(digest_of(cases));
   json["rows"] = Json::array();
   for (const Row& row : rows_of(study, cases)) json["rows"].push_back(row_json(row));
   const Totals all = totals(cases);

@@ -89,7 +89,7 @@ const std::vector<Arrow>& arrows() {
         "common/record",
         "common/io/*",
         "netem/*"}},
-      {"fem/main.cc", {"common/config"}},
+      {"fem/main.cc", {"common/config", "common/io/process/process_time.h"}},
       {"fem/*_command.*", {"common/config", "common/plot"}},
       // How far off the database is between its points: read as the estimators read it.
       {"fem/interpolation_check.cc", {"depth/depth_database.h"}},
@@ -183,6 +183,8 @@ const std::vector<Arrow>& arrows() {
         "common/settings"}},
       {"lab/report/*",
        {"lab/run", "lab/plan", "depth", "judge", "common/message", "common/config", "common/plot"}},
+      {"lab/main.cc",
+       {"lab/*", "common/config", "common/io/process", "site_program/build_info.h"}},
       {"lab/*",
        {"lab/*",
         "judge/metric_table.h",

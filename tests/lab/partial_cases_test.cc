@@ -37,7 +37,7 @@ std::string fresh_path() {
   const auto* info = testing::UnitTest::GetInstance()->current_test_info();
   const std::string path =
       testing::TempDir() + "palp_" + info->name() + std::to_string(getpid()) + ".csv";
-  remove_partial_cases(path);
+  remove_partial_rows(path);
   return path;
 }
 
@@ -70,8 +70,26 @@ TEST(PartialCasesTest, OnlyWhatIsMissingIsLeftToDo) {
   const auto text = read_whole_file(path + ".partial");
   ASSERT_TRUE(text);
   EXPECT_EQ(*text, cases_csv(plan, before)) << "half a line is gone";
-  remove_partial_cases(path);
+  remove_partial_rows(path);
   EXPECT_FALSE(std::filesystem::exists(path + ".partial"));
+}
+
+TEST(PartialCasesTest, ARowThatWasHalfWrittenIsMadeAgain) {
+  const std::string path = fresh_path();
+  interrupt(path, 3);
+  auto text = *read_whole_file(path + ".partial");
+  // The disk was full for a moment in the middle of the second row.
+  const std::size_t second = text.find("\n1,") + 1;
+  text.erase(second + 40, 30);
+  ASSERT_TRUE(config::write_whole_file(path + ".partial", text));
+  Plan plan = plan_of(4);
+  std::vector<CaseResult> before;
+  auto kept = PartialCases::begin(path, true, plan, before);
+  ASSERT_TRUE(kept) << kept.error().text;
+  EXPECT_EQ(before.size(), 2U);
+  ASSERT_EQ(plan.cases.size(), 2U);
+  EXPECT_EQ(plan.cases.front().index, 1U);
+  remove_partial_rows(path);
 }
 
 TEST(PartialCasesTest, RowsOfAnotherPlanAreRefused) {
@@ -81,7 +99,7 @@ TEST(PartialCasesTest, RowsOfAnotherPlanAreRefused) {
     std::vector<CaseResult> before;
     EXPECT_FALSE(PartialCases::begin(path, true, other, before));
   }
-  remove_partial_cases(path);
+  remove_partial_rows(path);
 }
 
 TEST(PartialCasesTest, WithoutResumeItBeginsAnew) {
@@ -92,7 +110,7 @@ TEST(PartialCasesTest, WithoutResumeItBeginsAnew) {
   EXPECT_TRUE(PartialCases::begin(path, false, plan, before));
   EXPECT_EQ(plan.cases.size(), 4U);
   EXPECT_TRUE(before.empty());
-  remove_partial_cases(path);
+  remove_partial_rows(path);
 }
 
 TEST(PartialCasesTest, ToResumeNeedsAFile) {

@@ -51,6 +51,24 @@ class BadInputTest : public ::testing::Test {
   std::string folder_{make_folder("bad-input")};
 };
 
+TEST_F(BadInputTest, AReportThatWouldTakeThePlaceOfAnotherFile) {
+  const std::string file = folder_ + "/precious";
+  std::ofstream{file} << "content";
+  for (const std::string command : {"palp-surgeon --peer 127.0.0.1:9 --session-file ",
+                                    "palp-patient --listen 127.0.0.1:0 --phantom file:",
+                                    "palp-patient check --config ",
+                                    "palp-lab merge ",
+                                    "palp-lab montecarlo --count 1 --cases ",
+                                    "palp-lab run standard --no-such-flag --trace ",
+                                    "palp-netem relay --listen 127.0.0.1:0 --timeline ",
+                                    "palp-review metrics "}) {
+    SCOPED_TRACE(command);
+    EXPECT_EQ(run(command + file + " --report " + file), kBadInput);
+    EXPECT_EQ(text("precious"), "content");
+  }
+  expect_refusal("palp-lab merge " + file + " --report " + file, kBadInput, "name one file");
+}
+
 TEST_F(BadInputTest, UnknownFlag) {
   for (const std::string program :
        {"palp-surgeon", "palp-patient", "palp-lab run", "palp-netem relay"}) {

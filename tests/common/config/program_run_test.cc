@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "common/config/report.h"
 #include "common/config/settings_text.h"
 #include "common/core/whole_file.h"
 
@@ -22,6 +23,7 @@ class ProgramRunTest : public testing::Test {
   ProgramRunTest() {
     CommandLine& verb = line_.verb("try", "tries");
     verb.report(report_, "palp.try/1");
+    verb.argument("FILE", input_, "read");
     verb.number("--rate", rate_, {.min = 0, .max = 1}, "how fast");
   }
   ~ProgramRunTest() override { std::filesystem::remove(file_); }
@@ -32,12 +34,14 @@ class ProgramRunTest : public testing::Test {
     for (const std::string& word : words) argv.push_back(word.c_str());
     return run_program(line_, static_cast<int>(argv.size()), argv.data(), body);
   }
+  [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] std::string written() const { return read_whole_file(file_).value_or(""); }
 
  private:
   std::string file_ = testing::TempDir() + "palp_run_test_" + std::to_string(::getpid());
   CommandLine line_{"palp-x", "does x"};
   std::string report_;
+  std::string input_;
   double rate_{1};
 };
 
@@ -68,6 +72,14 @@ TEST_F(ProgramRunTest, AWrongFlagIsReportedAndNothingRuns) {
 TEST_F(ProgramRunTest, AnUnknownFlagIsReported) {
   EXPECT_EQ(run({"--speed", "2"}, [] { return ExitStatus{}; }), 2);
   EXPECT_THAT(written(), HasSubstr("--speed"));
+}
+
+TEST_F(ProgramRunTest, AReportNeverTakesThePlaceOfAnotherFile) {
+  ASSERT_TRUE(write_whole_file(file(), "precious"));
+  EXPECT_EQ(run({file()}, [] { return ExitStatus{}; }), 2);
+  EXPECT_EQ(written(), "precious");
+  EXPECT_EQ(run({"--speed", "2", file()}, [] { return ExitStatus{}; }), 2) << "of a wrong line";
+  EXPECT_EQ(written(), "precious");
 }
 
 TEST_F(ProgramRunTest, OfARunThatDidNotFailOnlyTheVerbReports) {

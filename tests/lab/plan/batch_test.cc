@@ -124,6 +124,28 @@ TEST(MergeTest, CommasAndQuotesInNamesSurvive) {
   EXPECT_EQ(again->at(1).labels, results[1].labels);
 }
 
+TEST(MergeTest, WhoMadeTheCasesIsKept) {
+  Plan plan = small_plan(3);
+  plan.made_by = "one, \"compiler\"";
+  std::vector<CaseResult> results = empty_cases(plan);
+  results[1].made_by = "another";
+  Plan read;
+  const auto again = read_cases_csv(cases_csv(plan, results), "cases", read);
+  ASSERT_TRUE(again) << again.error().text;
+  EXPECT_EQ(makers(read, *again), (std::vector<std::string>{"another", plan.made_by}));
+  EXPECT_TRUE(makers({}, empty_cases(plan)).empty());
+}
+
+TEST(MergeTest, ARowThatWasNotWrittenWholeIsRefused) {
+  const Plan plan = small_plan(2);
+  std::string rows = cases_csv(plan, empty_cases(plan));
+  rows.erase(rows.rfind(',') - 3, 1);
+  Plan read;
+  const auto refused = read_cases_csv(rows, "cases", read);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text.find("cases: line 3 was not written whole"), std::string::npos);
+}
+
 TEST(MergeTest, FilesMayBeAsLongAsTheLargestSet) {
   const Plan plan = small_plan(20'000);
   const std::string path = testing::TempDir() + "palp_cases_" + std::to_string(::getpid()) + ".csv";

@@ -1,0 +1,100 @@
+#include "common/config/report_clash.h"
+
+#include <array>
+#include <filesystem>
+#include <string_view>
+
+#include "common/config/number.h"
+#include "common/core/printable.h"
+
+namespace palp::config {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What programs add to the names that they are given, besides nothing: prefixes of session files
+/// and records, rows of a run under way, folders of keys.
+constexpr std::array<std::string_view, 11> kAdded{"",
+                                                  "surgeon.mcap",
+                                                  "patient.mcap",
+                                                  "-up.csv",
+                                                  "-down.csv",
+                                                  ".pcapng",
+                                                  ".partial",
+                                                  "/certificate.pem",
+                                                  "/key.pem",
+                                                  "/authority.pem",
+                                                  "/peers.txt"};
+
+fs::path whole_path(const std::string& name) {
+  std::error_code unresolved;
+  const fs::path path = fs::weakly_canonical(fs::absolute(name, unresolved), unresolved);
+  return unresolved ? fs::path{name}.lexically_normal() : path;
+}
+
+/// A number that is no file's name.
+bool only_number(const std::string& text) {
+  std::error_code ignored;
+  return parse_number(text).has_value() && !fs::exists(text, ignored);
+}
+
+/// "--phantom=file:x.csv": also what stands behind '=' and behind ':'.
+bool names_file(const std::string& word, const std::string& report) {
+  for (std::string rest = word; !rest.empty();) {
+    if (!only_number(rest)) {
+      for (const std::string_view added : kAdded) {
+        if (same_file(rest + std::string{added}, report)) return true;
+      }
+    }
+    const std::size_t next = rest.find_first_of("=:");
+    rest = next == std::string::npos ? std::string{} : rest.substr(next + 1);
+  }
+  return false;
+}
+
+/// What a person calls the word: its flag.
+std::string flag_of(const std::vector<std::string>& words, std::size_t at) {
+  if (words[at].starts_with("--")) return words[at].substr(0, words[at].find('='));
+  return words[at - 1].starts_with("--") ? words[at - 1] : "an argument";
+}
+
+std::string sentence(const std::string& report, const std::string& other) {
+  return "--report and " + other + " name one file, " + printable(report) +
+         ": the report would take its place";
+}
+
+}  // namespace
+
+bool same_file(const std::string& one, const std::string& other) {
+  std::error_code absent;
+  const bool here = fs::exists(one, absent);
+  if (here != fs::exists(other, absent)) return false;
+  if (here) return fs::is_regular_file(one, absent) && fs::equivalent(one, other, absent);
+  return whole_path(one) == whole_path(other);
+}
+
+std::optional<std::string> report_clash(const std::string& report,
+                                        const std::vector<std::string>& words,
+                                        const std::string& verb,
+                                        const std::string& settings) {
+  bool verb_seen = verb.empty();
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (!verb_seen && words[i] == verb) {
+      verb_seen = true;
+      continue;
+    }
+    const std::string flag = flag_of(words, i);
+    if (flag != "--report" && names_file(words[i], report)) return sentence(report, flag);
+  }
+  for (std::size_t from = 0; (from = settings.find('"', from)) != std::string::npos;) {
+    const std::size_t end = settings.find('"', from + 1);
+    if (end == std::string::npos) break;
+    if (names_file(settings.substr(from + 1, end - from - 1), report)) {
+      return sentence(report, "a setting");
+    }
+    from = end + 1;
+  }
+  return std::nullopt;
+}
+
+}  // namespace palp::config

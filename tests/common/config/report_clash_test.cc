@@ -1,0 +1,76 @@
+#include "common/config/report_clash.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace palp::config {
+namespace {
+
+using testing::HasSubstr;
+
+class ReportClashTest : public testing::Test {
+ protected:
+  ReportClashTest() { std::filesystem::create_directories(folder_); }
+  ~ReportClashTest() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
+  [[nodiscard]] std::string made(const std::string& name) const {
+    std::ofstream{path(name)} << "content";
+    return path(name);
+  }
+  [[nodiscard]] bool clashes(const std::string& report,
+                             std::vector<std::string> words,
+                             const std::string& settings = {}) const {
+    words.insert(words.begin(), {"palp-x", "run"});
+    words.insert(words.end(), {"--report", report, "--report=" + report});
+    return report_clash(report, words, "run", settings).has_value();
+  }
+
+ private:
+  std::string folder_ = testing::TempDir() + "palp_clash_" + std::to_string(::getpid());
+};
+
+TEST_F(ReportClashTest, AFileThatIsReadOrWrittenIsNotTakenByTheReport) {
+  const std::string there = made("cases.csv");
+  const std::string absent = path("new.json");
+  for (const std::string& file : {there, absent}) {
+    EXPECT_TRUE(clashes(file, {file}));
+    EXPECT_TRUE(clashes(file, {"--session-file", file}));
+    EXPECT_TRUE(clashes(file, {"--session-file=" + file}));
+    EXPECT_TRUE(clashes(file, {"--phantom", "file:" + file}));
+    EXPECT_TRUE(clashes(file, {"--set", "phantom=file:" + file}));
+    EXPECT_TRUE(clashes(file, {}, "a: 1 phantom: \"file:" + file + "\" b: \"\""));
+    EXPECT_FALSE(clashes(file, {path("other"), "--seed", "1"}, "b: \"other\""));
+  }
+  EXPECT_THAT(report_clash(there, {"palp-x", "--cases", there}, "", "").value(),
+              HasSubstr("--report and --cases name one file, "));
+}
+
+TEST_F(ReportClashTest, UnderAnyName) {
+  const std::string there = made("a.csv");
+  std::filesystem::create_symlink(there, path("link"));
+  std::filesystem::create_hard_link(there, path("hard"));
+  EXPECT_TRUE(clashes(path("link"), {there}));
+  EXPECT_TRUE(clashes(there, {path("hard")}));
+  EXPECT_TRUE(clashes(path("./x/../new"), {path("new")}));
+  EXPECT_FALSE(clashes("/dev/null", {"--csv", "/dev/null"})) << "nothing is lost there";
+}
+
+TEST_F(ReportClashTest, NamesThatProgramsMakeOfThoseTheyAreGiven) {
+  EXPECT_TRUE(clashes(path("s-surgeon.mcap"), {"--session-files", path("s-")}));
+  EXPECT_TRUE(clashes(path("c.csv.partial"), {"--cases", path("c.csv")}));
+  EXPECT_TRUE(clashes(made("key.pem"), {"--identity", path("")}));
+  EXPECT_FALSE(clashes(path("report.json"), {"--session-files", path("")}));
+}
+
+TEST_F(ReportClashTest, AVerbOrANumberIsNoFile) {
+  EXPECT_FALSE(clashes("run", {"--seed", "1"}));
+  EXPECT_FALSE(clashes("7", {"--seed", "7"}));
+}
+
+}  // namespace
+}  // namespace palp::config

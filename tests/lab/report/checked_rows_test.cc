@@ -1,0 +1,29 @@
+#include "lab/report/checked_rows.h"
+
+#include <gtest/gtest.h>
+
+namespace palp::lab {
+namespace {
+
+TEST(CheckedRowsTest, EveryCutAndEveryChangedByteIsNoticed) {
+  const std::string row = with_check("3,99,,\"a, b\",0.25");
+  EXPECT_TRUE(holds_check(row));
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    EXPECT_FALSE(holds_check(row.substr(0, i))) << i;
+    std::string changed = row;
+    changed[i] = static_cast<char>(changed[i] ^ 1);
+    EXPECT_FALSE(holds_check(changed)) << i;
+  }
+}
+
+TEST(CheckedRowsTest, OnlySoundRowsBelowTheHeaderAreKept) {
+  const std::string one = with_check("1,x") + "\n";
+  const std::string two = with_check("2,y") + "\n";
+  EXPECT_EQ(sound_rows("head,check\n" + one + two.substr(0, 4) + one + two),
+            "head,check\n" + one + two);
+  EXPECT_EQ(sound_rows("head,check\n" + one + two.substr(0, two.size() - 1)), "head,check\n" + one);
+  EXPECT_EQ(sound_rows("head,che"), "");
+}
+
+}  // namespace
+}  // namespace palp::lab
