@@ -1,56 +1,44 @@
 #include "judge/excursions.h"
 
-#include <algorithm>
-#include <optional>
+#include <utility>
 
 namespace palp::judge {
-namespace {
 
-/// The ticks [begin, end) as an excursion, if they went deep enough.
-std::optional<Excursion> excursion_of(std::span<const Motion> ticks, double surface) {
-  const auto deepest =
-      std::max_element(ticks.begin(), ticks.end(), [](const Motion& a, const Motion& b) {
-        return a.position < b.position;
-      });
-  if (deepest == ticks.end() || deepest->position - surface <= kStrokeDepthMin) {
-    return std::nullopt;
+std::optional<Excursion> ExcursionFinder::look(const Motion& tick) {
+  const double indentation = tick.position - surface_;
+  if (!(indentation > 0.5 * kStrokeDepthMin)) return finish();
+  const bool first = !std::exchange(inside_, true);
+  if (first) first_ = tick;
+  last_ = tick;
+  if (FeltStiffness::takes(indentation, tick.velocity) && loading_.size() <= kLoadingMax) {
+    loading_.push_back({indentation, tick.velocity, tick.force});
   }
-  const auto loading_size = static_cast<std::size_t>(deepest - ticks.begin()) + 1;
-  return Excursion{.place = deepest->place,
-                   .began_at = ticks.front().at,
-                   .ended_at = ticks.back().at,
-                   .loading = ticks.first(loading_size)};
+  if (first || tick.position > deepest_.position) {
+    deepest_ = tick;
+    loading_size_ = loading_.size();
+  }
+  return std::nullopt;
 }
 
-}  // namespace
-
-std::vector<Excursion> find_excursions(std::span<const Motion> motion, double surface) {
-  std::vector<Excursion> excursions;
-  std::size_t begin = 0;
-  for (std::size_t k = 0; k <= motion.size(); ++k) {
-    const bool inside = k < motion.size() && motion[k].position - surface > 0.5 * kStrokeDepthMin;
-    if (inside) {
-      continue;
+std::optional<Excursion> ExcursionFinder::finish() {
+  if (!std::exchange(inside_, false)) return std::nullopt;
+  std::optional<Excursion> found;
+  if (deepest_.position - surface_ > kStrokeDepthMin) {
+    found = {.place = deepest_.place,
+             .began_at = first_.at,
+             .deepest_at = deepest_.at,
+             .ended_at = last_.at,
+             .stiffness = {}};
+    for (std::size_t i = 0; i < loading_size_ && loading_size_ <= kLoadingMax; ++i) {
+      const Loading& one = loading_[i];
+      const auto truth =
+          tissue_ == nullptr ? std::nullopt : tissue_->force(found->place, one.indentation);
+      found->stiffness.add(one.indentation, one.velocity, one.force, truth);
     }
-    if (k > begin) {
-      if (const auto excursion = excursion_of(motion.subspan(begin, k - begin), surface)) {
-        excursions.push_back(*excursion);
-      }
-    }
-    begin = k + 1;
   }
-  return excursions;
-}
-
-FeltStiffness stiffness_of(const Excursion& excursion, double surface, const TissueTable* tissue) {
-  FeltStiffness stiffness;
-  for (const Motion& tick : excursion.loading) {
-    const double indentation = tick.position - surface;
-    const auto truth =
-        tissue == nullptr ? std::nullopt : tissue->force(excursion.place, indentation);
-    stiffness.add(indentation, tick.velocity, tick.force, truth);
-  }
-  return stiffness;
+  loading_.clear();
+  loading_size_ = 0;
+  return found;
 }
 
 }  // namespace palp::judge

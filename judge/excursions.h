@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
+#include <optional>
 #include <vector>
 
 #include "judge/felt_stiffness.h"
@@ -15,20 +15,42 @@ namespace palp::judge {
 inline constexpr double kStrokeDepthMin = 1.5e-3;
 
 struct Excursion {
-  Place place;
+  Place place;  ///< of the deepest tick
   TimePoint began_at{};
+  TimePoint deepest_at{};
   TimePoint ended_at{};
-  std::span<const Motion> loading;  ///< up to the deepest tick
+  FeltStiffness stiffness;  ///< of its loading: up to the deepest tick
 };
 
-/// Excursions deeper than kStrokeDepthMin past `surface` [m], in order of time. Views of `motion`.
-[[nodiscard]] std::vector<Excursion> find_excursions(std::span<const Motion> motion,
-                                                     double surface);
+/// Finds excursions deeper than kStrokeDepthMin past `surface` [m] in a hand's motion, tick by
+/// tick; holds of the motion what one loading needs. Thread: any one.
+class ExcursionFinder {
+ public:
+  /// `tissue`: true at the same positions; nullptr: unknown. Outlives the finder.
+  ExcursionFinder(double surface, const TissueTable* tissue) : surface_{surface}, tissue_{tissue} {}
 
-/// Of an excursion's loading. The truth is that of `tissue` at the same positions; nullptr:
-/// unknown.
-[[nodiscard]] FeltStiffness stiffness_of(const Excursion& excursion,
-                                         double surface,
-                                         const TissueTable* tissue);
+  /// The excursion that ended before this tick.
+  std::optional<Excursion> look(const Motion& tick);
+  /// One that the motion's end ends.
+  std::optional<Excursion> finish();
+
+ private:
+  struct Loading {
+    double indentation{};  ///< [m]
+    double velocity{};     ///< [m/s]
+    double force{};        ///< [N]
+  };
+  /// More ticks inwards through the window than any stroke has: what is longer is not judged.
+  static constexpr std::size_t kLoadingMax = 1U << 18U;
+
+  double surface_;  ///< [m]
+  const TissueTable* tissue_;
+  bool inside_{};
+  Motion first_;
+  Motion last_;
+  Motion deepest_;
+  std::vector<Loading> loading_;  ///< the ticks that a stiffness may be made of
+  std::size_t loading_size_{};    ///< of them, up to the deepest tick
+};
 
 }  // namespace palp::judge

@@ -17,6 +17,9 @@ class FeltStiffness {
   static constexpr double kTo = 3.6e-3;    ///< [m]
   static constexpr std::size_t kTicksMin = 21;
 
+  [[nodiscard]] static bool takes(double indentation, double velocity) noexcept {
+    return velocity > 0 && indentation > kFrom && indentation < kTo;
+  }
   /// One tick: the hand `indentation` [m] past the surface at `velocity` [m/s] is given `felt` [N],
   /// and the tissue there has `truth` [N]; nullopt: nobody knows. What lies outside the window or
   /// does not move inwards is left out.
@@ -24,7 +27,7 @@ class FeltStiffness {
            double velocity,
            double felt,
            const std::optional<double>& truth) noexcept {
-    if (!(velocity > 0) || !(indentation > kFrom) || !(indentation < kTo)) return;
+    if (!takes(indentation, velocity)) return;
     felt_.add(indentation, felt);
     if (truth) truth_.add(indentation, *truth);
   }

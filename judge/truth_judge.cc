@@ -22,7 +22,7 @@ PhaseTag tag_of(const PlantTruth& truth) {
 
 }  // namespace
 
-void TruthJudge::look(const PlantTruth& truth) {
+std::optional<RunTick> TruthJudge::look(const PlantTruth& truth) {
   if (truth.guarded) {
     step_max_ = std::max(step_max_, force_step(truth.hand_force));
   } else {
@@ -36,23 +36,29 @@ void TruthJudge::look(const PlantTruth& truth) {
                 .force = truth.hand_force,
                 .force_true = truth.force_true,
                 .work = truth.hand_work});
-  if (truth.dark && !dark_from_) dark_from_ = truth.run_time;
-  if (!truth.performing) return;
-  ticks_.push_back({.at = seconds(truth.run_time),
-                    .phase = tag_of(truth),
-                    .counted = truth.counted,
-                    .hand = truth.hand,
-                    .surface = truth.surface,
-                    .hand_velocity = truth.hand_velocity,
-                    .hand_force = truth.hand_force,
-                    .force_true = truth.force_true,
-                    .contact_force = truth.contact_force,
-                    .tip = truth.tip,
-                    .tip_velocity = truth.tip_velocity,
-                    .tip_place = truth.tip_place,
-                    .energy_operator = truth.hand_work,
-                    .energy_operator_min = work_min_,
-                    .energy_net_min = net_min_});
+  if (truth.dark && !dark_seen_) {
+    dark_seen_ = true;
+    const double from = seconds(truth.run_time);
+    run_.blackout(from, from + seconds(kBlackout) + kAfterBlackout);
+  }
+  if (!truth.performing) return std::nullopt;
+  const RunTick tick{.at = seconds(truth.run_time),
+                     .phase = tag_of(truth),
+                     .counted = truth.counted,
+                     .hand = truth.hand,
+                     .surface = truth.surface,
+                     .hand_velocity = truth.hand_velocity,
+                     .hand_force = truth.hand_force,
+                     .force_true = truth.force_true,
+                     .contact_force = truth.contact_force,
+                     .tip = truth.tip,
+                     .tip_velocity = truth.tip_velocity,
+                     .tip_place = truth.tip_place,
+                     .energy_operator = truth.hand_work,
+                     .energy_operator_min = work_min_,
+                     .energy_net_min = net_min_};
+  run_.look(tick);
+  return tick;
 }
 
 double TruthJudge::force_step(double force) {
@@ -61,13 +67,8 @@ double TruthJudge::force_step(double force) {
   return std::abs(force - forces_.front());
 }
 
-RunMetrics TruthJudge::metrics(double force_cap, double period) const {
-  MetricsConfig judging{.force_cap = force_cap, .period = period};
-  if (dark_from_) {
-    judging.blackout_from = seconds(*dark_from_);
-    judging.blackout_to = judging.blackout_from + seconds(kBlackout) + kAfterBlackout;
-  }
-  RunMetrics metrics = metrics_of(ticks_, judging);
+RunMetrics TruthJudge::metrics() const {
+  RunMetrics metrics = run_.metrics();
   metrics.whole = {.force_step = step_max_,
                    .force_kick = pauses_.kick(),
                    .force_drop = pauses_.drop(),

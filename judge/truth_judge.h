@@ -3,12 +3,10 @@
 #include <cstddef>
 #include <deque>
 #include <optional>
-#include <utility>
-#include <vector>
 
 #include "common/message/plant_truth.h"
-#include "judge/metrics.h"
 #include "judge/pause_probe.h"
+#include "judge/run_judge.h"
 
 namespace palp::judge {
 
@@ -16,26 +14,26 @@ namespace palp::judge {
 /// from its file, with the same answer to the last bit. Thread: any one.
 class TruthJudge {
  public:
-  /// Of every tick since the run began, also those of no script.
-  void look(const PlantTruth& truth);
+  /// `config`: without a blackout, which is found.
+  explicit TruthJudge(const MetricsConfig& config) : run_{config} {}
 
-  /// Those in which the script was performed.
-  [[nodiscard]] const std::vector<RunTick>& ticks() const noexcept { return ticks_; }
-  [[nodiscard]] std::vector<RunTick> take_ticks() noexcept { return std::move(ticks_); }
-  /// `force_cap` [N]: of the haptic device; `period` [s]: of a tick.
-  [[nodiscard]] RunMetrics metrics(double force_cap, double period) const;
+  /// Of every tick since the run began, also those of no script. @returns the tick as it was
+  /// judged; nothing: no script was performed in it.
+  std::optional<RunTick> look(const PlantTruth& truth);
+
+  [[nodiscard]] RunMetrics metrics() const;
 
  private:
   /// [N], against 10 ticks ago, or the oldest since the force became the site's own.
   [[nodiscard]] double force_step(double force);
 
-  std::vector<RunTick> ticks_;
+  RunJudge run_;
   double work_min_{};  ///< [J]
   double net_min_{};   ///< [J]
   PauseProbe pauses_;
   std::deque<double> forces_;  ///< [N], newest last
   double step_max_{};          ///< [N]
-  std::optional<Duration> dark_from_;
+  bool dark_seen_{};
 };
 
 }  // namespace palp::judge

@@ -55,8 +55,9 @@ Json phantom_json(const SiteData& patient) {
 
 std::optional<double> round_trip_median_ms(const SiteData& site) {
   std::vector<double> values;
-  for (const Duration span : site.round_trips) {
-    values.push_back(seconds(span) * 1e3);
+  for (const LinkPoint& point : site.links) {
+    const bool measured = point.state == LinkState::Live && point.round_trip > Duration{0};
+    if (measured) values.push_back(seconds(point.round_trip) * 1e3);
   }
   return median(values);
 }
@@ -163,7 +164,7 @@ Json site_json(const SiteData& site, const Json& report, const std::string& path
   json["session_file"] = first_known({member(report, "session_file"), path});
   json["closed"] = site.report.closed;
   json["messages"] = site.report.messages;
-  json["ticks"] = first_known({member(report, "ticks"), site.motion.size()});
+  json["ticks"] = first_known({member(report, "ticks"), site.ticks});
   json["missed_ticks"] = member(report, "missed_ticks");
   json["lateness_p999_us"] = member(report, "lateness_p999_us");
   json["records_written"] = first_known({member(report, "records_written"), site.records});

@@ -21,6 +21,7 @@
 #include "review/merge.h"
 #include "review/recover.h"
 #include "review/replay_command.h"
+#include "review/report_curves.h"
 #include "review/report_page.h"
 #include "review/session_metrics.h"
 #include "review/taps.h"
@@ -247,10 +248,9 @@ ExitStatus run_compare(const std::vector<std::string>& files) {
     if (!session) return exit_status_of(session.error());
     const auto tissue = tissue_of(session->patient, files[i + 1]);
     if (!tissue) return exit_status_of(tissue.error());
-    const SessionTicks ticks = session_ticks(*session, *tissue ? &**tissue : nullptr);
     sessions.push_back({.name = std::to_string(i / 2 + 1),
                         .coupling = session->surgeon.entry("coupling").value_or(""),
-                        .metrics = session_metrics(ticks)});
+                        .metrics = judge_session(*session, *tissue ? &**tissue : nullptr).metrics});
   }
   std::cout << comparison_text(sessions);
   return {};
@@ -264,9 +264,11 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
   const auto tissue_told = tissue_of(*patient, flags.sessions.patient);
   if (!tissue_told) return exit_status_of(tissue_told.error());
   const std::optional<judge::TissueTable>& tissue = *tissue_told;
-  auto taps = match_taps(*surgeon, *patient, session->time_line, tissue ? &*tissue : nullptr);
-  const SessionTicks ticks = session_ticks(*session, tissue ? &*tissue : nullptr);
-  if (ticks.of_truth) take_truth(taps, *session, ticks.run_began, ticks.of_truth->taps);
+  ReportCurves curves;
+  const JudgedSession judged =
+      judge_session(*session, tissue ? &*tissue : nullptr, flags.page.empty() ? nullptr : &curves);
+  auto taps = match_taps(*surgeon, *patient, session->time_line, judged.excursions);
+  if (judged.by_truth) take_truth(taps, *session, judged.run_began, judged.metrics.taps);
   if (!flags.json && flags.page.empty()) std::cout << tap_table(taps, overall_depth(taps));
   if (flags.report.empty() && flags.page.empty() && !flags.json) {
     return {};
@@ -275,10 +277,10 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
                                .patient = optional_text(flags.reports.patient),
                                .relay = optional_text(flags.relay)};
   const auto document = demo_report(
-      *surgeon, *patient, taps, flags.asked, reports, flags.sessions, metrics_json(ticks));
+      *surgeon, *patient, taps, flags.asked, reports, flags.sessions, metrics_json(judged));
   if (flags.json) std::cout << document;
   if (!flags.page.empty()) {
-    const std::string page = report_page(*session, ticks, document);
+    const std::string page = report_page(*session, curves, document);
     if (const auto written = config::write_whole_file(flags.page, page); !written) {
       return cannot_open("--out: " + written.error().text);
     }

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "review/session_metrics.h"
+#include "review/report_curves.h"
 #include "review/time_line.h"
 
 namespace palp::review {
@@ -11,7 +11,7 @@ namespace palp::review {
 /// the JSON document of demo_report(); every number of the page that is no curve comes from there.
 /// Curves are thinned to some thousand points.
 [[nodiscard]] std::string report_page(const SessionPair& session,
-                                      const SessionTicks& ticks,
+                                      const ReportCurves& curves,
                                       const std::string& report);
 
 }  // namespace palp::review

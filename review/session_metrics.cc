@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
+#include <variant>
 
 #include "common/config/document.h"
 #include "judge/metric_table.h"
+#include "judge/run_judge.h"
 #include "judge/truth_judge.h"
 #include "review/phase_finder.h"
+#include "review/tick_source.h"
 #include "surgeon_site/script_reader.h"
 #include "surgeon_site/settings.h"
 
@@ -68,21 +70,33 @@ class ScriptFollower {
   bool broken_{};
 };
 
+judge::Motion motion_of(const SiteTick& tick) {
+  return {.at = tick.at,
+          .position = tick.position,
+          .velocity = tick.velocity,
+          .force = tick.force,
+          .place = tick.place};
+}
+
 /// The patient's motion beside the surgeon's: the newest of each instant.
 class TipFollower {
  public:
   explicit TipFollower(const SessionPair& session)
-      : motion_{session.patient.motion}, line_{session.time_line} {}
+      : ticks_{session.patient}, line_{session.time_line}, next_{ticks_.next_tick()} {}
   /// nullptr: none yet.
   const judge::Motion* at(TimePoint now) {
-    while (next_ < motion_.size() && line_.surgeons(motion_[next_].at) <= now) ++next_;
-    return next_ == 0 ? nullptr : &motion_[next_ - 1];
+    while (next_ && line_.surgeons(next_->at) <= now) {
+      present_ = motion_of(*next_);
+      next_ = ticks_.next_tick();
+    }
+    return present_ ? &*present_ : nullptr;
   }
 
  private:
-  const std::vector<judge::Motion>& motion_;
+  TickSource ticks_;
   const TimeLine& line_;
-  std::size_t next_{};
+  std::optional<SiteTick> next_;
+  std::optional<judge::Motion> present_;
 };
 
 /// Work of the hand on its device, and of the tip on the tissue.
@@ -116,77 +130,114 @@ double truth_of(const judge::TissueTable* tissue, const Place& place, double ind
 
 constexpr double kPeriod = 1e-3;  ///< [s], of a tick
 
-/// Of a session of the lab, from what it wrote down of the true states.
-SessionTicks true_ticks(const SiteData& surgeon) {
-  judge::TruthJudge judge;
-  for (const PlantTruth& truth : surgeon.truths) judge.look(truth);
-  const auto settings = settings_of(surgeon);
-  const judge::MetricsConfig usual;
-  SessionTicks made;
-  made.phases = true;
-  made.of_truth = settings ? judge.metrics(settings->hand.force_max, seconds(settings->link.period))
-                           : judge.metrics(usual.force_cap, usual.period);
-  made.ticks = judge.take_ticks();
-  const PlantTruth& first = surgeon.truths.front();
-  made.run_began = first.at - first.run_time;
-  return made;
+/// Takes a session's ticks as both sites wrote them down, and judges them.
+class LoggedJudge {
+ public:
+  LoggedJudge(const SessionPair& session, const judge::TissueTable* tissue)
+      : began_at_{session.surgeon.began_at},
+        surface_{session.patient.number("surface_offset_mm").value_or(0) * 1e-3},
+        tissue_{tissue},
+        script_{session.surgeon},
+        tips_{session} {}
+
+  judge::RunTick look(const SiteTick& hand) {
+    const judge::Motion* const tip = tips_.at(hand.at);
+    const bool counted = hand.state == SiteState::Engaged || hand.state == SiteState::Hold;
+    work_.add(motion_of(hand), tip, kPeriod);
+    judge::RunTick tick;
+    tick.at = seconds(elapsed(began_at_, hand.at));
+    tick.phase = script_.at(hand.at, counted);
+    tick.counted = counted;
+    tick.hand = hand.position - surface_;
+    tick.hand_velocity = hand.velocity;
+    tick.hand_force = hand.force;
+    tick.force_true = truth_of(tissue_, hand.place, tick.hand);
+    tick.tip = judge::kUndefined;
+    if (tip != nullptr) {
+      tick.contact_force = tip->force;
+      tick.tip = tip->position - surface_;
+      tick.tip_velocity = tip->velocity;
+      tick.tip_place = tip->place;
+    }
+    work_.tell(tick);
+    judge_.look(tick);
+    return tick;
+  }
+  [[nodiscard]] bool phases() const { return script_.knows(); }
+  [[nodiscard]] judge::RunMetrics metrics() const {
+    judge::RunMetrics metrics = judge_.metrics();
+    // Whoever knows when a process stood still says these.
+    metrics.whole = {.force_step = judge::kUndefined,
+                     .force_kick = judge::kUndefined,
+                     .force_drop = judge::kUndefined,
+                     .energy_given = judge::kUndefined};
+    return metrics;
+  }
+
+ private:
+  TimePoint began_at_;
+  double surface_;  ///< [m]
+  const judge::TissueTable* tissue_;
+  ScriptFollower script_;
+  TipFollower tips_;
+  WorkAccount work_;
+  judge::RunJudge judge_{judge::MetricsConfig{}};
+};
+
+/// Of a session of the lab.
+judge::MetricsConfig config_of(const SiteData& surgeon) {
+  judge::MetricsConfig config;
+  if (const auto settings = settings_of(surgeon)) {
+    config.force_cap = settings->hand.force_max;
+    config.period = seconds(settings->link.period);
+  }
+  return config;
 }
 
 }  // namespace
 
-SessionTicks session_ticks(const SessionPair& session, const judge::TissueTable* tissue) {
+JudgedSession judge_session(const SessionPair& session,
+                            const judge::TissueTable* tissue,
+                            TickWatcher* watcher) {
+  JudgedSession made;
   const SiteData& surgeon = session.surgeon;
-  if (!surgeon.truths.empty()) return true_ticks(surgeon);
-  SessionTicks made;
-  const double surface = session.patient.number("surface_offset_mm").value_or(0) * 1e-3;
-  ScriptFollower script{surgeon};
-  TipFollower tips{session};
-  WorkAccount work;
-  made.phases = script.knows();
-  made.ticks.reserve(surgeon.motion.size());
-  for (std::size_t i = 0; i < surgeon.motion.size(); ++i) {
-    const judge::Motion& hand = surgeon.motion[i];
-    const judge::Motion* const tip = tips.at(hand.at);
-    const bool counted =
-        surgeon.states[i] == SiteState::Engaged || surgeon.states[i] == SiteState::Hold;
-    work.add(hand, tip, kPeriod);
-    judge::RunTick tick;
-    tick.at = seconds(elapsed(surgeon.began_at, hand.at));
-    tick.phase = script.at(hand.at, counted);
-    tick.counted = counted;
-    tick.hand = hand.position - surface;
-    tick.hand_velocity = hand.velocity;
-    tick.hand_force = hand.force;
-    tick.force_true = truth_of(tissue, hand.place, tick.hand);
-    tick.tip = judge::kUndefined;
-    if (tip != nullptr) {
-      tick.contact_force = tip->force;
-      tick.tip = tip->position - surface;
-      tick.tip_velocity = tip->velocity;
-      tick.tip_place = tip->place;
-    }
-    work.tell(tick);
-    made.ticks.push_back(tick);
+  made.by_truth = surgeon.run_began.has_value();
+  made.run_began = surgeon.run_began.value_or(TimePoint{});
+  judge::ExcursionFinder strokes{surface_of(session.patient), tissue};
+  const auto keep = [&](const std::optional<judge::Excursion>& stroke) {
+    if (stroke && made.excursions.size() < kListMax) made.excursions.push_back(*stroke);
+  };
+  const auto show = [&](const std::optional<judge::RunTick>& tick) {
+    if (tick && watcher != nullptr) watcher->see(*tick);
+  };
+  std::optional<judge::TruthJudge> truth;
+  std::optional<LoggedJudge> logged;
+  if (made.by_truth) {
+    truth.emplace(config_of(surgeon));
+  } else {
+    logged.emplace(session, tissue);
   }
+  TickSource source{surgeon};
+  while (const auto item = source.next()) {
+    if (const auto* state = std::get_if<PlantTruth>(&*item)) {
+      if (truth) show(truth->look(*state));
+      continue;
+    }
+    const SiteTick& tick = std::get<SiteTick>(*item);
+    keep(strokes.look(motion_of(tick)));
+    if (logged) show(logged->look(tick));
+  }
+  keep(strokes.finish());
+  made.phases = truth || logged->phases();
+  made.metrics = truth ? truth->metrics() : logged->metrics();
   return made;
 }
 
-judge::RunMetrics session_metrics(const SessionTicks& session) {
-  if (session.of_truth) return *session.of_truth;
-  judge::RunMetrics metrics = judge::metrics_of(session.ticks, {});
-  // Whoever knows when a process stood still says these.
-  metrics.whole = {.force_step = judge::kUndefined,
-                   .force_kick = judge::kUndefined,
-                   .force_drop = judge::kUndefined,
-                   .energy_given = judge::kUndefined};
-  return metrics;
-}
-
-config::Json metrics_json(const SessionTicks& session) {
-  const judge::RunMetrics metrics = session_metrics(session);
+config::Json metrics_json(const JudgedSession& session) {
+  const judge::RunMetrics& metrics = session.metrics;
   config::Json json;
   json["phases_known"] = session.phases;
-  json["by_true_states"] = session.of_truth.has_value();
+  json["by_true_states"] = session.by_truth;
   json["unstable"] = metrics.unstable;
   json["unstable_reason"] = metrics.unstable_reason;
   for (const judge::Metric& metric : judge::metric_table()) {

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "common/config/json.h"
+#include "judge/excursions.h"
 #include "judge/metrics.h"
 #include "judge/tissue_table.h"
 #include "review/time_line.h"
@@ -13,22 +12,31 @@ namespace palp::review {
 
 /// A session as the judge of the lab's runs sees one: by its true states, where the lab wrote them
 /// down, else by what both sites wrote down. What nobody wrote down is not a number.
-struct SessionTicks {
-  std::vector<judge::RunTick> ticks;
-  bool phases{};  ///< the script that the hand followed is known, and with it taps and holds
-  /// A session of the lab: judged by what is true in it, as are `ticks`, and as the lab judged it.
-  std::optional<judge::RunMetrics> of_truth;
-  TimePoint run_began{};  ///< of such a session, the surgeon's time
+struct JudgedSession {
+  judge::RunMetrics metrics;
+  bool phases{};    ///< the script that the hand followed is known, and with it taps and holds
+  bool by_truth{};  ///< a session of the lab: judged as the lab judged it
+  TimePoint run_began{};                     ///< of such a session, the surgeon's time
+  std::vector<judge::Excursion> excursions;  ///< of the hand
 };
 
-/// `tissue`: null: unknown, and with it what is true.
-[[nodiscard]] SessionTicks session_ticks(const SessionPair& session,
-                                         const judge::TissueTable* tissue);
+/// Sees each tick of a session, as it is judged, in order of time.
+class TickWatcher {
+ public:
+  TickWatcher() = default;
+  TickWatcher(const TickWatcher&) = delete;
+  TickWatcher& operator=(const TickWatcher&) = delete;
+  virtual ~TickWatcher() = default;
+  virtual void see(const judge::RunTick& tick) = 0;
+};
 
-/// The lab's metrics of a session.
-[[nodiscard]] judge::RunMetrics session_metrics(const SessionTicks& session);
+/// Reads the ticks of both files once more, from the first to the last; holds none.
+/// `tissue`: null: unknown, and with it what is true. `watcher`: null: nobody.
+[[nodiscard]] JudgedSession judge_session(const SessionPair& session,
+                                          const judge::TissueTable* tissue,
+                                          TickWatcher* watcher = nullptr);
 
 /// As reports have them, under the names of the lab's reports.
-[[nodiscard]] config::Json metrics_json(const SessionTicks& session);
+[[nodiscard]] config::Json metrics_json(const JudgedSession& session);
 
 }  // namespace palp::review

@@ -3,50 +3,85 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
-#include "common/record/mapped_file.h"
+#include "common/core/median.h"
 #include "common/record/session_encoder.h"
 #include "common/record/session_reader.h"
 #include "common/record/session_writer.h"
+#include "review/thinned.h"
 
 namespace palp::review {
 namespace {
 
-/// Sorts records into SiteData.
-struct Collector {
-  SiteData& data;
+/// [bytes], a longer text is none of ours and is not read.
+constexpr std::size_t kTextMax = std::size_t{4} << 20U;
 
-  void operator()(const SiteTick& tick) const {
-    data.motion.push_back({.at = tick.at,
-                           .position = tick.position,
-                           .velocity = tick.velocity,
-                           .force = tick.force,
-                           .place = tick.place});
-    data.states.push_back(tick.state);
+template <class T>
+void keep(std::vector<T>& list, const T& one) {
+  if (list.size() < kListMax) list.push_back(one);
+}
+
+LinkPoint point_of(const LinkStatus& status) {
+  const LinkHealth& health = status.health;
+  return {.at = status.at,
+          .state = health.state,
+          .round_trip = health.round_trip,
+          .jitter = health.jitter,
+          .delay_out = health.delay_out,
+          .lost = health.lost,
+          .accepted = health.accepted,
+          .peer_clock = health.peer_clock};
+}
+
+/// Sorts records into SiteData.
+class Collector {
+ public:
+  explicit Collector(SiteData& data) : data_{data} {}
+
+  void operator()(const SiteTick& tick) {
+    ++data_.ticks;
+    last_tick_ = tick.at;
   }
-  void operator()(const HandReading& hand) const {
-    const std::uint32_t before = data.phases.empty() ? 0 : data.phases.back().phase;
-    if (hand.script_phase != before) data.phases.push_back({hand.at, hand.script_phase});
+  void operator()(const HandReading& hand) {
+    const std::uint32_t before = data_.phases.empty() ? 0 : data_.phases.back().phase;
+    if (hand.script_phase != before) keep(data_.phases, {hand.at, hand.script_phase});
   }
-  void operator()(const Note& note) const { data.notes.push_back(note); }
-  void operator()(const LinkHeard& heard) const {
-    const bool known = !data.sessions.empty() && data.sessions.back().id == heard.session_id;
-    if (heard.session_id != 0 && !known) data.sessions.push_back({heard.session_id, heard.at});
+  void operator()(const Note& note) { keep(data_.notes, note); }
+  void operator()(const LinkHeard& heard) {
+    const bool known = !data_.sessions.empty() && data_.sessions.back().id == heard.session_id;
+    if (heard.session_id == 0 || known) return;
+    // The tick of this very instant is its first.
+    const std::uint64_t before = data_.ticks - (last_tick_ == heard.at ? 1 : 0);
+    keep(data_.sessions, {heard.session_id, heard.at, before});
   }
-  void operator()(const LinkStatus& status) const {
-    data.links.push_back(status);
-    data.last_link = status;
-    if (status.health.state == LinkState::Live && status.health.round_trip > Duration{0}) {
-      data.round_trips.push_back(status.health.round_trip);
-    }
+  void operator()(const LinkStatus& status) {
+    data_.last_link = status;
+    links_.add(point_of(status));
   }
-  void operator()(const Transition& transition) const { data.transitions.push_back(transition); }
-  void operator()(const DepthEstimate& estimate) const { data.estimates.push_back(estimate); }
-  void operator()(const DepthArrived& arrived) const { data.reports.push_back(arrived); }
-  void operator()(const PlantTruth& truth) const { data.truths.push_back(truth); }
+  void operator()(const Transition& transition) { keep(data_.transitions, transition); }
+  void operator()(const DepthEstimate& estimate) { keep(data_.estimates, estimate); }
+  void operator()(const DepthArrived& arrived) { keep(data_.reports, arrived); }
+  void operator()(const PlantTruth& truth) {
+    if (!data_.run_began) data_.run_began = TimePoint{elapsed(TimePoint{truth.run_time}, truth.at)};
+  }
   template <class Other>
-  void operator()(const Other& /*is of no use here*/) const {}
+  void operator()(const Other& /*is of no use here*/) {}
+
+  void finish() { data_.links = links_.take(); }
+
+ private:
+  SiteData& data_;
+  Thinned<LinkPoint> links_{4 * kListMax};
+  std::optional<TimePoint> last_tick_;
 };
+
+/// Of an attachment; nothing: there is none, or it is too long.
+std::optional<std::string> text_of(const record::SessionReader& reader, const char* name) {
+  const auto text = reader.attachment(name);
+  if (!text || text->size() > kTextMax) return std::nullopt;
+  return std::string{*text};
+}
 
 }  // namespace
 
@@ -66,12 +101,23 @@ std::optional<double> SiteData::number(const std::string& key) const {
   return std::isfinite(value) ? std::optional{value} : std::nullopt;
 }
 
+double surface_of(const SiteData& patient) {
+  if (const auto offset = patient.number("surface_offset_mm")) return *offset * 1e-3;
+  std::vector<double> found;
+  for (const DepthEstimate& estimate : patient.estimates) {
+    if (estimate.reason != DepthReason::NoContact) found.push_back(estimate.surface);
+  }
+  return median(found).value_or(0);
+}
+
 Result<SiteData> load_site(const std::string& path, link::Role site) {
-  const auto file = record::MappedFile::open(path);
+  auto file = record::MappedFile::open(path);
   if (!file) {
     return tl::unexpected(file.error());
   }
-  return load_site(file->bytes(), path, site);
+  auto data = load_site(file->bytes(), path, site);
+  if (data) data->mapping = std::move(*file);
+  return data;
 }
 
 Result<SiteData> load_site(const record::FileBytes& file,
@@ -79,7 +125,9 @@ Result<SiteData> load_site(const record::FileBytes& file,
                            link::Role site) {
   SiteData data;
   data.site = site;
+  data.bytes = file;
   record::SessionReader reader{file};
+  Collector collector{data};
   while (const auto entry = reader.next()) {
     if (entry->site != site) {
       return fail(name + " is the session file of the " +
@@ -87,8 +135,9 @@ Result<SiteData> load_site(const record::FileBytes& file,
                   std::string{record::site_name(site)});
     }
     ++data.records;
-    std::visit(Collector{data}, entry->record);
+    std::visit(collector, entry->record);
   }
+  collector.finish();
   data.report = reader.report();
   if (data.report.messages == 0) {
     return fail(name + ": " +
@@ -101,12 +150,8 @@ Result<SiteData> load_site(const record::FileBytes& file,
   data.program_report = reader.metadata(record::kReportRecord, record::kReportKey);
   data.peer = reader.metadata("palp.peer");
   data.records_dropped = reader.metadata("palp.summary", "records_dropped");
-  if (const auto text = reader.attachment("config.textproto")) {
-    data.settings = std::string{*text};
-  }
-  if (const auto csv = reader.attachment("tissue.csv")) {
-    data.tissue_csv = std::string{*csv};
-  }
+  data.settings = text_of(reader, "config.textproto");
+  data.tissue_csv = text_of(reader, "tissue.csv");
   return data;
 }
 

@@ -1,14 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/core/result.h"
+#include "common/record/mapped_file.h"
 #include "common/record/recorder.h"
 #include "common/record/session_reader.h"
-#include "judge/motion.h"
 
 namespace palp::review {
 
@@ -16,6 +17,19 @@ namespace palp::review {
 struct SessionSpan {
   std::uint64_t id{};
   TimePoint began_at{};
+  std::uint64_t ticks_before{};  ///< of the file, before this one
+};
+
+/// What curves and clocks need of a link's status.
+struct LinkPoint {
+  TimePoint at{};
+  LinkState state{};
+  Duration round_trip{};
+  Duration jitter{};
+  Duration delay_out{};
+  std::uint64_t lost{};
+  std::uint64_t accepted{};
+  std::optional<ClockOffset> peer_clock;
 };
 
 /// From then on the hand is in this phase of its script: 1, 2, ...
@@ -24,23 +38,29 @@ struct PhaseChange {
   std::uint32_t phase{};
 };
 
-/// What one session file says, in memory.
+/// Kept of each list of a file that holds more: no session of a day does.
+inline constexpr std::size_t kListMax = 32768;
+
+/// What one session file says besides its ticks, which TickSource reads one by one: a file of hours
+/// takes no more memory than one of minutes.
 struct SiteData {
   link::Role site{};
-  TimePoint began_at{};  ///< the earliest sample
-  std::vector<judge::Motion> motion;
-  std::vector<SiteState> states;    ///< one for each of `motion`
-  std::vector<PhaseChange> phases;  ///< surgeon: of a scripted hand
+  record::FileBytes bytes;                      ///< of the file; they outlive this
+  std::optional<record::MappedFile> mapping{};  ///< holds them, where they were mapped
+  TimePoint began_at{};                         ///< the earliest sample
+  TimePoint from{TimePoint::min()};             ///< ticks before are of another session
+  TimePoint to{TimePoint::max()};               ///< and from here on
+  std::uint64_t ticks{};                        ///< between
+  std::vector<PhaseChange> phases;              ///< surgeon: of a scripted hand
   std::vector<Note> notes;
   std::vector<SessionSpan> sessions;
   record::WallClock clock;
   std::vector<Transition> transitions;
   std::vector<DepthEstimate> estimates;
-  std::vector<Duration> round_trips;  ///< of the link's statuses, where measured
   std::optional<LinkStatus> last_link;
-  std::vector<LinkStatus> links;               ///< all of them
+  std::vector<LinkPoint> links;                ///< all of them, or each second, fourth, ...
   std::vector<DepthArrived> reports;           ///< surgeon: each estimate as it arrived
-  std::vector<PlantTruth> truths;              ///< surgeon: of a simulation of both sites
+  std::optional<TimePoint> run_began;          ///< surgeon: of a simulation of both sites
   record::McapMap metadata;                    ///< of the record `palp`
   record::McapMap peer;                        ///< of the record `palp.peer`
   std::optional<std::string> tissue_csv;       ///< attachment tissue.csv
@@ -54,6 +74,9 @@ struct SiteData {
   /// nullopt: absent, or not a finite number.
   [[nodiscard]] std::optional<double> number(const std::string& key) const;
 };
+
+/// [m], where the patient's surface lies: as the file says, else as the strokes found it.
+[[nodiscard]] double surface_of(const SiteData& patient);
 
 /// Fails if the file cannot be opened, is none, or is the other site's.
 [[nodiscard]] Result<SiteData> load_site(const std::string& path, link::Role site);

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "common/core/median.h"
 #include "common/core/place_text.h"
 #include "judge/depth_summary.h"
-#include "judge/excursions.h"
 #include "judge/stroke_pairing.h"
 #include "review/text.h"
 
@@ -17,11 +17,9 @@ namespace {
 /// say anything.
 Duration way_out(const SiteData& surgeon) {
   std::vector<double> ways;
-  for (const LinkStatus& status : surgeon.links) {
-    const LinkHealth& health = status.health;
-    if (health.round_trip <= Duration{0}) continue;
-    ways.push_back(
-        seconds(health.delay_out > Duration{0} ? health.delay_out : health.round_trip / 2));
+  for (const LinkPoint& point : surgeon.links) {
+    if (point.round_trip <= Duration{0}) continue;
+    ways.push_back(seconds(point.delay_out > Duration{0} ? point.delay_out : point.round_trip / 2));
   }
   return from_seconds(std::clamp(median(ways).value_or(0), 0.0, 10.0));
 }
@@ -33,27 +31,18 @@ judge::Stay at_hand(const DepthEstimate& estimate, const TimeLine& line, Duratio
           estimate.place};
 }
 
-/// The surgeon's excursions, each with its stiffness once it was asked for.
+/// The surgeon's excursions.
 class Strokes {
  public:
-  Strokes(const SiteData& surgeon,
-          const TimeLine& line,
-          double surface,
-          const judge::TissueTable* tissue)
-      : line_{line}, way_{way_out(surgeon)}, surface_{surface}, tissue_{tissue} {
+  Strokes(const SiteData& surgeon, const TimeLine& line, std::vector<judge::Excursion> strokes)
+      : line_{line}, way_{way_out(surgeon)}, strokes_{std::move(strokes)} {
     for (const DepthArrived& arrived : surgeon.reports) {
       arrived_at_.try_emplace(arrived.report.number, arrived.at);
     }
-    for (const judge::Excursion& excursion : judge::find_excursions(surgeon.motion, surface)) {
-      strokes_.push_back({excursion, {}});
-    }
-    std::stable_sort(strokes_.begin(), strokes_.end(), [](const Stroke& a, const Stroke& b) {
-      return a.excursion.began_at < b.excursion.began_at;
-    });
+    std::ranges::stable_sort(strokes_, {}, &judge::Excursion::began_at);
     stays_.reserve(strokes_.size());
-    for (const Stroke& stroke : strokes_) {
-      const judge::Excursion& excursion = stroke.excursion;
-      stays_.push_back({excursion.began_at, excursion.ended_at, excursion.place});
+    for (const judge::Excursion& stroke : strokes_) {
+      stays_.push_back({stroke.began_at, stroke.ended_at, stroke.place});
     }
   }
 
@@ -61,29 +50,16 @@ class Strokes {
   [[nodiscard]] std::optional<std::size_t> of(const DepthEstimate& estimate) const {
     return line_.known ? by_time(estimate) : by_arrival(estimate);
   }
-  [[nodiscard]] Duration span(std::size_t index) const {
-    const judge::Excursion& excursion = strokes_[index].excursion;
-    return elapsed(excursion.began_at, excursion.ended_at);
-  }
-  [[nodiscard]] const judge::FeltStiffness& stiffness(std::size_t index) {
-    Stroke& stroke = strokes_[index];
-    if (!stroke.stiffness) {
-      stroke.stiffness = judge::stiffness_of(stroke.excursion, surface_, tissue_);
-    }
-    return *stroke.stiffness;
+  [[nodiscard]] const judge::Excursion& operator[](std::size_t index) const {
+    return strokes_[index];
   }
 
  private:
-  struct Stroke {
-    judge::Excursion excursion;
-    std::optional<judge::FeltStiffness> stiffness;
-  };
-
   /// How many the surgeon began before.
   [[nodiscard]] std::size_t begun_before(TimePoint at) const {
     const auto later =
-        std::partition_point(strokes_.begin(), strokes_.end(), [at](const Stroke& stroke) {
-          return stroke.excursion.began_at < at;
+        std::partition_point(strokes_.begin(), strokes_.end(), [at](const auto& stroke) {
+          return stroke.began_at < at;
         });
     return static_cast<std::size_t>(later - strokes_.begin());
   }
@@ -100,33 +76,18 @@ class Strokes {
       return std::nullopt;
     }
     const std::size_t later = begun_before(arrived->second);
-    if (later == 0 || distance(strokes_[later - 1].excursion.place, estimate.place) > kSamePlace) {
+    if (later == 0 || distance(strokes_[later - 1].place, estimate.place) > kSamePlace) {
       return std::nullopt;
     }
     return later - 1;
   }
 
   TimeLine line_;
-  Duration way_;    ///< from the hand to the tip
-  double surface_;  ///< [m]
-  const judge::TissueTable* tissue_;
+  Duration way_;                                   ///< from the hand to the tip
   std::map<std::uint32_t, TimePoint> arrived_at_;  ///< by the estimate's number
-  std::vector<Stroke> strokes_;                    ///< in order of time
+  std::vector<judge::Excursion> strokes_;          ///< in order of time
   std::vector<judge::Stay> stays_;                 ///< the same
 };
-
-double surface_of(const SiteData& patient) {
-  if (const auto offset = patient.number("surface_offset_mm")) {
-    return *offset * 1e-3;
-  }
-  std::vector<double> found;
-  for (const DepthEstimate& estimate : patient.estimates) {
-    if (estimate.reason != DepthReason::NoContact) {
-      found.push_back(estimate.surface);
-    }
-  }
-  return median(found).value_or(0);
-}
 
 std::string cell(const std::optional<double>& value, int digits, std::size_t width) {
   return right(value ? fixed(*value, digits) : "-", width);
@@ -137,12 +98,12 @@ std::string cell(const std::optional<double>& value, int digits, std::size_t wid
 std::vector<Tap> match_taps(const SiteData& surgeon,
                             const SiteData& patient,
                             const TimeLine& line,
-                            const judge::TissueTable* tissue) {
-  Strokes strokes{surgeon, line, surface_of(patient), tissue};
+                            const std::vector<judge::Excursion>& excursions) {
+  const Strokes strokes{surgeon, line, excursions};
   std::vector<Tap> taps;
   for (const DepthEstimate& estimate : patient.estimates) {
     const auto stroke = strokes.of(estimate);
-    const Duration span = stroke ? strokes.span(*stroke)
+    const Duration span = stroke ? elapsed(strokes[*stroke].began_at, strokes[*stroke].ended_at)
                                  : elapsed(estimate.stroke_began_at, estimate.stroke_ended_at);
     Tap tap{.place = estimate.place,
             .kind = span > kTapMax ? StrokeKind::Press : StrokeKind::Tap,
@@ -153,7 +114,7 @@ std::vector<Tap> match_taps(const SiteData& surgeon,
                   return other.kind == tap.kind && distance(other.place, tap.place) <= kSamePlace;
                 }));
     if (stroke) {
-      tap.stiffness = strokes.stiffness(*stroke);
+      tap.stiffness = strokes[*stroke].stiffness;
     }
     taps.push_back(tap);
   }

@@ -7,9 +7,9 @@
 
 #include "common/core/place.h"
 #include "judge/depth_statement.h"
+#include "judge/excursions.h"
 #include "judge/felt_stiffness.h"
 #include "judge/metrics.h"
-#include "judge/tissue_table.h"
 #include "review/site_data.h"
 #include "review/time_line.h"
 
@@ -37,7 +37,7 @@ struct Tap {
 [[nodiscard]] std::vector<Tap> match_taps(const SiteData& surgeon,
                                           const SiteData& patient,
                                           const TimeLine& line,
-                                          const judge::TissueTable* tissue);
+                                          const std::vector<judge::Excursion>& excursions);
 
 /// Gives each tap what was true of it, where a judge of the simulation said so: `judged` with times
 /// since `run_began`, the surgeon's.

@@ -18,8 +18,8 @@ bool sensible(const ClockOffset& told) noexcept {
 /// The most certain offset of a site's, the latest of equals; nothing: none was told.
 std::optional<ClockOffset> best_offset(const SiteData& site) {
   std::optional<ClockOffset> best;
-  for (const LinkStatus& status : site.links) {
-    const std::optional<ClockOffset>& told = status.health.peer_clock;
+  for (const LinkPoint& point : site.links) {
+    const std::optional<ClockOffset>& told = point.peer_clock;
     if (!told || !sensible(*told)) continue;
     if (!best || told->uncertainty <= best->uncertainty) best = told;
   }
@@ -34,12 +34,8 @@ void keep_between(std::vector<Timed>& list, TimePoint from, TimePoint to, const 
 /// Leaves out what is not between.
 void keep_between(SiteData& site, TimePoint from, TimePoint to) {
   const auto at = [](const auto& one) { return one.at; };
-  std::vector<SiteState> states;
-  for (std::size_t i = 0; i < site.motion.size(); ++i) {
-    if (site.motion[i].at >= from && site.motion[i].at < to) states.push_back(site.states[i]);
-  }
-  site.states = std::move(states);
-  keep_between(site.motion, from, to, at);
+  site.from = from;
+  site.to = to;
   keep_between(site.phases, from, to, at);
   keep_between(site.notes, from, to, at);
   keep_between(site.transitions, from, to, at);
@@ -68,7 +64,10 @@ void keep_common(SiteData& site, const SiteData& other) {
   const auto behind = std::find_if_not(first, site.sessions.end(), common);
   // What a site did before its first session belongs to that.
   const TimePoint from = first == site.sessions.begin() ? TimePoint::min() : first->began_at;
-  keep_between(site, from, behind == site.sessions.end() ? TimePoint::max() : behind->began_at);
+  const bool last = behind == site.sessions.end();
+  const std::uint64_t before = from == TimePoint::min() ? 0 : first->ticks_before;
+  site.ticks = (last ? site.ticks : behind->ticks_before) - before;
+  keep_between(site, from, last ? TimePoint::max() : behind->began_at);
 }
 
 }  // namespace

@@ -60,7 +60,8 @@ class Probe {
         file_{file},
         phases_{scenario.script},
         field_{patient::make_field(scenario.phantom, scenario.tissue.viscous_factor)},
-        relaxing_{scenario.phantom.relaxation} {}
+        relaxing_{scenario.phantom.relaxation},
+        judge_{{.force_cap = scenario.hand.force_max, .period = seconds(scenario.link.period)}} {}
 
   /// Of the run's path and time at a look.
   struct Moment {
@@ -119,10 +120,11 @@ class Probe {
         .contact_force = tissue.contact_force,
         .tissue_energy = tissue.tissue_energy};
     paused_ = site.paused() || peer.paused();
-    judge_.look(truth);
+    if (const auto tick = judge_.look(truth)) ticks_.push_back(*tick);
     if (file_ != nullptr) file_->write(truth);
   }
-  [[nodiscard]] judge::TruthJudge& judge() { return judge_; }
+  [[nodiscard]] const judge::TruthJudge& judge() const { return judge_; }
+  [[nodiscard]] std::vector<judge::RunTick> take_ticks() { return std::move(ticks_); }
 
  private:
   const Scenario& scenario_;
@@ -134,6 +136,7 @@ class Probe {
   patient::RelaxingForce relaxing_;
   bool paused_{};  ///< either site, at the last look
   judge::TruthJudge judge_;
+  std::vector<judge::RunTick> ticks_;
 };
 
 /// Makes the one fault of a run happen, and ends it.
@@ -328,8 +331,8 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   result.began_at = start;
   result.virtual_span = simulator.now() - start;
   result.outcome = surgeon.hand.progress().outcome;
-  result.metrics = probe.judge().metrics(scenario.hand.force_max, seconds(scenario.link.period));
-  result.ticks = probe.judge().take_ticks();
+  result.metrics = probe.judge().metrics();
+  result.ticks = probe.take_ticks();
   result.depths = patient.file.estimates();
   result.strokes =
       strokes_of(result.depths, patient.process.clock(), start + scenario.up.delay.mean);

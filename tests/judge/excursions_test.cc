@@ -16,14 +16,8 @@ Motion tip_at(double position) {
 namespace test = review::test;
 using test::kSurface;
 
-std::vector<Motion> hand_motion(int taps_per_place) {
-  std::vector<Motion> motion;
-  for (std::int64_t ms = 0; ms < 2000 * taps_per_place; ++ms) {
-    const auto tick = test::hand_tick(ms, taps_per_place);
-    motion.push_back({tick.at, tick.position, tick.velocity, tick.force, tick.place});
-  }
-  return motion;
-}
+using test::find_excursions;
+using test::hand_motion;
 
 TEST(ExcursionsTest, FindsEachTapOnceAndEndsItsLoadingAtTheDeepestTick) {
   const auto motion = hand_motion(2);
@@ -32,8 +26,7 @@ TEST(ExcursionsTest, FindsEachTapOnceAndEndsItsLoadingAtTheDeepestTick) {
   EXPECT_EQ(excursions[1].place, kSiteA);
   EXPECT_EQ(excursions[2].place, kSiteB);
   for (std::size_t k = 0; k < 4; ++k) {
-    EXPECT_EQ(excursions[k].loading.back().at,
-              test::at_ms(static_cast<std::int64_t>(k) * 1000 + 400));
+    EXPECT_EQ(excursions[k].deepest_at, test::at_ms(static_cast<std::int64_t>(k) * 1000 + 400));
   }
 }
 
@@ -54,25 +47,38 @@ TEST(ExcursionsTest, HandStillInsideAtTheEndOfTheFileIsAnExcursion) {
 
 TEST(ExcursionsTest, SlopesOfLinearForceAndLinearTissueAreExact) {
   const auto motion = hand_motion(1);
-  const auto excursions = find_excursions(motion, kSurface);
   const auto tissue = TissueTable::parse(test::kTissueCsv);
+  const auto excursions = find_excursions(motion, kSurface, &*tissue);
   ASSERT_EQ(excursions.size(), 2u);
-  const FeltStiffness at_a = stiffness_of(excursions[0], kSurface, &*tissue);
-  const FeltStiffness at_b = stiffness_of(excursions[1], kSurface, &*tissue);
+  const FeltStiffness& at_a = excursions[0].stiffness;
+  const FeltStiffness& at_b = excursions[1].stiffness;
   EXPECT_NEAR(*at_a.felt(), test::kFeltA, 1e-6);
   EXPECT_NEAR(*at_a.truth(), 100, 1e-6);
   EXPECT_NEAR(*at_b.felt(), test::kFeltB, 1e-6);
   EXPECT_NEAR(*at_b.truth(), 200, 1e-6);
-  EXPECT_FALSE(stiffness_of(excursions[0], kSurface, nullptr).truth());
+  EXPECT_FALSE(find_excursions(motion, kSurface).front().stiffness.truth());
 }
 
 TEST(ExcursionsTest, TableThatEndsInsideTheWindowGivesNoTruth) {
   const auto motion = hand_motion(1);
   const auto tissue = TissueTable::parse("site,d_mm,F_N\nA,0,0\nA,3,0.3\n");
-  const auto stiffness =
-      stiffness_of(find_excursions(motion, kSurface).front(), kSurface, &*tissue);
+  const auto stiffness = find_excursions(motion, kSurface, &*tissue).front().stiffness;
   EXPECT_TRUE(stiffness.felt());
   EXPECT_FALSE(stiffness.truth());
+}
+
+TEST(ExcursionsTest, WhatGoesInForMinutesIsAnExcursionWithoutAStiffness) {
+  // A file that nobody of ours wrote: what is held of a stroke has a bound.
+  ExcursionFinder finder{0, nullptr};
+  Motion motion = tip_at(2e-3);
+  motion.velocity = 1e-6;
+  for (int i = 0; i < 300'000; ++i) {
+    motion.position += 1e-9;
+    EXPECT_FALSE(finder.look(motion));
+  }
+  const auto found = finder.finish();
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->stiffness.felt());
 }
 
 }  // namespace

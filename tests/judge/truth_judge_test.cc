@@ -13,52 +13,53 @@ PlantTruth tick_of(int ms) {
 }
 
 TEST(TruthJudgeTest, OnlyTicksOfTheScriptAreJudgedButEnergyIsOfTheWholeRun) {
-  TruthJudge judge;
+  TruthJudge judge{{}};
   PlantTruth before = tick_of(0);
   before.performing = false;
   before.hand_work = -2e-3;
-  judge.look(before);
-  judge.look(tick_of(1));
-  ASSERT_EQ(judge.ticks().size(), 1U);
-  EXPECT_EQ(judge.ticks().front().at, 1e-3);
-  EXPECT_EQ(judge.ticks().front().energy_operator_min, -2e-3);
-  EXPECT_EQ(judge.metrics(8.5, 1e-3).energy_operator, 2e-3);
+  EXPECT_FALSE(judge.look(before));
+  const auto tick = judge.look(tick_of(1));
+  ASSERT_TRUE(tick);
+  EXPECT_EQ(tick->at, 1e-3);
+  EXPECT_EQ(tick->energy_operator_min, -2e-3);
+  EXPECT_EQ(judge.metrics().energy_operator, 2e-3);
 }
 
 TEST(TruthJudgeTest, AStepCountsWhileTheForceIsTheSitesOwn) {
-  TruthJudge judge;
+  TruthJudge judge{{}};
   for (int ms = 0; ms < 20; ++ms) {
     PlantTruth truth = tick_of(ms);
     truth.guarded = ms < 5;
     truth.hand_force = ms < 4 ? 0 : ms < 5 ? 0.5 : 3;
     judge.look(truth);
   }
-  EXPECT_EQ(judge.metrics(8.5, 1e-3).whole.force_step, 0.5);
+  EXPECT_EQ(judge.metrics().whole.force_step, 0.5);
 }
 
 TEST(TruthJudgeTest, ADarkPathIsJudgedForTwoSecondsMore) {
   const auto speed = [](int ms) {
-    TruthJudge judge;
+    TruthJudge judge{{}};
     PlantTruth dark = tick_of(1000);
     dark.dark = true;
     judge.look(dark);
     PlantTruth later = tick_of(ms);
     later.tip_velocity = 0.3;
     judge.look(later);
-    return judge.metrics(8.5, 1e-3).stage_speed_max;
+    return judge.metrics().stage_speed_max;
   };
   EXPECT_EQ(speed(4999), 0.3);
   EXPECT_EQ(speed(5001), 0);
 }
 
 TEST(TruthJudgeTest, APhaseOfAnUnknownKindIsNone) {
-  TruthJudge judge;
+  TruthJudge judge{{}};
   PlantTruth truth = tick_of(0);
   truth.phase_kind = 99;
   truth.phase_place = kSiteB;
-  judge.look(truth);
-  EXPECT_EQ(judge.ticks().front().phase.kind, PhaseKind::Other);
-  EXPECT_EQ(judge.ticks().front().phase.site, Site::B);
+  const auto tick = judge.look(truth);
+  ASSERT_TRUE(tick);
+  EXPECT_EQ(tick->phase.kind, PhaseKind::Other);
+  EXPECT_EQ(tick->phase.site, Site::B);
 }
 
 }  // namespace

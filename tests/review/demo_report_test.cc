@@ -11,7 +11,11 @@ namespace {
 nlohmann::json report(const ProgramReports& reports = {}, const Asked& asked = {}) {
   const auto session = test::load(test::sample_session());
   const auto tissue = judge::TissueTable::parse(*session.patient.tissue_csv);
-  const auto taps = match_taps(session.surgeon, session.patient, {}, &*tissue);
+  const auto taps =
+      match_taps(session.surgeon,
+                 session.patient,
+                 {},
+                 test::find_excursions(test::hand_motion(3), test::kSurface, &*tissue));
   return nlohmann::json::parse(demo_report(
       session.surgeon, session.patient, taps, asked, reports, {"out/s.mcap", "out/p.mcap"}));
 }
@@ -143,7 +147,7 @@ TEST(DemoReportTest, NumbersThatAreNoneAreNull) {
   auto session = test::load(test::sample_session());
   session.patient.estimates[0].hash = std::numeric_limits<double>::quiet_NaN();
   session.patient.estimates[0].force_max = std::numeric_limits<double>::infinity();
-  const auto taps = match_taps(session.surgeon, session.patient, {}, nullptr);
+  const auto taps = match_taps(session.surgeon, session.patient, {}, {});
   const auto json =
       nlohmann::json::parse(demo_report(session.surgeon, session.patient, taps, {}, {}, {}));
   EXPECT_EQ(json["taps"][0]["depth"]["h_n"], nullptr);

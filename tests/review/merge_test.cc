@@ -12,8 +12,8 @@ namespace {
 
 TEST(MergeTest, BothSitesStandOnTheSurgeonsLine) {
   const auto files = test::sample_session();
-  const auto loaded = test::load(files);
-  SessionPair session = pair_of(loaded.surgeon, loaded.patient).value();
+  auto loaded = test::load(files);
+  SessionPair session = pair_of(std::move(loaded.surgeon), std::move(loaded.patient)).value();
   session.time_line.offset = test::kClockOffset;
   session.time_line.known = true;
   record::MemorySink out;

@@ -105,11 +105,11 @@ inline void expect_same_judgement(std::uint64_t seed) {
   SessionPair pair = pair_of(load_site(files.surgeon.bytes(), "s", link::Role::Surgeon).value(),
                              load_site(files.patient.bytes(), "p", link::Role::Patient).value())
                          .value();
-  const SessionTicks ticks = session_ticks(pair, nullptr);
-  auto taps = match_taps(pair.surgeon, pair.patient, pair.time_line, nullptr);
-  ASSERT_TRUE(ticks.of_truth);
-  take_truth(taps, pair, ticks.run_began, ticks.of_truth->taps);
-  const config::Json told = metrics_json(ticks);
+  const JudgedSession judged = judge_session(pair, nullptr);
+  auto taps = match_taps(pair.surgeon, pair.patient, pair.time_line, judged.excursions);
+  ASSERT_TRUE(judged.by_truth);
+  take_truth(taps, pair, judged.run_began, judged.metrics.taps);
+  const config::Json told = metrics_json(judged);
   const nlohmann::json metrics = nlohmann::json::parse(told.dump());
   for (const judge::Metric& metric : judge::metric_table()) {
     const std::string name{metric.name};

@@ -14,14 +14,15 @@ std::string page_of(const std::string& outcome) {
   auto surgeon = load_site(files.surgeon.bytes(), "s", link::Role::Surgeon).value();
   auto patient = load_site(files.patient.bytes(), "p", link::Role::Patient).value();
   const SessionPair pair = pair_of(std::move(surgeon), std::move(patient)).value();
-  const SessionTicks ticks = session_ticks(pair, nullptr);
-  const auto taps = match_taps(pair.surgeon, pair.patient, pair.time_line, nullptr);
+  ReportCurves curves;
+  const JudgedSession judged = judge_session(pair, nullptr, &curves);
+  const auto taps = match_taps(pair.surgeon, pair.patient, pair.time_line, judged.excursions);
   Asked asked;
   asked.outcome = outcome;
   return report_page(
       pair,
-      ticks,
-      demo_report(pair.surgeon, pair.patient, taps, asked, {}, {}, metrics_json(ticks)));
+      curves,
+      demo_report(pair.surgeon, pair.patient, taps, asked, {}, {}, metrics_json(judged)));
 }
 
 TEST(ReportPageTest, NeedsNothingFromOutside) {

@@ -12,7 +12,7 @@ namespace {
 using std::chrono_literals::operator""s;
 
 struct Judged {
-  SessionTicks session;
+  JudgedSession session;
   judge::RunMetrics review;
   judge::RunMetrics lab;
 };
@@ -24,12 +24,12 @@ Judged judged(const lab::Scenario& scenario, bool logged) {
   made.lab =
       lab::simulate(scenario, {.surgeon = &files.surgeon, .patient = &files.patient}).metrics;
   auto surgeon = load_site(files.surgeon.bytes(), "s", link::Role::Surgeon).value();
-  if (logged) surgeon.truths.clear();
+  if (logged) surgeon.run_began.reset();
   auto patient = load_site(files.patient.bytes(), "p", link::Role::Patient).value();
   const auto tissue = judge::TissueTable::parse(patient.tissue_csv.value()).value();
   const SessionPair pair = pair_of(std::move(surgeon), std::move(patient)).value();
-  made.session = session_ticks(pair, &tissue);
-  made.review = session_metrics(made.session);
+  made.session = judge_session(pair, &tissue);
+  made.review = made.session.metrics;
   return made;
 }
 
@@ -50,9 +50,9 @@ TEST(SessionMetricsTest, FindsTheLabsTapsAndForcesInTheFiles) {
 
 TEST(SessionMetricsTest, WithoutSettingsThereAreNoPhases) {
   SessionPair pair;
-  const SessionTicks none = session_ticks(pair, nullptr);
+  const JudgedSession none = judge_session(pair, nullptr);
   EXPECT_FALSE(none.phases);
-  EXPECT_TRUE(none.ticks.empty());
+  EXPECT_TRUE(none.excursions.empty());
   EXPECT_TRUE(metrics_json(none)["drag_rms_n"].is_null());
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/record/session_writer.h"
+#include "judge/excursions.h"
 #include "review/site_data.h"
 
 /// A made-up session whose every number is known: the hand taps a linear tissue.
@@ -119,6 +120,28 @@ inline SampleFiles sample_session(const SampleOptions& options = {}) {
     surgeon.write(Transition{at_ms(500), SiteState::Clutched, SiteState::Engaged, 2});
   }
   return {bytes_of(surgeon_sink), bytes_of(patient_sink)};
+}
+
+/// The hand's motion of such a session.
+inline std::vector<judge::Motion> hand_motion(int taps_per_place) {
+  std::vector<judge::Motion> motion;
+  for (std::int64_t ms = 0; ms < 2000 * taps_per_place; ++ms) {
+    const auto tick = hand_tick(ms, taps_per_place);
+    motion.push_back({tick.at, tick.position, tick.velocity, tick.force, tick.place});
+  }
+  return motion;
+}
+
+inline std::vector<judge::Excursion> find_excursions(const std::vector<judge::Motion>& motion,
+                                                     double surface,
+                                                     const judge::TissueTable* tissue = nullptr) {
+  judge::ExcursionFinder finder{surface, tissue};
+  std::vector<judge::Excursion> found;
+  for (const judge::Motion& tick : motion) {
+    if (const auto one = finder.look(tick)) found.push_back(*one);
+  }
+  if (const auto one = finder.finish()) found.push_back(*one);
+  return found;
 }
 
 struct LoadedSession {

@@ -13,7 +13,16 @@ using test::sample_session;
 std::vector<Tap> taps_of(const test::SampleFiles& files) {
   const auto session = load(files);
   const auto tissue = judge::TissueTable::parse(*session.patient.tissue_csv);
-  return match_taps(session.surgeon, session.patient, {}, &*tissue);
+  const auto hand = test::hand_motion(static_cast<int>(session.surgeon.ticks / 2000));
+  return match_taps(
+      session.surgeon, session.patient, {}, test::find_excursions(hand, test::kSurface, &*tissue));
+}
+
+/// The same of a hand that moved so, where nobody knows the tissue.
+std::vector<Tap> taps_of(const test::LoadedSession& session,
+                         const std::vector<judge::Motion>& hand) {
+  return match_taps(
+      session.surgeon, session.patient, {}, test::find_excursions(hand, test::kSurface));
 }
 
 TEST(TapsTest, EachStrokeGetsItsPlaceIndexAndStiffness) {
@@ -31,13 +40,14 @@ TEST(TapsTest, EachStrokeGetsItsPlaceIndexAndStiffness) {
 TEST(TapsTest, StrokeThatThePatientNeverSawDoesNotShiftTheOthers) {
   // The hand of stroke 1 never became a stroke; make its force one that would be noticed.
   const auto files = sample_session({.unseen_stroke = 1});
-  auto session = load(files);
-  for (judge::Motion& motion : session.surgeon.motion) {
+  const auto session = load(files);
+  auto hand = test::hand_motion(3);
+  for (judge::Motion& motion : hand) {
     if (motion.at >= test::at_ms(1000) && motion.at < test::at_ms(2000)) {
       motion.force = 0;
     }
   }
-  const auto taps = match_taps(session.surgeon, session.patient, {}, nullptr);
+  const auto taps = taps_of(session, hand);
   ASSERT_EQ(taps.size(), 5u);
   EXPECT_NEAR(taps[1].stiffness.felt().value(), test::kFeltA, 1e-6);
   EXPECT_EQ(taps[1].estimate.number, 3u);
@@ -46,9 +56,8 @@ TEST(TapsTest, StrokeThatThePatientNeverSawDoesNotShiftTheOthers) {
 TEST(TapsTest, ManyEstimatesOfOneLongStrokeTakeNoLonger) {
   // A file that nobody of ours wrote: with every pair compared this would take minutes.
   auto session = load(sample_session());
-  session.surgeon.motion.resize(1);
-  session.surgeon.motion.resize(300'000, session.surgeon.motion.front());
-  for (judge::Motion& motion : session.surgeon.motion) {
+  std::vector<judge::Motion> hand(300'000);
+  for (judge::Motion& motion : hand) {
     motion.position = test::kSurface + 2e-3;
     motion.velocity = 1;
   }
@@ -56,15 +65,16 @@ TEST(TapsTest, ManyEstimatesOfOneLongStrokeTakeNoLonger) {
   session.patient.estimates.resize(1);
   session.surgeon.reports.resize(50'000, session.surgeon.reports.front());
   session.patient.estimates.resize(50'000, session.patient.estimates.front());
-  EXPECT_EQ(match_taps(session.surgeon, session.patient, {}, nullptr).size(), 50'000u);
+  EXPECT_EQ(taps_of(session, hand).size(), 50'000u);
 }
 
 TEST(TapsTest, HandAtAnotherPlaceIsNotTheOneOfTheStroke) {
-  auto session = load(sample_session());
-  for (judge::Motion& motion : session.surgeon.motion) {
+  const auto session = load(sample_session());
+  auto hand = test::hand_motion(3);
+  for (judge::Motion& motion : hand) {
     motion.place = kSiteB;
   }
-  const auto taps = match_taps(session.surgeon, session.patient, {}, nullptr);
+  const auto taps = taps_of(session, hand);
   EXPECT_FALSE(taps[0].stiffness.felt()) << "A";
   EXPECT_TRUE(taps[3].stiffness.felt()) << "B";
 }
@@ -80,21 +90,22 @@ TEST(TapsTest, LongStrokeIsAPress) {
   auto& estimates = session.patient.estimates;
   estimates[1].stroke_began_at = estimates[1].stroke_ended_at - kTapMax;
   estimates[2].stroke_began_at = estimates[2].stroke_ended_at - kTapMax - Duration{1};
-  const auto taps = match_taps(session.surgeon, session.patient, {}, nullptr);
+  const auto taps = taps_of(session, test::hand_motion(3));
   EXPECT_EQ(taps[1].kind, StrokeKind::Tap);
   EXPECT_EQ(taps[2].kind, StrokeKind::Press);
   EXPECT_EQ(taps[2].index, 1);
 }
 
 TEST(TapsTest, AHandThatStaysInTheTissueMakesAPress) {
-  auto session = load(sample_session());
+  const auto session = load(sample_session());
+  auto hand = test::hand_motion(3);
   // The first stroke never leaves: the hand stays at the depth of its turning point for 2 s.
-  for (judge::Motion& motion : session.surgeon.motion) {
+  for (judge::Motion& motion : hand) {
     if (motion.at >= test::at_ms(400) && motion.at < test::at_ms(2400)) {
       motion.position = test::kSurface + 4e-3;
     }
   }
-  const auto taps = match_taps(session.surgeon, session.patient, {}, nullptr);
+  const auto taps = taps_of(session, hand);
   EXPECT_EQ(taps[0].kind, StrokeKind::Press);
 }
 

@@ -1,5 +1,7 @@
 #include "review/time_line.h"
 
+#include <utility>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,11 +14,11 @@ using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 using test::at_ms;
 
-LinkStatus told(Duration offset, Duration uncertainty, TimePoint at) {
-  LinkStatus status;
-  status.at = at;
-  status.health.peer_clock = ClockOffset{.offset = offset, .uncertainty = uncertainty, .at = at};
-  return status;
+LinkPoint told(Duration offset, Duration uncertainty, TimePoint at) {
+  LinkPoint point;
+  point.at = at;
+  point.peer_clock = ClockOffset{.offset = offset, .uncertainty = uncertainty, .at = at};
+  return point;
 }
 
 TEST(TimeLineTest, TheMostCertainOffsetCounts) {
@@ -58,7 +60,7 @@ TEST(SessionPairTest, FilesOfDifferentSessionsAreRefusedWithBothIds) {
   SiteData patient;
   surgeon.sessions = {{0xabc, at_ms(0)}};
   patient.sessions = {{0xdef, at_ms(0)}};
-  const auto pair = pair_of(surgeon, patient);
+  const auto pair = pair_of(std::move(surgeon), std::move(patient));
   ASSERT_FALSE(pair);
   EXPECT_THAT(pair.error().text, testing::HasSubstr("0000000000000abc"));
   EXPECT_THAT(pair.error().text, testing::HasSubstr("0000000000000def"));
@@ -68,26 +70,26 @@ TEST(SessionPairTest, SessionsOfOtherSurgeonsAreLeftOut) {
   SiteData surgeon;
   surgeon.sessions = {{2, at_ms(500)}};
   SiteData patient;
-  patient.sessions = {{1, at_ms(0)}, {2, at_ms(100)}, {3, at_ms(200)}};
-  for (const std::int64_t ms : {50, 100, 150, 200, 250}) {
-    judge::Motion motion;
-    motion.at = at_ms(ms);
-    patient.motion.push_back(motion);
-    patient.states.push_back(SiteState::Engaged);
-  }
-  const auto pair = pair_of(surgeon, patient);
+  patient.sessions = {{1, at_ms(0), 1}, {2, at_ms(100), 2}, {3, at_ms(200), 4}};
+  patient.ticks = 6;
+  for (const std::int64_t ms : {50, 100, 150, 200, 250}) patient.notes.push_back({at_ms(ms)});
+  const auto pair = pair_of(std::move(surgeon), std::move(patient));
   ASSERT_TRUE(pair);
   EXPECT_EQ(pair->session_id, "0000000000000002");
-  ASSERT_EQ(pair->patient.motion.size(), 2U);
-  EXPECT_EQ(pair->patient.motion.front().at, at_ms(100));
+  ASSERT_EQ(pair->patient.notes.size(), 2U);
+  EXPECT_EQ(pair->patient.notes.front().at, at_ms(100));
+  EXPECT_EQ(pair->patient.ticks, 2U);
+  EXPECT_EQ(pair->patient.from, at_ms(100));
+  EXPECT_EQ(pair->patient.to, at_ms(200));
 }
 
 TEST(SessionPairTest, FilesThatNameNoSessionAreTakenAsTheyAre) {
-  const auto loaded = test::load(test::sample_session());
-  const auto pair = pair_of(loaded.surgeon, loaded.patient);
+  auto loaded = test::load(test::sample_session());
+  const std::uint64_t ticks = loaded.surgeon.ticks;
+  const auto pair = pair_of(std::move(loaded.surgeon), std::move(loaded.patient));
   ASSERT_TRUE(pair);
   EXPECT_EQ(pair->session_id, "");
-  EXPECT_EQ(pair->surgeon.motion.size(), loaded.surgeon.motion.size());
+  EXPECT_EQ(pair->surgeon.ticks, ticks);
 }
 
 }  // namespace

@@ -1,0 +1,249 @@
+#include "judge/run_judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "common/core/conventions.h"
+
+namespace palp::judge {
+namespace {
+
+constexpr double kUnstableSwing = 1.0 * kMillimetre;    ///< [m], in the second half of a hold
+constexpr double kUnstableCapTime = 0.2;                ///< [s], at the force cap in total
+constexpr double kUnstablePosition = 60 * kMillimetre;  ///< [m]
+constexpr double kUnstableSpeed = 3.0;                  ///< [m/s]
+constexpr double kFreeAirTail = 3.0;                    ///< [s]
+constexpr double kContactForce = 0.1;                   ///< [N], two steps of the transducer
+constexpr double kLearningDepth = 1.0 * kMillimetre;    ///< [m]
+constexpr double kLearningForce = 0.02;                 ///< [N]
+constexpr double kLearningShare = 0.1;                  ///< [-]
+constexpr double kLearningTime = 0.05;                  ///< [s], of right force
+constexpr double kInTheAir = -1.5 * kMillimetre;        ///< [m]
+
+void add(FeltStiffness& stiffness, const RunTick& tick) {
+  stiffness.add(tick.hand, tick.hand_velocity, tick.hand_force, tick.force_true);
+}
+
+void judge_ratio(const FeltStiffness& a, const FeltStiffness& b, RunMetrics& metrics) {
+  if (!a.error() || !b.error()) return;
+  const double felt = *b.felt() / *a.felt();
+  metrics.ratio_true = *b.truth() / *a.truth();
+  metrics.ratio_error = felt / metrics.ratio_true - 1;
+  metrics.contrast = (felt - 1) / (metrics.ratio_true - 1);
+}
+
+struct Secants {
+  double felt{kUndefined};   ///< [N/m]
+  double truth{kUndefined};  ///< [N/m]
+};
+
+Secants secants(const PhaseAccount::HoldMeans& shallow, const PhaseAccount::HoldMeans& deep) {
+  const double span = deep.position - shallow.position;
+  return {(deep.felt - shallow.felt) / span, (deep.truth - shallow.truth) / span};
+}
+
+void call_unstable(RunMetrics& metrics, bool is, const char* reason) {
+  if (!is) return;
+  metrics.unstable = true;
+  metrics.unstable_reason = reason;
+}
+
+}  // namespace
+
+void PhaseAccount::begin(const RunTick& tick) {
+  *this = {};
+  tag_ = tick.phase;
+  began_at_ = tick.at;
+  hand_max_ = -INFINITY;
+  low_ = INFINITY;
+  high_ = -INFINITY;
+  sums_ = {0, 0, 0};
+}
+
+bool PhaseAccount::holds(const PhaseTag& tag) const noexcept {
+  const auto key = [](const PhaseTag& of) {
+    return std::tuple{of.kind, of.place.x, of.place.y, of.index};
+  };
+  return key(tag) == key(tag_);
+}
+
+void PhaseAccount::look(const RunTick& tick) {
+  ended_at_ = tick.at;
+  hand_max_ = std::max(hand_max_, tick.hand);
+  if (!tick.counted) return;
+  const PhaseTag& phase = tick.phase;
+  add(stiffness_, tick);
+  if (phase.elapsed >= 0.5 * phase.duration) {
+    low_ = std::min(low_, tick.hand + tick.surface);
+    high_ = std::max(high_, tick.hand + tick.surface);
+  }
+  if (phase.elapsed >= 0.6 * phase.duration) {
+    sums_.position += tick.hand;
+    sums_.felt += tick.hand_force;
+    sums_.truth += tick.force_true;
+    ++hold_count_;
+  }
+  if (phase.elapsed >= 0.8 * phase.duration) {
+    apart_ += std::abs(tick.tip - tick.hand);
+    ++apart_count_;
+  }
+}
+
+TapMetrics PhaseAccount::tap() const noexcept {
+  return {.site = tag_.site,
+          .place = tag_.place,
+          .index = tag_.index,
+          .began_at = began_at_,
+          .ended_at = ended_at_,
+          .hand_max = hand_max_,
+          .stiffness = stiffness_};
+}
+
+PhaseAccount::HoldMeans PhaseAccount::hold() const noexcept {
+  return {sums_.position / hold_count_, sums_.felt / hold_count_, sums_.truth / hold_count_};
+}
+
+void RunJudge::look(const RunTick& tick) {
+  look_at_phase(tick);
+  look_at_stability(tick);
+  look_at_forces(tick);
+  look_at_blackout(tick);
+  look_at_learning(tick, Site::A);
+  look_at_learning(tick, Site::B);
+  energy_operator_min_ = tick.energy_operator_min;
+  energy_net_min_ = tick.energy_net_min;
+  ++ticks_;
+}
+
+void RunJudge::blackout(double from, double to) noexcept {
+  config_.blackout_from = from;
+  config_.blackout_to = to;
+}
+
+void RunJudge::look_at_phase(const RunTick& tick) {
+  if (ticks_ == 0 || !phase_.holds(tick.phase)) {
+    end_phase();
+    phase_.begin(tick);
+  }
+  phase_.look(tick);
+  const PhaseTag& tag = phase_.tag();
+  if (!tick.counted || tag.kind != PhaseKind::Tap) return;
+  tap_square_ += (tick.hand_force - tick.force_true) * (tick.hand_force - tick.force_true);
+  ++tap_count_;
+  if (tag.site != Site::Other && tag.index >= 2) {
+    add(pooled_[static_cast<std::size_t>(tag.site)], tick);
+  }
+}
+
+void RunJudge::end_phase() {
+  if (ticks_ == 0) return;
+  const PhaseTag& tag = phase_.tag();
+  const bool held = tag.kind == PhaseKind::PressHold || tag.kind == PhaseKind::LiftHold;
+  if (held && phase_.swing() >= kUnstableSwing) swings_ = true;
+  const auto site = static_cast<std::size_t>(tag.site);
+  if (tag.kind == PhaseKind::Tap) {
+    metrics_.taps.push_back(phase_.tap());
+    const double error = metrics_.taps.back().stiffness.error().value_or(kUndefined);
+    if (tag.site != Site::Other && tag.index == 1) metrics_.tap1_error[site] = error;
+    if (tag.site != Site::Other && tag.index == 2) metrics_.tap2_error[site] = error;
+  }
+  if (tag.kind == PhaseKind::PressHold && tag.site != Site::Other &&
+      (tag.index == 1 || tag.index == 2)) {
+    holds_[site][static_cast<std::size_t>(tag.index - 1)] = phase_.hold();
+  }
+  if (tag.kind == PhaseKind::LiftHold && tag.site == Site::B) metrics_.drift = phase_.drift();
+}
+
+void RunJudge::look_at_stability(const RunTick& tick) {
+  if (!tick.counted) return;
+  if (std::abs(tick.hand_force) >= config_.force_cap * (1 - 1e-9)) at_cap_ += config_.period;
+  if (!(std::abs(tick.hand) <= kUnstablePosition) ||
+      !(std::abs(tick.hand_velocity) <= kUnstableSpeed)) {
+    ran_away_ = true;
+  }
+}
+
+/// How long the force at a new site is wrong.
+void RunJudge::look_at_learning(const RunTick& tick, Site site) {
+  Learning& learning = learning_[static_cast<std::size_t>(site)];
+  const bool here = tick.phase.site == site && tick.phase.kind != PhaseKind::FreeAir;
+  if (!here || !tick.counted || !std::isnan(learning.took)) return;
+  if (std::isnan(learning.began_at) && tick.contact_force >= kContactForce) {
+    learning.began_at = tick.at;
+  }
+  if (std::isnan(learning.began_at) || tick.hand <= kLearningDepth) return;
+  const double allowed = std::max(kLearningForce, kLearningShare * tick.force_true);
+  const bool right = std::abs(tick.hand_force - tick.force_true) <= allowed;
+  learning.right_for = right ? learning.right_for + config_.period : 0;
+  if (learning.right_for >= kLearningTime) learning.took = tick.at - learning.began_at;
+}
+
+void RunJudge::look_at_blackout(const RunTick& tick) {
+  if (config_.blackout_to <= config_.blackout_from) return;
+  if (tick.at < config_.blackout_from || tick.at > config_.blackout_to) return;
+  if (std::isnan(metrics_.phantom_force)) metrics_.phantom_force = metrics_.stage_speed_max = 0;
+  if (tick.hand < kInTheAir) {
+    metrics_.phantom_force = std::max(metrics_.phantom_force, std::abs(tick.hand_force));
+  }
+  metrics_.stage_speed_max = std::max(metrics_.stage_speed_max, std::abs(tick.tip_velocity));
+}
+
+void RunJudge::look_at_forces(const RunTick& tick) {
+  metrics_.force_peak = std::max(metrics_.force_peak, std::abs(tick.hand_force));
+  metrics_.contact_force_max = std::max(metrics_.contact_force_max, tick.contact_force);
+  Forces& slot = before_[ticks_ % kStepTicks];
+  // Across a break of the session there is no step.
+  if (ticks_ >= kStepTicks && tick.at - slot.at < (kStepTicks + 0.5) * config_.period) {
+    const double step = tick.hand_force - slot.felt;
+    const double unexplained = step - (tick.force_true - slot.truth);
+    metrics_.force_step_10ms = std::max(metrics_.force_step_10ms, std::abs(step));
+    metrics_.force_step_event =
+        std::max(metrics_.force_step_event, std::min(std::abs(step), std::abs(unexplained)));
+  }
+  slot = {tick.at, tick.hand_force, tick.force_true};
+  const bool in_air = tick.counted && tick.phase.kind == PhaseKind::FreeAir &&
+                      tick.phase.elapsed >= tick.phase.duration - kFreeAirTail;
+  if (!in_air) return;
+  air_square_ += tick.hand_force * tick.hand_force;
+  air_peak_ = std::max(air_peak_, std::abs(tick.hand_force));
+  ++air_count_;
+}
+
+RunMetrics RunJudge::metrics() const {
+  RunJudge whole = *this;
+  whole.end_phase();
+  whole.sum_up();
+  return whole.metrics_;
+}
+
+void RunJudge::sum_up() {
+  if (ticks_ == 0) return;
+  call_unstable(metrics_, swings_, "the hand swings by 1 mm or more in a hold");
+  call_unstable(metrics_, ran_away_, "the hand ran away");
+  call_unstable(
+      metrics_, at_cap_ >= kUnstableCapTime, "the force stayed at the device's limit for 0.2 s");
+  metrics_.tap_error[0] = pooled_[0].error().value_or(kUndefined);
+  metrics_.tap_error[1] = pooled_[1].error().value_or(kUndefined);
+  judge_ratio(pooled_[0], pooled_[1], metrics_);
+  const Secants a = secants(holds_[0][0], holds_[0][1]);
+  const Secants b = secants(holds_[1][0], holds_[1][1]);
+  metrics_.static_error[0] = a.felt / a.truth - 1;
+  metrics_.static_error[1] = b.felt / b.truth - 1;
+  metrics_.static_ratio_error = b.felt / a.felt / (b.truth / a.truth) - 1;
+  if (air_count_ > 0) {
+    metrics_.drag_rms = std::sqrt(air_square_ / air_count_);
+    metrics_.drag_peak = air_peak_;
+  }
+  metrics_.energy_operator = std::max(0.0, -energy_operator_min_);
+  metrics_.energy_net = std::max(0.0, -energy_net_min_);
+  metrics_.force_rms = std::sqrt(tap_square_ / tap_count_);
+  metrics_.learning[0] = learning_[0].took;
+  metrics_.learning[1] = learning_[1].took;
+  // Asked for, and nothing of it was seen.
+  if (config_.blackout_to > config_.blackout_from && std::isnan(metrics_.phantom_force)) {
+    metrics_.phantom_force = metrics_.stage_speed_max = 0;
+  }
+}
+
+}  // namespace palp::judge

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "judge/metrics.h"
+
+namespace palp::judge {
+
+/// What one phase of a script was: a tap, a held press, a hold above.
+class PhaseAccount {
+ public:
+  /// Means over the last 40 % of a press hold.
+  struct HoldMeans {
+    double position{kUndefined};  ///< [m]
+    double felt{kUndefined};      ///< [N]
+    double truth{kUndefined};     ///< [N]
+  };
+
+  void begin(const RunTick& tick);
+  void look(const RunTick& tick);
+
+  [[nodiscard]] const PhaseTag& tag() const noexcept { return tag_; }
+  [[nodiscard]] bool holds(const PhaseTag& tag) const noexcept;
+  [[nodiscard]] TapMetrics tap() const noexcept;
+  [[nodiscard]] HoldMeans hold() const noexcept;
+  /// Mean distance of tip and hand in the last 20 % [m].
+  [[nodiscard]] double drift() const noexcept { return apart_ / apart_count_; }
+  /// max - min of x_m in the second half [m].
+  [[nodiscard]] double swing() const noexcept { return high_ < low_ ? 0 : high_ - low_; }
+
+ private:
+  PhaseTag tag_;
+  double began_at_{};  ///< [s]
+  double ended_at_{};  ///< [s]
+  double hand_max_{};  ///< [m]
+  double low_{};       ///< [m]
+  double high_{};      ///< [m]
+  FeltStiffness stiffness_;
+  HoldMeans sums_;
+  double hold_count_{};   ///< [ticks]
+  double apart_{};        ///< [m], sum
+  double apart_count_{};  ///< [ticks]
+};
+
+/// Judges a run tick by tick; holds no tick. Thread: any one.
+class RunJudge {
+ public:
+  explicit RunJudge(const MetricsConfig& config) : config_{config} {}
+
+  /// In order of time.
+  void look(const RunTick& tick);
+  /// Known only now: of the blackout and what is judged with it, none of which was looked at yet.
+  void blackout(double from, double to) noexcept;
+  /// Of all so far.
+  [[nodiscard]] RunMetrics metrics() const;
+
+ private:
+  struct Learning {
+    double began_at{kUndefined};  ///< [s]
+    double right_for{};           ///< [s]
+    double took{kUndefined};      ///< [s]
+  };
+  /// Of one tick, what a step is judged from.
+  struct Forces {
+    double at{};     ///< [s]
+    double felt{};   ///< [N]
+    double truth{};  ///< [N]
+  };
+  static constexpr std::size_t kStepTicks = 10;
+
+  void look_at_phase(const RunTick& tick);
+  void look_at_stability(const RunTick& tick);
+  void look_at_forces(const RunTick& tick);
+  void look_at_learning(const RunTick& tick, Site site);
+  void look_at_blackout(const RunTick& tick);
+  void end_phase();
+  void sum_up();
+
+  MetricsConfig config_;
+  RunMetrics metrics_;  ///< as far as it needs no end
+  std::size_t ticks_{};
+  PhaseAccount phase_;
+  std::array<FeltStiffness, 2> pooled_;  ///< of taps 2 and later
+  std::array<std::array<PhaseAccount::HoldMeans, 2>, 2> holds_;
+  bool swings_{};
+  bool ran_away_{};
+  double at_cap_{};      ///< [s]
+  double tap_square_{};  ///< [N^2]
+  double tap_count_{};   ///< [ticks]
+  double air_square_{};  ///< [N^2]
+  double air_count_{};   ///< [ticks]
+  double air_peak_{};    ///< [N]
+  std::array<Forces, kStepTicks> before_;
+  std::array<Learning, 2> learning_;
+  double energy_operator_min_{};  ///< [J], of the newest tick
+  double energy_net_min_{};       ///< [J]
+};
+
+}  // namespace palp::judge

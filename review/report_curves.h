@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "common/config/json.h"
+#include "judge/excursions.h"
+#include "review/session_metrics.h"
+#include "review/thinned.h"
+
+namespace palp::review {
+
+/// In its unit, rounded to what a screen shows.
+[[nodiscard]] config::Json shown(double value, double unit);
+
+/// What the page of a report draws of a session's ticks, in a bounded number of points however long
+/// it was.
+class ReportCurves final : public TickWatcher {
+ public:
+  void see(const judge::RunTick& tick) override;
+
+  /// Of all ticks so far: curves over time, when the hand was not engaged, and the strokes.
+  void add_to(config::Json& series) const;
+
+ private:
+  /// A tick and the tissue's energy at it.
+  struct Point {
+    judge::RunTick tick;
+    double energy_tissue{};  ///< [J]
+  };
+  /// Neighbouring ticks, as the two in which the hand was given least and most, so that no peak is
+  /// lost between two points.
+  struct Bucket {
+    Point low;
+    Point high;
+  };
+  struct Stroke {
+    double at{};                        ///< [s]
+    std::vector<judge::RunTick> ticks;  ///< some of them
+  };
+
+  void see_curve(const Point& point);
+  void see_stroke(const judge::RunTick& tick);
+  void see_idle(const judge::RunTick& tick);
+  void end_stroke();
+  [[nodiscard]] bool went_in() const { return inside_ && stroke_max_ > judge::kStrokeDepthMin; }
+
+  double tissue_{};  ///< [J]
+  std::vector<Bucket> buckets_;
+  std::size_t bucket_size_{1};                   ///< [ticks]
+  std::size_t in_last_{};                        ///< [ticks]
+  std::vector<std::pair<double, double>> idle_;  ///< [s]
+  bool idle_now_{};
+  bool inside_{};
+  double stroke_at_{};   ///< [s]
+  double stroke_max_{};  ///< [m]
+  Thinned<judge::RunTick> stroke_{kLoopPoints};
+  std::vector<Stroke> strokes_;
+
+  static constexpr std::size_t kLoopPoints = 150;
+};
+
+}  // namespace palp::review
