@@ -122,6 +122,27 @@ TEST_F(BadInputTest, AReportThatCannotBeWrittenIsToldBeforeTheSession) {
   }
 }
 
+TEST_F(BadInputTest, AReportInPlaceOfTheSessionFileIsToldBeforeTheSession) {
+  const std::string old = folder_ + "/old.mcap";
+  const std::string second = folder_ + "/report";
+  std::ofstream{old} << "an old session";
+  std::filesystem::create_hard_link(old, second);
+  const std::string sentence = "name one file";
+  for (const std::string program : {"palp-patient --listen 127.0.0.1:0 --insecure --report ",
+                                    "palp-surgeon --peer 127.0.0.1:9 --insecure --report "}) {
+    for (const std::string& file :
+         {" --session-file " + second, " --session-file " + old, " --set record.file=" + old}) {
+      std::string line = program;
+      line.append(second).append(file);
+      expect_refusal(line, kBadInput, sentence);
+      // What is wrong besides is told; no report of it in that place.
+      line.append(" --loss 9");
+      expect_refusal(line, kBadInput, "0 to 1");
+      EXPECT_EQ(text("old.mcap"), "an old session");
+    }
+  }
+}
+
 TEST_F(BadInputTest, KeysOfTwoAuthoritiesAreToldWithTheRemedyAndNotRetried) {
   const std::string ours = folder_ + "/ours";
   const std::string theirs = folder_ + "/theirs";

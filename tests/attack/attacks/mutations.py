@@ -146,7 +146,9 @@ def _at_patient(bench: Bench) -> tuple[_Round, bool, int | None]:
         with Surgeon(bench.identity("surgeon"), patient.address(), settings) as site:
             edit_hellos(site, mutator)
             site.on_tick = lambda now: ask_again(site)
-            site.run(0.5, lambda: site.established)
+            if site.run(0.5, lambda: site.established):
+                site.on_tick = lambda now: _offer_again(site)  # Within a session as well.
+                site.run(0.3)
             told.sent += site.counts["edited"]
     with Surgeon(bench.identity("surgeon"), patient.address(), settings) as surgeon:
         honest = surgeon.run(10, lambda: surgeon.established)
@@ -195,7 +197,7 @@ def ask_again(site: Surgeon) -> None:
             site.send_hello(site.keys, site.peer)
 
 
-def _offer_again(site: Patient) -> None:
+def _offer_again(site: Site) -> None:
     if site.keys and site.peer:
         for _ in range(3):
             site.send_hello(site.keys, site.peer)

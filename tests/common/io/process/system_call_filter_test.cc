@@ -16,6 +16,7 @@
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
+#include <sys/timex.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -144,6 +145,11 @@ TEST(SystemCallFilterTest, WhatSitesDoGoesOn) {
     const sched_param normal{};
     return ran && ::sched_setscheduler(0, SCHED_OTHER, &normal) == 0 && ::munlockall() == 0;
   })) << "threads";
+  EXPECT_TRUE(holds_in_another_process([] {
+    if (refuse_system_calls()) return false;
+    timex asked{};  // changes nothing
+    return ::clock_adjtime(CLOCK_REALTIME, &asked) >= 0;
+  })) << "how well the clock is kept";
 }
 
 }  // namespace
