@@ -7,6 +7,21 @@
 #include "review/record_numbers.h"
 
 namespace palp::review {
+namespace {
+
+using Sorted = std::vector<const Record*>;
+
+/// The samples that arrived first, else as they are.
+Sorted sorted(const std::vector<Record>& records) {
+  Sorted list;
+  list.reserve(records.size());
+  for (const Record& record : records) list.push_back(&record);
+  const auto arrived = [](const Record* one) { return std::holds_alternative<Arrived>(*one); };
+  std::ranges::stable_partition(list, arrived);
+  return list;
+}
+
+}  // namespace
 
 RecordComparison::RecordComparison(link::Role site) : site_{site}, encoder_{site} {
   for (const record::TopicFormat& format : record::topics_of(site)) {
@@ -14,22 +29,24 @@ RecordComparison::RecordComparison(link::Role site) : site_{site}, encoder_{site
   }
 }
 
-std::string RecordComparison::compare(const std::vector<Record>& logged,
-                                      const std::vector<Record>& again,
+std::string RecordComparison::compare(const std::vector<Record>& logged_records,
+                                      const std::vector<Record>& again_records,
                                       TimePoint began_at) {
+  const Sorted logged = sorted(logged_records);
+  const Sorted again = sorted(again_records);
   const auto place = [&](const Encoded& of) {
     return of.topic + number_text(", ", seconds(elapsed(began_at, of.at)), 6, " s, ");
   };
   for (std::size_t i = 0; i < std::min(logged.size(), again.size()); ++i) {
-    const Encoded there = encoded(logged[i]);
-    if (there.bytes == encoded(again[i]).bytes) continue;
-    return place(there) + field_of(logged[i], again[i]);
+    const Encoded there = encoded(*logged[i]);
+    if (there.bytes == encoded(*again[i]).bytes) continue;
+    return place(there) + field_of(*logged[i], *again[i]);
   }
   if (logged.size() == again.size()) return {};
   if (logged.size() > again.size()) {
-    return place(encoded(logged[again.size()])) + "the whole record: it did not come again";
+    return place(encoded(*logged[again.size()])) + "the whole record: it did not come again";
   }
-  return place(encoded(again[logged.size()])) + "the whole record: the file has none";
+  return place(encoded(*again[logged.size()])) + "the whole record: the file has none";
 }
 
 RecordComparison::Encoded RecordComparison::encoded(const Record& record) {

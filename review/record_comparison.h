@@ -10,7 +10,8 @@
 
 namespace palp::review {
 
-/// Compares records by the bytes that a session file would hold of them.
+/// Compares the records of a tick by the bytes that a session file would hold of them. A file gives
+/// the samples that arrived at the tick's end, the site at its begin: their place says nothing.
 class RecordComparison {
  public:
   explicit RecordComparison(link::Role site);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <span>
 
+#include "common/message/given.h"
 #include "common/message/record.h"
 #include "common/message/tick_view.h"
 
@@ -28,7 +29,9 @@ using LogMessages = MessageList<SiteTick,
                                 LinkHeard,
                                 UserAsked,
                                 DevicesTold,
-                                PlantTruth>;
+                                PlantTruth,
+                                SurgeonGiven,
+                                PatientGiven>;
 
 /// Larger than any message of the log.
 inline constexpr std::size_t kLogMessageSizeMax = 1024;  ///< [bytes]

@@ -25,8 +25,8 @@ struct McapOptions {
   std::string profile{};
   std::string library{"palp"};
   McapCompression compression{McapCompression::Zstd};
-  int zstd_level{1};
-  std::size_t chunk_size_max{std::size_t{256} * 1024};      ///< [bytes], uncompressed
+  int zstd_level{3};
+  std::size_t chunk_size_max{std::size_t{512} * 1024};      ///< [bytes], uncompressed
   Duration chunk_span_max{std::chrono::milliseconds{500}};  ///< a kill loses at most this much
   bool chunks{true};
   /// Schemas and channels inside chunks; else before them, where no damaged chunk takes them along.

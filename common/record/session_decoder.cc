@@ -48,6 +48,19 @@ Answer decode_view(std::span<const std::byte> payload) noexcept {
           .record = {}};
 }
 
+template <class Given>
+Answer decode_given(std::span<const std::byte> payload) noexcept {
+  Given given;
+  return {.verdict = read(payload, given) ? Verdict::Gathered : Verdict::Malformed, .record = {}};
+}
+
+/// The record at the instant of its message.
+template <class Part>
+Record stamped(Part part, TimePoint at) noexcept {
+  part.at = at;
+  return part;
+}
+
 /// In files before protocol 4: a contact sample whose tip had passed a filter.
 constexpr std::string_view kOldContact = "ContactSample";
 
@@ -63,6 +76,8 @@ Answer decode_as(std::span<const std::byte> payload, TimePoint at) noexcept {
     return decode_event(payload, at);
   else if constexpr (std::is_same_v<Message, TickView>)
     return decode_view(payload);
+  else if constexpr (requires(Message given) { given.sampled; })
+    return decode_given<Message>(payload);
   else
     return decode_record<Message>(payload, at);
 }
@@ -98,6 +113,27 @@ Answer SessionDecoder::decode(std::string_view schema,
     }
   }
   return {.verdict = Verdict::Unknown, .record = {}};
+}
+
+void SessionDecoder::scatter(std::string_view schema,
+                             std::span<const std::byte> payload,
+                             TimePoint at,
+                             Parts& parts) noexcept {
+  parts.clear();
+  if (schema.ends_with(".SurgeonGiven")) {
+    SurgeonGiven given;
+    if (!read(payload, given)) return;
+    if (given.sampled) parts.add(stamped(given.arrived, at));
+    parts.add(stamped(given.hand, at));
+    parts.add(stamped(given.heard, at));
+  } else {
+    PatientGiven given;
+    if (!read(payload, given)) return;
+    if (given.sampled) parts.add(stamped(given.arrived, at));
+    parts.add(stamped(given.stage, at));
+    parts.add(stamped(given.force, at));
+    parts.add(stamped(given.heard, at));
+  }
 }
 
 }  // namespace palp::record

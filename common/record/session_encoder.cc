@@ -53,7 +53,12 @@ std::vector<TopicFormat> topics_of(Role site) {
   topics.push_back(format<LinkHeard>(Topic::Heard, site, "heard"));
   topics.push_back(format<UserAsked>(Topic::User, site, "user"));
   topics.push_back(format<DevicesTold>(Topic::Devices, site, "devices"));
-  if (site == Role::Surgeon) topics.push_back(format<PlantTruth>(Topic::Truth, site, "truth"));
+  if (site == Role::Surgeon) {
+    topics.push_back(format<PlantTruth>(Topic::Truth, site, "truth"));
+    topics.push_back(format<SurgeonGiven>(Topic::Given, site, "given"));
+  } else {
+    topics.push_back(format<PatientGiven>(Topic::Given, site, "given"));
+  }
   return topics;
 }
 
@@ -113,6 +118,14 @@ std::optional<Prepared> SessionEncoder::prepare(const Record& record,
 
 Prepared SessionEncoder::prepare(const TickView& view) noexcept {
   return write(Topic::TickView, view.newest.at, view);
+}
+
+Prepared SessionEncoder::prepare(const SurgeonGiven& given) noexcept {
+  return write(Topic::Given, given.at, given);
+}
+
+Prepared SessionEncoder::prepare(const PatientGiven& given) noexcept {
+  return write(Topic::Given, given.at, given);
 }
 
 void SessionEncoder::store(std::byte* place) const noexcept {

@@ -29,9 +29,10 @@ enum class Topic : std::uint8_t {
   Heard,
   User,
   Devices,
-  Truth
+  Truth,
+  Given
 };
-inline constexpr std::size_t kTopicCount = 14;
+inline constexpr std::size_t kTopicCount = 15;
 
 struct TopicFormat {
   Topic topic{};
@@ -62,6 +63,9 @@ class SessionEncoder {
   /// LinkStatus.
   std::optional<Prepared> prepare(const Record& record, std::uint64_t records_dropped) noexcept;
   Prepared prepare(const TickView& view) noexcept;
+  /// What a tick of the site was given.
+  Prepared prepare(const SurgeonGiven& given) noexcept;
+  Prepared prepare(const PatientGiven& given) noexcept;
   /// Writes the message prepared last; `place` has room for its size.
   void store(std::byte* place) const noexcept;
 

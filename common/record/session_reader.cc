@@ -20,6 +20,7 @@ SessionReader::SessionReader(const FileBytes& file, const McapLimits& limits)
     : mcap_{file, limits} {}
 
 std::optional<SessionEntry> SessionReader::next() {
+  if (const auto part = parts_.take()) return SessionEntry{.site = parts_of_, .record = *part};
   while (const auto item = mcap_.next()) {
     if (const auto* metadata = std::get_if<McapMetadata>(&*item)) {
       keep(*metadata);
@@ -91,6 +92,12 @@ std::optional<SessionEntry> SessionReader::decode(const McapMessage& message) {
   if (answer.verdict == Verdict::Decoded) {
     return SessionEntry{.site = surgeon ? link::Role::Surgeon : link::Role::Patient,
                         .record = answer.record};
+  }
+  if (answer.verdict == Verdict::Gathered) {
+    SessionDecoder::scatter(
+        message.schema->name, message.payload, clock_.own(message.publish_time), parts_);
+    parts_of_ = surgeon ? link::Role::Surgeon : link::Role::Patient;
+    if (const auto part = parts_.take()) return SessionEntry{.site = parts_of_, .record = *part};
   }
   if (answer.verdict == Verdict::Unknown) {
     ++unknown_;

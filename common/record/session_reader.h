@@ -81,6 +81,8 @@ class SessionReader {
   std::map<std::string, McapMap, std::less<>> metadata_;
   std::map<std::string, std::string_view, std::less<>> attachments_;
   std::vector<SessionName> sessions_;
+  SessionDecoder::Parts parts_;  ///< of the newest message, still to be given
+  link::Role parts_of_{};
   WallClock clock_;
   std::uint64_t unknown_{};
   std::uint64_t malformed_{};

@@ -34,6 +34,7 @@ SessionCounts& SessionCounts::operator+=(const SessionCounts& other) noexcept {
 SessionWriter::SessionWriter(ByteSink& sink, const SessionInfo& info, const McapOptions& options)
     : mcap_{sink, options},
       encoder_{info.site},
+      given_{info.site},
       clock_{info.clock},
       sessions_{info.sessions_before} {
   McapMap metadata{{"site", std::string{site_name(info.site)}}};
@@ -61,6 +62,28 @@ bool SessionWriter::write(const Record& record) {
   } else if (const auto* heard = std::get_if<LinkHeard>(&record)) {
     look_for_session(*heard);
   }
+  if (given_.stands_in_the_way_of(record)) release_given();
+  if (!given_.take(record)) return write_alone(record);
+  return !given_.whole() || write_given();
+}
+
+bool SessionWriter::write_given() {
+  const bool surgeon = given_.site() == link::Role::Surgeon;
+  const bool written =
+      put(surgeon ? encoder_.prepare(given_.surgeon()) : encoder_.prepare(given_.patient()));
+  if (written) {
+    for (const Record& record : given_.held()) ++counts_.by_type[record.index()];
+  }
+  given_.clear();
+  return written;
+}
+
+void SessionWriter::release_given() {
+  for (const Record& record : given_.held()) (void)write_alone(record);
+  given_.clear();
+}
+
+bool SessionWriter::write_alone(const Record& record) {
   const auto prepared = encoder_.prepare(record, dropped_);
   if (!prepared) {
     ++counts_.misplaced;
@@ -127,6 +150,7 @@ void SessionWriter::close() {
     return;
   }
   closed_ = true;
+  release_given();
   if (view_.ticks > 0) {
     write_view();
   }

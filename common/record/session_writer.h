@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/message/tick_view.h"
+#include "common/record/given_gatherer.h"
 #include "common/record/mcap_writer.h"
 #include "common/record/recorder.h"
 #include "common/record/session_encoder.h"
@@ -87,6 +88,9 @@ class SessionWriter {
   [[nodiscard]] bool failed() const noexcept { return mcap_.failed(); }
 
  private:
+  bool write_alone(const Record& record);
+  bool write_given();
+  void release_given();
   bool put(const Prepared& prepared);
   void view(const SiteTick& tick);
   void write_view();
@@ -99,6 +103,7 @@ class SessionWriter {
     std::uint32_t sequence{};
   };
   std::array<Channel, kTopicCount> channels_{};
+  GivenGatherer given_;
   TickView view_;
   WallClock clock_;
   std::uint64_t session_id_{};  ///< the newest; 0: none yet

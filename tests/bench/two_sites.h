@@ -26,6 +26,17 @@ inline lab::Scenario standard_scenario(const std::string& coupling) {
   return scenario;
 }
 
+/// The queue of a site, or nothing.
+class SwitchedRecorder final : public record::Recorder {
+ public:
+  explicit SwitchedRecorder(record::QueueRecorder& queue) : queue_{queue} {}
+  bool record(const Record& record) noexcept override { return !on || queue_.record(record); }
+  bool on{true};
+
+ private:
+  record::QueueRecorder& queue_;
+};
+
 /// Both nodes with real telegrams, records and simulated devices; the script palpates. Contact
 /// samples and records wait until somebody takes them.
 class TwoSites {
@@ -41,18 +52,20 @@ class TwoSites {
         patient_setup_{scenario_, link::Role::Patient, pipe_.patient_end()},
         hand_{scenario_.hand, scenario_.script},
         surgeon_law_{coupling::make_surgeon_coupling(scenario.coupling).value()},
-        surgeon_{scenario_.surgeon, {hand_, surgeon_law_, surgeon_link_, surgeon_records_}},
+        surgeon_{scenario_.surgeon, {hand_, surgeon_law_, surgeon_link_, surgeon_switch_}},
         tissue_{scenario_.phantom, scenario_.tissue},
         patient_law_{coupling::make_patient_coupling(scenario.coupling).value()},
         patient_{
             scenario_.patient,
-            {tissue_, tissue_, patient_law_, patient_link_, patient_records_, contact_, depth_}} {
+            {tissue_, tissue_, patient_law_, patient_link_, patient_switch_, contact_, depth_}} {
     surgeon_setup_.start(surgeon_link_, now);
     patient_setup_.start(patient_link_, now);
   }
 
   void tick_surgeon(TimePoint now) { surgeon_.tick(now); }
   void tick_patient(TimePoint now) { patient_.tick(now); }
+  /// From now on records are kept, as they are first, or not.
+  void record(bool on) { surgeon_switch_.on = patient_switch_.on = on; }
   /// Thread: that of the ticks.
   void drop_records() {
     surgeon_records_.drain([](const Record&) {});
@@ -75,6 +88,8 @@ class TwoSites {
   lab::SessionSetup patient_setup_;
   record::QueueRecorder surgeon_records_{kQueue};
   record::QueueRecorder patient_records_{kQueue};
+  SwitchedRecorder surgeon_switch_{surgeon_records_};
+  SwitchedRecorder patient_switch_{patient_records_};
   surgeon::SimulatedHand hand_;
   coupling::SurgeonCoupling surgeon_law_;
   surgeon::SurgeonNode surgeon_;

@@ -1,5 +1,8 @@
 #include "review/recover.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include <gtest/gtest.h>
 
 #include "review/check.h"
@@ -53,6 +56,47 @@ TEST(RecoverTest, SoundFileLosesNothing) {
   ASSERT_TRUE(recovery);
   EXPECT_EQ(first_fault(out.bytes()), std::nullopt);
   EXPECT_EQ(load_site(out.bytes(), "saved", link::Role::Patient)->tissue_csv, test::kTissueCsv);
+}
+
+/// Where each chunk of a file ends.
+std::vector<std::size_t> ends_of_chunks(std::span<const std::byte> file) {
+  std::vector<std::size_t> ends;
+  for (std::size_t at = 8; at + 9 < file.size();) {
+    std::uint64_t length = 0;
+    std::memcpy(&length, &file[at + 1], sizeof length);
+    const bool chunk = file[at] == std::byte{6};
+    at += 9 + length;
+    if (chunk) ends.push_back(at);
+  }
+  return ends;
+}
+
+TEST(RecoverTest, CutAtAnyByteOfItsLastTwoChunksItKeepsEveryChunkBefore) {
+  record::MemorySink sink;
+  std::uint64_t messages = 0;
+  {
+    record::SessionWriter writer{sink, {.site = link::Role::Surgeon}, {.chunk_size_max = 1024}};
+    for (std::int64_t ms = 0; ms < 100; ++ms) writer.write(test::hand_tick(ms, 1));
+    writer.close();
+    messages = writer.messages();
+  }
+  const std::span<const std::byte> file = sink.bytes();
+  const std::vector<std::size_t> ends = ends_of_chunks(file);
+  ASSERT_GT(ends.size(), 4U);
+  const std::size_t first = ends[ends.size() - 3];
+  std::uint64_t whole = 0;  // messages of the chunks that end before the cut
+  for (std::size_t cut = first; cut <= ends.back(); ++cut) {
+    record::MemorySink out;
+    const auto recovery = recover(file.first(cut), out);
+    ASSERT_TRUE(recovery) << cut;
+    if (std::ranges::find(ends, cut) != ends.end()) {
+      ASSERT_GT(recovery->messages, whole) << "one chunk more";
+      whole = recovery->messages;
+    }
+    ASSERT_EQ(recovery->messages, whole) << cut;
+    ASSERT_EQ(first_fault(out.bytes()), std::nullopt) << cut;
+  }
+  EXPECT_EQ(whole, messages) << "of all chunks";
 }
 
 class NoRoom final : public record::ByteSink {

@@ -43,6 +43,8 @@ void each_struct(auto&& visit) {
             DeviceFacts,
             DevicesTold,
             PlantTruth,
+            SurgeonGiven,
+            PatientGiven,
             TickView,
             Event>(visit);
 }

@@ -4,6 +4,7 @@
 
 #include "common/config/document.h"
 #include "common/record/session_reader.h"
+#include "common/record/session_writer.h"
 #include "lab/plan/scenario_file.h"
 #include "lab/run/run.h"
 
@@ -66,6 +67,28 @@ TEST(SessionFilesTest, ABareRunHasNone) {
   EXPECT_EQ(files.surgeon(), nullptr);
   EXPECT_EQ(files.records(), 0U);
   files.close();
+}
+
+/// [bytes] of a file without what the lab alone writes into it.
+std::size_t size_of_a_sites(std::span<const std::byte> file, link::Role site) {
+  record::MemorySink sink;
+  record::SessionWriter writer{sink, {.site = site}};
+  record::SessionReader reader{file};
+  while (const auto entry = reader.next()) {
+    if (!std::holds_alternative<PlantTruth>(entry->record)) writer.write(entry->record);
+  }
+  writer.close();
+  return sink.bytes().size();
+}
+
+TEST(SessionFilesTest, AnHourOfStandardSessionsTakesLessThanHalfAGigabyteAtASite) {
+  const Scenario scenario = make_scenario("standard", load_scenario("standard").value()).value();
+  record::MemorySink surgeon;
+  record::MemorySink patient;
+  const RunResult run = simulate(scenario, {.surgeon = &surgeon, .patient = &patient});
+  const double most = 0.45e9 * seconds(run.virtual_span) / 3600;  // [bytes], of 0.45 GB an hour
+  EXPECT_LE(size_of_a_sites(surgeon.bytes(), link::Role::Surgeon), most);
+  EXPECT_LE(size_of_a_sites(patient.bytes(), link::Role::Patient), most);
 }
 
 }  // namespace
