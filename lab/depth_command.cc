@@ -270,7 +270,7 @@ ExitStatus run_depth(const DepthFlags& flags, const Machine& machine) {
   }
   const auto rows = run_all(*study, flags, machine);
   if (!rows) return config::refusal("palp-lab", rows.error());
-  const ExitStatus exit_status = finish_depth(*rows, flags);
+  ExitStatus exit_status = finish_depth(*rows, flags);
   if (exit_status.code == ExitCode::Done) remove_partial_rows(flags.cases);
   return exit_status;
 }
