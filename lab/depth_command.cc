@@ -28,8 +28,6 @@ namespace {
 using config::ExitCode;
 using config::ExitStatus;
 
-constexpr std::size_t kCasesSizeMax = std::size_t{1} << 30;  // [bytes]
-
 constexpr std::uint32_t kWideShare = 5;  // so many random phantoms for a wide one
 
 ExitStatus bad_input(const std::string& sentence) {
