@@ -331,7 +331,7 @@ ExitStatus run_database(const DatabaseFlags& flags) {
   if (auto checked = check_if_asked(*table, flags); !checked) {
     return bad_input(checked.error().text);
   }
-  const ExitStatus exit_status = save(*table, flags);
+  ExitStatus exit_status = save(*table, flags);
   for (std::size_t core = 0; core < flags.cores; ++core) {
     static_cast<void>(std::remove(part_name(flags.out, core).c_str()));
   }

@@ -28,8 +28,6 @@ namespace {
 using config::ExitCode;
 using config::ExitStatus;
 
-constexpr std::size_t kCasesSizeMax = std::size_t{1} << 30;  // [bytes]
-
 constexpr std::uint32_t kWideShare = 5;  // so many random phantoms for a wide one
 
 ExitStatus bad_input(const std::string& sentence) {
@@ -270,7 +268,7 @@ ExitStatus run_depth(const DepthFlags& flags, const Machine& machine) {
   }
   const auto rows = run_all(*study, flags, machine);
   if (!rows) return config::refusal("palp-lab", rows.error());
-  const ExitStatus exit_status = finish_depth(*rows, flags);
+  ExitStatus exit_status = finish_depth(*rows, flags);
   if (exit_status.code == ExitCode::Done) remove_partial_rows(flags.cases);
   return exit_status;
 }

@@ -34,7 +34,7 @@ Result<PartialRows> PartialRows::open(const std::string& path, bool resume) {
 
 Result<void> PartialRows::begin(const std::string& header) {
   if (name_.empty()) return {};
-  const auto written = config::write_whole_file(name_, before_.empty() ? header : before_);
+  auto written = config::write_whole_file(name_, before_.empty() ? header : before_);
   if (!written) return written;
   file_.reset(std::fopen(name_.c_str(), "a"));
   if (!file_) return fail_to_reach("cannot write " + name_);

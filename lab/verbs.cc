@@ -30,8 +30,6 @@ constexpr std::string_view kSweepName = "sweep";
 using config::ExitCode;
 using config::ExitStatus;
 
-constexpr std::size_t kCasesSizeMax = std::size_t{1} << 30;  // [bytes], two million rows
-
 constexpr std::uint64_t kSeedMax = 9007199254740991;  // what a JSON number holds exactly
 
 ExitStatus refusal(const Error& fault) { return config::refusal("palp-lab", fault); }

@@ -31,6 +31,8 @@ struct Machine {
 /// For a person: bits agree only where libraries and processors do.
 void warn_of_makers(const std::vector<std::string>& makers);
 
+inline constexpr std::size_t kCasesSizeMax = std::size_t{1} << 30;  // [bytes], two million rows
+
 /// Of all verbs that are spread over machines.
 [[nodiscard]] config::ShardForm shard_form();
 

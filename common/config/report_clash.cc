@@ -53,7 +53,7 @@ bool names_file(const std::string& word, const std::string& report) {
 }
 
 /// What a person calls the word: its flag.
-std::string flag_of(const std::vector<std::string>& words, std::size_t at) {
+std::string spoken_flag(const std::vector<std::string>& words, std::size_t at) {
   if (words[at].starts_with("--")) return words[at].substr(0, words[at].find('='));
   return words[at - 1].starts_with("--") ? words[at - 1] : "an argument";
 }
@@ -83,7 +83,7 @@ std::optional<std::string> report_clash(const std::string& report,
       verb_seen = true;
       continue;
     }
-    const std::string flag = flag_of(words, i);
+    const std::string flag = spoken_flag(words, i);
     if (flag != "--report" && names_file(words[i], report)) return sentence(report, flag);
   }
   for (std::size_t from = 0; (from = settings.find('"', from)) != std::string::npos;) {

@@ -198,9 +198,10 @@ Result<void> read_depth_cases(std::string_view text, const std::string& name, De
     if (!read_row(row, study, one, made_by)) return fail(where + " is not a row of a case");
     if (!rows.known) rows.study = study;
     rows.known = true;
-    const std::string told = words_of_study(study);
-    if (const std::string known = words_of_study(rows.study); told != known) {
-      return fail(where + " is of another study (" + told + ") than the rest (" + known + ")");
+    const std::string known = words_of_study(rows.study);
+    if (std::string told = words_of_study(study); told != known) {
+      told.append(") than the rest (").append(known).append(")");
+      return fail(where + " is of another study (" + told);
     }
     rows.cases.push_back(one);
     rows.makers.insert(made_by);

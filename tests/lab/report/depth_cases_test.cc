@@ -71,6 +71,9 @@ TEST(DepthCasesTest, RowsOfAnotherStudyOrCutOnesAreRefused) {
   std::string cut = file_of(study_of_two(), {1});
   cut.resize(cut.size() - 20);
   EXPECT_FALSE(read_depth_cases(cut, "g", rows));
+  std::string changed = file_of(study_of_two(), {1});
+  changed.replace(changed.find("0.3000"), 3, "0.4");
+  EXPECT_FALSE(read_depth_cases(changed, "g", rows));
   EXPECT_FALSE(read_depth_cases("index,seed\n", "g", rows));
   EXPECT_FALSE(is_depth_cases("index,seed\n"));
 }
