@@ -24,48 +24,48 @@ namespace palp::io {
 namespace {
 
 /// A system call, and what the kernel would answer who may ask: never EPERM without the filter.
-struct Asked {
+struct SystemCall {
   std::string name;
   long number;
   std::array<long, 6> arguments{};
 };
 
-constexpr long kNowhere = -1;        // a descriptor or an address that is none
-constexpr long kMany = 0x7FFF'FFFF;  // of whatever is counted
+constexpr long kNoPlace = -1;              // a descriptor or an address that is none
+constexpr long kFarTooMany = 0x7FFF'FFFF;  // of whatever is counted
 
 /// Each kind of what is refused, with arguments that nothing follows from.
-std::vector<Asked> refused_calls() {
+std::vector<SystemCall> refused_calls() {
   return {
-      {"execve", SYS_execve, {kNowhere}},
-      {"execveat", SYS_execveat, {kNowhere, kNowhere}},
+      {"execve", SYS_execve, {kNoPlace}},
+      {"execveat", SYS_execveat, {kNoPlace, kNoPlace}},
       {"a process by clone", SYS_clone, {SIGCHLD | CLONE_FS | CLONE_NEWNS}},
       {"a process", SYS_clone, {SIGCHLD}},
       {"a thread in another network", SYS_clone, {CLONE_THREAD | CLONE_NEWNET}},
-      {"ptrace", SYS_ptrace, {kMany, kMany}},
-      {"process_vm_readv", SYS_process_vm_readv, {0, 0, 0, 0, 0, kMany}},
-      {"process_vm_writev", SYS_process_vm_writev, {0, 0, 0, 0, 0, kMany}},
-      {"pidfd_getfd", SYS_pidfd_getfd, {kNowhere, 0, kMany}},
-      {"kexec_load", SYS_kexec_load, {0, kMany, 0, kMany}},
-      {"init_module", SYS_init_module, {kNowhere, 0, kNowhere}},
-      {"finit_module", SYS_finit_module, {kNowhere, kNowhere, kMany}},
-      {"delete_module", SYS_delete_module, {kNowhere}},
-      {"mount", SYS_mount, {kNowhere, kNowhere, kNowhere}},
-      {"umount2", SYS_umount2, {kNowhere, kMany}},
-      {"pivot_root", SYS_pivot_root, {kNowhere, kNowhere}},
-      {"chroot", SYS_chroot, {kNowhere}},
-      {"fsopen", SYS_fsopen, {kNowhere, kMany}},
-      {"move_mount", SYS_move_mount, {kNowhere, kNowhere, kNowhere, kNowhere, kMany}},
-      {"mknodat", SYS_mknodat, {kNowhere, kNowhere, 0}},
-      {"bpf", SYS_bpf, {kMany}},
-      {"perf_event_open", SYS_perf_event_open, {kNowhere, 0, 0, kNowhere, kMany}},
-      {"userfaultfd", SYS_userfaultfd, {kMany}},
-      {"io_uring_setup", SYS_io_uring_setup, {0, kNowhere}},
-      {"keyctl", SYS_keyctl, {kMany}},
-      {"add_key", SYS_add_key, {kNowhere}},
-      {"setns", SYS_setns, {kNowhere, 0}},
+      {"ptrace", SYS_ptrace, {kFarTooMany, kFarTooMany}},
+      {"process_vm_readv", SYS_process_vm_readv, {0, 0, 0, 0, 0, kFarTooMany}},
+      {"process_vm_writev", SYS_process_vm_writev, {0, 0, 0, 0, 0, kFarTooMany}},
+      {"pidfd_getfd", SYS_pidfd_getfd, {kNoPlace, 0, kFarTooMany}},
+      {"kexec_load", SYS_kexec_load, {0, kFarTooMany, 0, kFarTooMany}},
+      {"init_module", SYS_init_module, {kNoPlace, 0, kNoPlace}},
+      {"finit_module", SYS_finit_module, {kNoPlace, kNoPlace, kFarTooMany}},
+      {"delete_module", SYS_delete_module, {kNoPlace}},
+      {"mount", SYS_mount, {kNoPlace, kNoPlace, kNoPlace}},
+      {"umount2", SYS_umount2, {kNoPlace, kFarTooMany}},
+      {"pivot_root", SYS_pivot_root, {kNoPlace, kNoPlace}},
+      {"chroot", SYS_chroot, {kNoPlace}},
+      {"fsopen", SYS_fsopen, {kNoPlace, kFarTooMany}},
+      {"move_mount", SYS_move_mount, {kNoPlace, kNoPlace, kNoPlace, kNoPlace, kFarTooMany}},
+      {"mknodat", SYS_mknodat, {kNoPlace, kNoPlace, 0}},
+      {"bpf", SYS_bpf, {kFarTooMany}},
+      {"perf_event_open", SYS_perf_event_open, {kNoPlace, 0, 0, kNoPlace, kFarTooMany}},
+      {"userfaultfd", SYS_userfaultfd, {kFarTooMany}},
+      {"io_uring_setup", SYS_io_uring_setup, {0, kNoPlace}},
+      {"keyctl", SYS_keyctl, {kFarTooMany}},
+      {"add_key", SYS_add_key, {kNoPlace}},
+      {"setns", SYS_setns, {kNoPlace, 0}},
       {"unshare", SYS_unshare, {0}},
       {"setuid", SYS_setuid, {static_cast<long>(::getuid())}},
-      {"capset", SYS_capset, {kNowhere}},
+      {"capset", SYS_capset, {kNoPlace}},
       {"a socket of the kernel's ciphers", SYS_socket, {AF_ALG, SOCK_SEQPACKET, 0}},
       {"a socket of frames", SYS_socket, {AF_PACKET, SOCK_DGRAM, 0}},
       {"a socket of virtual machines", SYS_socket, {AF_VSOCK, SOCK_STREAM, 0}},
@@ -73,14 +73,14 @@ std::vector<Asked> refused_calls() {
       {"a family with more bits", SYS_socket, {1L << 32 | AF_VSOCK, SOCK_STREAM, 0}},
       {"a raw socket", SYS_socket, {AF_INET, SOCK_RAW | SOCK_CLOEXEC, IPPROTO_UDP}},
       {"a raw socket of IPv6", SYS_socket, {AF_INET6, SOCK_RAW, IPPROTO_UDP}},
-      {"a key pressed at the terminal", SYS_ioctl, {kNowhere, TIOCSTI}},
-      {"the same with more bits", SYS_ioctl, {kNowhere, 1L << 32 | TIOCSTI}},
-      {"a paste at the terminal", SYS_ioctl, {kNowhere, TIOCLINUX}},
+      {"a key pressed at the terminal", SYS_ioctl, {kNoPlace, TIOCSTI}},
+      {"the same with more bits", SYS_ioctl, {kNoPlace, 1L << 32 | TIOCSTI}},
+      {"a paste at the terminal", SYS_ioctl, {kNoPlace, TIOCLINUX}},
   };
 }
 
 /// The error that it answers with; a process that it began ends at once.
-int ask(const Asked& call) {
+int error_of(const SystemCall& call) {
   const std::array<long, 6>& a = call.arguments;
   errno = 0;
   const long answer = ::syscall(call.number, a[0], a[1], a[2], a[3], a[4], a[5]);
@@ -99,9 +99,9 @@ bool holds_in_another_process(Check&& check) {
 }
 
 TEST(SystemCallFilterTest, WhatNoSiteAsksForIsRefused) {
-  for (const Asked& call : refused_calls()) {
+  for (const SystemCall& call : refused_calls()) {
     EXPECT_TRUE(holds_in_another_process([&] {
-      return !refuse_system_calls() && ask(call) == EPERM;
+      return !refuse_system_calls() && error_of(call) == EPERM;
     })) << call.name;
   }
 }
@@ -110,7 +110,7 @@ TEST(SystemCallFilterTest, ThreadsThatBeginLaterAreHeldToo) {
   EXPECT_TRUE(holds_in_another_process([] {
     if (refuse_system_calls()) return false;
     int error = 0;
-    std::thread{[&] { error = ask({"execve", SYS_execve, {kNowhere}}); }}.join();
+    std::thread{[&] { error = error_of({"execve", SYS_execve, {kNoPlace}}); }}.join();
     return error == EPERM;
   }));
 }
@@ -118,7 +118,7 @@ TEST(SystemCallFilterTest, ThreadsThatBeginLaterAreHeldToo) {
 // Flags that no filter sees: the C library then asks in the way that shows them.
 TEST(SystemCallFilterTest, TheCallWhoseFlagsAreHiddenIsAsIfItWereNotThere) {
   EXPECT_TRUE(holds_in_another_process([] {
-    return !refuse_system_calls() && ask({"clone3", SYS_clone3, {0, 0}}) == ENOSYS;
+    return !refuse_system_calls() && error_of({"clone3", SYS_clone3, {0, 0}}) == ENOSYS;
   }));
 }
 
