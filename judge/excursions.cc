@@ -24,11 +24,11 @@ std::optional<Excursion> ExcursionFinder::finish() {
   if (!std::exchange(inside_, false)) return std::nullopt;
   std::optional<Excursion> found;
   if (deepest_.position - surface_ > kStrokeDepthMin) {
-    found = {.place = deepest_.place,
-             .began_at = first_.at,
-             .deepest_at = deepest_.at,
-             .ended_at = last_.at,
-             .stiffness = {}};
+    found = Excursion{.place = deepest_.place,
+                      .began_at = first_.at,
+                      .deepest_at = deepest_.at,
+                      .ended_at = last_.at,
+                      .stiffness = {}};
     for (std::size_t i = 0; i < loading_size_ && loading_size_ <= kLoadingMax; ++i) {
       const Loading& one = loading_[i];
       const auto truth =

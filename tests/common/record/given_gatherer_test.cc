@@ -100,6 +100,13 @@ TEST(GivenGathererTest, ATickThatLacksAReadingKeepsWhatItHas) {
             (Names{"stage", "heard", "force", "stage"}));
 }
 
+TEST(GivenGathererTest, PartsOfTwoTicksAreNeverOne) {
+  const auto found = through_a_file(
+      Role::Patient, {at_tick<StageReading>(1), at_tick<ForceReading>(2), at_tick<LinkHeard>(2)});
+  ASSERT_EQ(kinds(found), (Names{"stage", "force", "heard"}));
+  EXPECT_EQ(std::get<StageReading>(found[0]).at, at_ms(1));
+}
+
 TEST(GivenGathererTest, WhatTheEstimatorSaysMeanwhileDisturbsNoTick) {
   EXPECT_EQ(kinds(through_a_file(Role::Patient,
                                  {at_tick<StageReading>(2),
