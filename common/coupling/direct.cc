@@ -1,23 +1,16 @@
 #include "common/coupling/direct.h"
 
-#include <utility>
-
 namespace palp::coupling {
 
-void DirectSurgeon::begin_epoch(double position) noexcept {
+void DirectSurgeon::begin_epoch(double /*position*/) noexcept {
   heard_ = false;
-  position_ = position;
   fade_.set(1);  // nothing was heard, so the force is zero: there is nothing to fade in
 }
 
 SurgeonOutput DirectSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexcept {
-  const double way = in.position - std::exchange(position_, in.position);
-  const auto told_by = [this](const PortSample& tip) {
-    return config_.force_scale * tip.force - config_.spring * tip.position;
-  };
   if (const Incoming* last = newest(in.arrived)) {
     tip_ = last->sample;
-    if (!std::exchange(heard_, true)) told_.set(told_by(tip_));  // where the tip is, is no news
+    heard_ = true;
   }
   if (in.state == SiteState::Engaged) {
     fade_.rise(seconds(lapse.period), config_.fade_in);
@@ -26,8 +19,8 @@ SurgeonOutput DirectSurgeon::step(const SurgeonInput& in, const Lapse& lapse) no
   }
   double force = 0;
   if (heard_) {
-    const double own = config_.spring * config_.position_scale * in.position;
-    force = own + told_.step(told_by(tip_), way, lapse);  // paper eq. (1)
+    const double ahead = config_.position_scale * in.position - tip_.position;
+    force = config_.force_scale * tip_.force + config_.spring * ahead;  // paper eq. (1)
   }
   force *= fade_.value();
   return {force, {in.position, in.velocity, force, std::monostate{}}};

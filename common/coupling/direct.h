@@ -2,7 +2,6 @@
 
 #include "common/core/limits.h"
 #include "common/coupling/coupling.h"
-#include "common/coupling/told_force.h"
 
 /// Coupling `direct`: eq. (1) of the paper, as it stands. Not stable under delay: use it below a
 /// round trip of about 20 ms, and never with a light grip and a soft spring.
@@ -17,8 +16,7 @@ struct DirectConfig {
 };
 
 /// F_h = alpha * F_s(newest) + k_p * (beta * x_m - x_s(newest)): paper eq. (1) in our signs.
-/// Before the first sample of an epoch the force is zero; in Hold it fades. What the other end says
-/// counts no faster than ToldForce follows it.
+/// Before the first sample of an epoch the force is zero; in Hold it fades.
 class DirectSurgeon {
  public:
   explicit DirectSurgeon(const DirectConfig& config) noexcept : config_{config} {}
@@ -29,8 +27,6 @@ class DirectSurgeon {
   DirectConfig config_;
   PortSample tip_;  ///< last heard
   bool heard_{};
-  double position_{};  ///< [m], of the hand a tick ago
-  ToldForce told_{{}};
   Ramp fade_{1};
 };
 

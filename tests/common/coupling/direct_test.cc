@@ -66,21 +66,6 @@ RC_GTEST_PROP(DirectSurgeonTest, ForceIsEquationOneOfThePaper, ()) {
   RC_ASSERT(std::abs(force_for(config, hand, tip, contact) - expected) < 1e-9);
 }
 
-TEST(DirectSurgeonTest, NoNewsIsAKickForAHandThatStandsStill) {
-  DirectSurgeon law{{}};
-  law.begin_epoch(0);
-  double before = 0;
-  for (int tick = 0; tick < 1000; ++tick) {
-    const double lie = tick / 37 % 2 == 0 ? 8 : -8;
-    const std::array arrived{fresh_sample(lie * kMillimetre, lie)};
-    const double force = law.step(hand_at(2 * kMillimetre, arrived), kTick).force;
-    if (tick > 0) {
-      ASSERT_LE(std::abs(force - before), ToldForceConfig{}.slew * 1e-3 + kRounding) << tick;
-    }
-    before = force;
-  }
-}
-
 TEST(DirectSurgeonTest, NoForceBeforeTheFirstSampleOfAnEpoch) {
   DirectSurgeon law{{}};
   law.begin_epoch(0);

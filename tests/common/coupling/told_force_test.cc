@@ -16,7 +16,8 @@ RC_GTEST_PROP(ToldForceTest, IsNeverFasterThanThatAndTheStiffestTissueExplain, (
     const double wanted = *rc::gen::inRange(-9000, 9001) * 1e-3;
     const double way = *rc::gen::inRange(-300, 301) * 1e-6;
     const double now = told.step(wanted, way, kPeriod);
-    RC_ASSERT(std::abs(now - before) <= config.slew * 1e-3 + config.stiffness * std::abs(way) + 1e-12);
+    RC_ASSERT(std::abs(now - before) <=
+              config.slew * 1e-3 + config.stiffness * std::abs(way) + 1e-12);
     RC_ASSERT(std::abs(wanted - now) <= std::abs(wanted - before));
     before = now;
   }

@@ -352,14 +352,11 @@ TEST(DtlsHandshakeTest, APeerWithoutExtendedMasterSecretIsRefused) {
 
 TEST(DtlsHandshakeTest, APeerOfAnotherVersionIsToldApartInWords) {
   constexpr std::array<unsigned char, 7> kOther{6, 'p', 'a', 'l', 'p', '/', '0'};
-  for (const std::size_t offered :
-       {kOther.size(), std::size_t{0}}) {  // none: before versions had names
-    EXPECT_THAT(
-        refused_offer([&](SSL_CTX* context) {
-          EXPECT_EQ(SSL_CTX_set_alpn_protos(context, kOther.data(), static_cast<unsigned>(offered)),
-                    0);
-        }),
-        HasSubstr("does not speak " + protocol_name()));
+  for (const unsigned offered : {7U, 0U}) {  // none: before versions had names
+    EXPECT_THAT(refused_offer([&](SSL_CTX* context) {
+                  SSL_CTX_set_alpn_protos(context, kOther.data(), offered);
+                }),
+                HasSubstr("does not speak " + protocol_name()));
   }
 }
 
