@@ -43,7 +43,7 @@ void WaveSurgeon::begin_epoch(double position) noexcept {
   play_out_.restart();
   sent_ = {};
   presence_.set(1);
-  told_.set(0);
+  told_.begin(0);
 }
 
 /// What went through the port since the last tick. @returns what came out of it as a wave.
@@ -64,7 +64,7 @@ SurgeonOutput WaveSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noex
   if (in.state == SiteState::Retract) presence_.fall(seconds(lapse.period), config_.fade);
   const double most = tank_.force_max();
   const double told = std::clamp(told_.step(root_ * wave, way, lapse), -most, most);
-  told_.set(told);
+  told_.cut_to(told);
   const double force = (impedance_ * speed - told) * presence_.value();
   // Only in Engaged does the hand speak: a wave sent in Hold would be a step when it is over.
   if (in.state == SiteState::Engaged) {
