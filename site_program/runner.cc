@@ -1,11 +1,14 @@
 #include "site_program/runner.h"
 
+#include <cstdlib>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 namespace palp::site_program {
 namespace {
+
+constexpr std::size_t kHeapRoom = std::size_t{4} << 20U;  // [bytes]
 
 /// Of the io thread, below rt, which it must never keep waiting.
 int io_priority(int rt_priority) noexcept { return rt_priority > 10 ? rt_priority - 10 : 0; }
@@ -48,6 +51,10 @@ void Runner::start(link::Link& link, std::function<void(TimePoint now)> tick) {
                             .spin = loop_.spin,
                             .priority = loop_.priority,
                             .lock_memory = loop_.lock_memory};
+  // What the heap is short of at some time in the session, it has from here on: run() in
+  // site_main.cc lets it keep that.
+  void* volatile room = std::malloc(kHeapRoom);
+  std::free(room);
   rt_ = std::make_unique<io::PeriodicThread>(
       "palp-rt",
       loop,
