@@ -26,7 +26,7 @@ class MergeSource {
     while (!message_) {
       auto item = reader_.next();
       if (!item) return;
-      std::visit([this](const auto& one) { take(one); }, *item);
+      std::visit([this](const auto& one) { this->take(one); }, *item);
     }
     at_ = stamp(message_->publish_time);
   }

@@ -17,7 +17,7 @@ Sorted sorted(const std::vector<Record>& records) {
   list.reserve(records.size());
   for (const Record& record : records) list.push_back(&record);
   const auto arrived = [](const Record* one) { return std::holds_alternative<Arrived>(*one); };
-  std::ranges::stable_partition(list, arrived);
+  std::stable_partition(list.begin(), list.end(), arrived);
   return list;
 }
 
