@@ -8,7 +8,7 @@ namespace palp::record {
 namespace {
 
 /// nullopt: of no tick, and in nobody's way.
-std::optional<TimePoint> tick_of(const Record& record) noexcept {
+std::optional<TimePoint> tick_of(const Record& record) {
   return std::visit(
       [](const auto& one) -> std::optional<TimePoint> {
         using One = std::remove_cvref_t<decltype(one)>;
@@ -39,7 +39,7 @@ bool GivenGatherer::readings() const noexcept {
   return part<StageReading>() != nullptr && part<ForceReading>() != nullptr;
 }
 
-bool GivenGatherer::stands_in_the_way_of(const Record& record) const noexcept {
+bool GivenGatherer::stands_in_the_way_of(const Record& record) const {
   const auto at = tick_of(record);
   if (size_ == 0 || !at) return false;
   if (*at != *tick_of(held_.front())) return true;
