@@ -235,7 +235,7 @@ TEST(MotionGateTest, RetractsSlowlyToTwoMillimetreClear) {
 
 TEST(MotionGateTest, ALostLinkTakesTheTipOutOfWhatItCreptIntoUnnoticed) {
   MotionGate gate = gate_at(0);
-  for (int i = 0; i < 60'000; ++i) gate.feel(0, 0.02 * std::exp(i / 12e3));  // up to 3 N in a minute
+  for (int i = 0; i < 60'000; ++i) gate.feel(0, 0.02 * std::exp(i / 12e3));  // to 3 N in a minute
   ASSERT_FALSE(gate.surface()) << "too slow for a contact";
   double before = 0;
   for (int i = 0; i < 100; ++i) {
