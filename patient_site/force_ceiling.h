@@ -7,7 +7,8 @@ namespace palp::patient {
 
 struct ForceCeilingConfig {
   double limit{3};      ///< [N], above it the tip retreats
-  double margin{0.3};   ///< [N], below the limit: where a tip that is held comes to rest
+  double margin{0.3};   ///< [N], below the limit: where a tip that is held comes to rest; at most
+                        ///< half of the limit counts
   double creep{10e-3};  ///< [m/s], deeper at most, where there is no force at all
 };
 
@@ -27,7 +28,7 @@ class ForceCeiling {
   [[nodiscard]] double bound(double asked, double force, double dt) noexcept {
     if (!deepest_ || asked <= *deepest_) return asked;
     // The closer to rest, the slower: sensor and stage lag behind what is commanded.
-    const double rest = config_.limit - config_.margin;
+    const double rest = config_.limit - std::min(config_.margin, config_.limit / 2);
     const double room = std::clamp(1 - force / rest, 0.0, 1.0);
     *deepest_ = std::min(asked, *deepest_ + config_.creep * room * dt);
     return *deepest_;

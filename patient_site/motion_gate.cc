@@ -151,10 +151,12 @@ MotionAnswer MotionGate::pass(const MotionRequest& request, const Lapse& lapse) 
     condition = NoteCode::ForceRetreat;
     note_once(answer, condition, request.contact_force);
   } else if (request.state == SiteState::Retract || request.state == SiteState::Parked) {
-    if (retracted(request.tip) || !surface_) {
+    if (retracted(request.tip) || (!surface_ && request.state == SiteState::Parked)) {
       hold();
     } else {
-      move_out(request.tip, clear_position(), config_.retract_speed, span);
+      // What is felt and never was taken for a contact is left all the same, until it is not felt.
+      const double target = surface_ ? clear_position() : config_.travel_min;
+      move_out(request.tip, target, config_.retract_speed, span);
     }
   } else if (request.state != SiteState::Engaged) {
     hold();

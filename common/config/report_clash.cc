@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 /// What programs add to the names that they are given, besides nothing: prefixes of session files
 /// and records, rows of a run under way, folders of keys.
-constexpr std::array<std::string_view, 11> kAdded{"",
+constexpr std::array<std::string_view, 13> kAdded{"",
                                                   "surgeon.mcap",
                                                   "patient.mcap",
                                                   "-up.csv",
@@ -24,7 +24,9 @@ constexpr std::array<std::string_view, 11> kAdded{"",
                                                   "/certificate.pem",
                                                   "/key.pem",
                                                   "/authority.pem",
-                                                  "/peers.txt"};
+                                                  "/peers.txt",
+                                                  "/revoked.pem",
+                                                  "/pre_shared_key.txt"};
 
 fs::path whole_path(const std::string& name) {
   std::error_code unresolved;

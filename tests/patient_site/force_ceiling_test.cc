@@ -25,6 +25,15 @@ TEST(ForceCeilingTest, GoesNoDeeperWhereTheForceIsThatOfRest) {
   for (const double force : {2.7, 2.9, 4.0}) EXPECT_EQ(ceiling.bound(5e-3, force, kTick), 2e-3);
 }
 
+TEST(ForceCeilingTest, ALimitBelowItsMarginIsOneToo) {
+  for (const double limit : {0.1, 0.2, 0.3}) {
+    ForceCeiling ceiling{{.limit = limit}};
+    ceiling.hit(2e-3);
+    EXPECT_EQ(ceiling.bound(5e-3, limit, kTick), 2e-3) << limit;
+    EXPECT_LE(ceiling.bound(5e-3, 0, kTick), 2e-3 + 11e-6) << limit;
+  }
+}
+
 TEST(ForceCeilingTest, ComesToRestBelowTheLimitOnAnyTissueHoweverLateTheForceIs) {
   const ForceCeilingConfig config;
   for (const double stiffness : {50.0, 300.0, 1500.0, 3000.0}) {

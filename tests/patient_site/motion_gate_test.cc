@@ -233,6 +233,20 @@ TEST(MotionGateTest, RetractsSlowlyToTwoMillimetreClear) {
   EXPECT_TRUE(gate.retracted(before));
 }
 
+TEST(MotionGateTest, ALostLinkTakesTheTipOutOfWhatItCreptIntoUnnoticed) {
+  MotionGate gate = gate_at(0);
+  for (int i = 0; i < 60'000; ++i) gate.feel(0, 0.02 * std::exp(i / 12e3));  // to 3 N in a minute
+  ASSERT_FALSE(gate.surface()) << "too slow for a contact";
+  double before = 0;
+  for (int i = 0; i < 100; ++i) {
+    const double position = gate.pass({SiteState::Retract, 0, {}, before, 2}, kTick).position;
+    EXPECT_NEAR(position - before, -5e-6, 1e-9);
+    before = position;
+  }
+  let_go(gate, before);
+  EXPECT_EQ(gate.pass({SiteState::Retract, 0, {}, before, 0}, kTick).position, before);
+}
+
 TEST(MotionGateTest, ATipThatNeverTouchedIsClearAlready) {
   MotionGate gate = gate_at(-10e-3);
   EXPECT_TRUE(gate.retracted(-10e-3));

@@ -63,7 +63,9 @@ TEST_F(ReportClashTest, UnderAnyName) {
 TEST_F(ReportClashTest, NamesThatProgramsMakeOfThoseTheyAreGiven) {
   EXPECT_TRUE(clashes(path("s-surgeon.mcap"), {"--session-files", path("s-")}));
   EXPECT_TRUE(clashes(path("c.csv.partial"), {"--cases", path("c.csv")}));
-  EXPECT_TRUE(clashes(made("key.pem"), {"--identity", path("")}));
+  for (const char* const name : {"key.pem", "revoked.pem", "pre_shared_key.txt"}) {
+    EXPECT_TRUE(clashes(made(name), {"--identity", path("")})) << name;
+  }
   EXPECT_FALSE(clashes(path("report.json"), {"--session-files", path("")}));
 }
 
