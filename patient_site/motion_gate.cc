@@ -10,12 +10,14 @@ namespace {
 
 using record::NoteCode;
 
-constexpr double kSmoothing = 0.1;          // per tick: 10 ms
-constexpr double kFeltShare = 0.4;          // of contact_force, smoothed: noise alone is no contact
-constexpr double kNoiseShare = 1.4;         // six standard deviations of a mean over 10 ms
-constexpr double kNoiseSmoothing = 1e-3;    // per tick: 1 s
-constexpr double kOutside = 0.5e-3;         // [m], of the learned surface: more than its error
-constexpr double kInside = 1e-3;            // [m], the same to the other side, and some force
+constexpr double kSmoothing = 0.1;        // per tick: 10 ms
+constexpr double kFeltShare = 0.4;        // of contact_force, smoothed: noise alone is no contact
+constexpr double kNoiseShare = 1.4;       // six standard deviations of a mean over 10 ms
+constexpr double kNoiseSmoothing = 1e-3;  // per tick: 1 s
+constexpr int kDoubtTicks = 60;      // a contact that ends sooner, and not by leaving, was none
+constexpr double kLeft = 0.2e-3;     // [m], outwards: the tip was moved out
+constexpr double kOutside = 0.5e-3;  // [m], of the learned surface: more than its error
+constexpr double kInside = 1e-3;     // [m], the same to the other side, and some force
 constexpr double kRetractedWithin = 50e-6;  // [m]
 
 }  // namespace
@@ -24,6 +26,7 @@ void MotionGate::begin(double tip, const Place& place) noexcept {
   command_ = tip;
   velocity_ = 0;
   co_filter_.reset(tip);
+  doubt_.reset();
   plane_.begin(place);
 }
 
@@ -35,9 +38,10 @@ void MotionGate::hold() noexcept {
 void MotionGate::feel(double tip, double contact_force) noexcept {
   co_filter_.step(tip);
   felt_ += kSmoothing * (contact_force - felt_);
-  if (surface_of_this_place_) return;
   const double least =
       std::max(kFeltShare * config_.contact_force, kNoiseShare * std::sqrt(noise_square_));
+  doubt_surface(tip, least);
+  if (surface_of_this_place_) return;
   const bool contact = contact_force >= config_.contact_force && felt_ >= least;
   if (!contact) {
     if (felt_ < least) {
@@ -45,11 +49,29 @@ void MotionGate::feel(double tip, double contact_force) noexcept {
     }
     return;
   }
+  learn_surface(tip);
+}
+
+void MotionGate::learn_surface(double tip) noexcept {
+  doubt_ = Doubt{.surface = surface_, .place = surface_place_, .tip = tip};
   // Contact began where Hertz' law of the expected tissue gives no force.
   const double force = std::max(felt_, config_.contact_force / 2) / config_.contact_stiffness;
   surface_ = co_filter_.value() - std::cbrt(force * force);
   surface_place_ = plane_.command();
   surface_of_this_place_ = true;
+}
+
+/// One wrong sample of the sensor must not shut the way to the tissue.
+void MotionGate::doubt_surface(double tip, double least) noexcept {
+  if (!doubt_) return;
+  if (++doubt_->ticks > kDoubtTicks || tip < doubt_->tip - kLeft) {
+    doubt_.reset();
+  } else if (felt_ < least) {
+    surface_ = doubt_->surface;
+    surface_place_ = doubt_->place;
+    surface_of_this_place_ = false;
+    doubt_.reset();
+  }
 }
 
 bool MotionGate::outside(double tip) const noexcept {

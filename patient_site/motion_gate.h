@@ -96,6 +96,8 @@ class MotionGate {
   [[nodiscard]] double felt_force() const noexcept { return felt_; }  ///< [N], smoothed over 10 ms
 
  private:
+  void learn_surface(double tip) noexcept;
+  void doubt_surface(double tip, double least) noexcept;
   void follow(double target, double dt) noexcept;
   void move_out(double tip, double target, double speed, double dt) noexcept;
   void hold() noexcept;
@@ -118,6 +120,14 @@ class MotionGate {
   std::optional<double> surface_;  ///< [m]
   Place surface_place_;            ///< where it was felt
   bool surface_of_this_place_{};
+  /// A contact that is young: what was known before, if it proves to be none.
+  struct Doubt {
+    std::optional<double> surface;  ///< [m], known before
+    Place place;                    ///< of that
+    double tip{};                   ///< [m], when it began
+    int ticks{};                    ///< since then
+  };
+  std::optional<Doubt> doubt_;
   bool resynchronising_{};
   record::NoteCode noted_{};        ///< of the tick before: a lasting condition is noted once
   record::NoteCode place_noted_{};  ///< the same of the place

@@ -34,6 +34,17 @@ fs::path whole_path(const std::string& name) {
   return unresolved ? fs::path{name}.lexically_normal() : path;
 }
 
+/// "PREFIX-003.mcap" of "--session-files PREFIX-": one of the files that a site numbers itself.
+bool numbered_file(const std::string& prefix, const std::string& report) {
+  constexpr std::string_view kEnd = ".mcap";
+  const std::string name = fs::path{report}.filename().string();
+  const std::string begin = fs::path{prefix}.filename().string();
+  if (!name.starts_with(begin) || !name.ends_with(kEnd)) return false;
+  const std::string number = name.substr(begin.size(), name.size() - begin.size() - kEnd.size());
+  return !number.empty() && number.find_first_not_of("0123456789") == std::string::npos &&
+         same_file((fs::path{prefix}.parent_path() / name).string(), report);
+}
+
 /// A number that is no file's name.
 bool only_number(const std::string& text) {
   std::error_code ignored;
@@ -44,6 +55,7 @@ bool only_number(const std::string& text) {
 bool names_file(const std::string& word, const std::string& report) {
   for (std::string rest = word; !rest.empty();) {
     if (!only_number(rest)) {
+      if (numbered_file(rest, report)) return true;
       for (const std::string_view added : kAdded) {
         if (same_file(rest + std::string{added}, report)) return true;
       }

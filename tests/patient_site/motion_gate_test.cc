@@ -247,6 +247,22 @@ TEST(MotionGateTest, ALostLinkTakesTheTipOutOfWhatItCreptIntoUnnoticed) {
   EXPECT_EQ(gate.pass({SiteState::Retract, 0, {}, before, 0}, kTick).position, before);
 }
 
+TEST(MotionGateTest, OneWrongSampleOfTheSensorIsNoSurfaceForGood) {
+  for (const double wrong : {0.5, 1.0, 2.9}) {
+    MotionGate gate = gate_at(-10e-3);
+    let_go(gate, -10e-3);
+    gate.feel(-10e-3, wrong);
+    for (int i = 0; i < 60; ++i) gate.feel(-10e-3, 0);
+    EXPECT_FALSE(gate.surface()) << wrong;
+    for (int i = 0; i < 1000; ++i) (void)gate.pass(engaged(5e-3, gate.command()), kTick);
+    EXPECT_NEAR(gate.command(), 5e-3, 1e-9) << wrong;
+  }
+  MotionGate gate = gate_at(0);
+  for (int i = 0; i < 20; ++i) gate.feel(0, 0.5);
+  for (int i = 0; i < 60; ++i) gate.feel(-0.5e-3, 0);
+  EXPECT_TRUE(gate.surface()) << "a short touch that was left again";
+}
+
 TEST(MotionGateTest, ATipThatNeverTouchedIsClearAlready) {
   MotionGate gate = gate_at(-10e-3);
   EXPECT_TRUE(gate.retracted(-10e-3));

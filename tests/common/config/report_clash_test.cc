@@ -62,6 +62,8 @@ TEST_F(ReportClashTest, UnderAnyName) {
 
 TEST_F(ReportClashTest, NamesThatProgramsMakeOfThoseTheyAreGiven) {
   EXPECT_TRUE(clashes(path("s-surgeon.mcap"), {"--session-files", path("s-")}));
+  EXPECT_TRUE(clashes(path("s-001.mcap"), {"--session-files", path("s-")}));
+  EXPECT_FALSE(clashes(path("s-last.mcap"), {"--session-files", path("s-")}));
   EXPECT_TRUE(clashes(path("c.csv.partial"), {"--cases", path("c.csv")}));
   for (const char* const name : {"key.pem", "revoked.pem", "pre_shared_key.txt"}) {
     EXPECT_TRUE(clashes(made(name), {"--identity", path("")})) << name;
