@@ -9,8 +9,8 @@
 namespace palp::coupling {
 
 struct ToldForceConfig {
-  double slew{25};         ///< [N/s], while the hand stands still
-  double stiffness{370};   ///< [N/m], of the stiffest tissue: along the hand's way
+  double slew{25};          ///< [N/s], while the hand stands still
+  double stiffness{370};    ///< [N/m], of the stiffest tissue: along the hand's way
   double repay_time{0.05};  ///< [s], in which what was held back is given after all
   double owed_max{0.005};   ///< [N s], of it; more is forgotten
 };
