@@ -32,8 +32,9 @@ int run_program(CommandLine& line,
 int leave(const CommandLine& line, const ExitStatus& exit_status) {
   const bool failed =
       exit_status.code == ExitCode::BadInput || exit_status.code == ExitCode::CannotOpen;
+  if (!failed) return leave(exit_status);
   const CommandLine::AskedReport asked = line.asked_report();
-  if (failed && !asked.file.empty() && !asked.clash) {
+  if (!asked.file.empty() && !asked.clash) {
     // That it cannot be written either is not worth a second sentence.
     (void)write_whole_file(asked.file, failure_report(asked.schema, exit_status));
   }
