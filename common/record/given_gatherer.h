@@ -18,7 +18,7 @@ class GivenGatherer {
 
   [[nodiscard]] link::Role site() const noexcept { return site_; }
 
-  /// What is held cannot be of one message with `record`: release() all of it, then go on.
+  /// What is held cannot be of one message with `record`: it has to be written by itself first.
   [[nodiscard]] bool stands_in_the_way_of(const Record& record) const;
   /// @returns false: `record` is none that is held.
   bool take(const Record& record) noexcept;
