@@ -22,7 +22,6 @@ class ForceCeiling {
   /// The retreat has come this far [m].
   void hit(double position) noexcept { deepest_ = position; }
   void forget() noexcept { deepest_.reset(); }
-  [[nodiscard]] bool holds() const noexcept { return deepest_.has_value(); }
 
   /// Once a tick: how deep the tip may go, of what is asked for [m]. `force`: felt [N]; `dt` [s].
   [[nodiscard]] double bound(double asked, double force, double dt) noexcept {

@@ -38,6 +38,7 @@ void MotionGate::hold() noexcept {
 void MotionGate::feel(double tip, double contact_force) noexcept {
   co_filter_.step(tip);
   felt_ += kSmoothing * (contact_force - felt_);
+  if (surface_of_this_place_ && !doubt_) return;
   const double least =
       std::max(kFeltShare * config_.contact_force, kNoiseShare * std::sqrt(noise_square_));
   doubt_surface(tip, least);

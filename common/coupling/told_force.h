@@ -23,11 +23,8 @@ class ToldForce {
  public:
   explicit ToldForce(const ToldForceConfig& config) noexcept : config_{config} {}
 
-  /// Nothing is owed from here on.
-  void begin(double force) noexcept {  ///< [N]
-    force_ = force;
-    owed_ = 0;
-  }
+  /// No force, and nothing owed.
+  void begin_epoch() noexcept { force_ = owed_ = 0; }
   /// Another limit has the last word [N]; what it takes is not owed.
   void cut_to(double force) noexcept { force_ = force; }
   /// Once a tick. `way`: of the hand since the last one [m]. Of the way of a late tick only one

@@ -43,7 +43,7 @@ void WaveSurgeon::begin_epoch(double position) noexcept {
   play_out_.restart();
   sent_ = {};
   presence_.set(1);
-  told_.begin(0);
+  told_.begin_epoch();
 }
 
 /// What went through the port since the last tick. @returns what came out of it as a wave.
