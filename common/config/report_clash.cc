@@ -6,6 +6,7 @@
 
 #include "common/config/number.h"
 #include "common/core/printable.h"
+#include "common/core/whole_file.h"
 
 namespace palp::config {
 namespace {
@@ -27,6 +28,8 @@ constexpr std::array<std::string_view, 13> kAdded{"",
                                                   "/peers.txt",
                                                   "/revoked.pem",
                                                   "/pre_shared_key.txt"};
+
+constexpr std::string_view kSettingsEnd = ".textproto";
 
 fs::path whole_path(const std::string& name) {
   std::error_code unresolved;
@@ -66,6 +69,25 @@ bool names_file(const std::string& word, const std::string& report) {
   return false;
 }
 
+/// Whether a name in quotes in that text leads to the report.
+bool quotes_file(const std::string& text, const std::string& report) {
+  for (std::size_t from = 0; (from = text.find('"', from)) != std::string::npos;) {
+    const std::size_t end = text.find('"', from + 1);
+    if (end == std::string::npos) return false;
+    if (names_file(text.substr(from + 1, end - from - 1), report)) return true;
+    from = end + 1;
+  }
+  return false;
+}
+
+/// A scenario, or another text of settings, that names further files.
+bool leads_to_file(const std::string& word, const std::string& report) {
+  if (!word.ends_with(kSettingsEnd)) return false;
+  const std::string name = word.substr(word.find('=') + 1);
+  const Result<std::string> text = read_whole_file(name);
+  return text && quotes_file(*text, report);
+}
+
 /// What a person calls the word: its flag.
 std::string spoken_flag(const std::vector<std::string>& words, std::size_t at) {
   if (words[at].starts_with("--")) return words[at].substr(0, words[at].find('='));
@@ -98,16 +120,11 @@ std::optional<std::string> report_clash(const std::string& report,
       continue;
     }
     const std::string flag = spoken_flag(words, i);
-    if (flag != "--report" && names_file(words[i], report)) return sentence(report, flag);
+    if (flag == "--report") continue;
+    if (names_file(words[i], report)) return sentence(report, flag);
+    if (leads_to_file(words[i], report)) return sentence(report, "a line of " + words[i]);
   }
-  for (std::size_t from = 0; (from = settings.find('"', from)) != std::string::npos;) {
-    const std::size_t end = settings.find('"', from + 1);
-    if (end == std::string::npos) break;
-    if (names_file(settings.substr(from + 1, end - from - 1), report)) {
-      return sentence(report, "a setting");
-    }
-    from = end + 1;
-  }
+  if (quotes_file(settings, report)) return sentence(report, "a setting");
   return std::nullopt;
 }
 

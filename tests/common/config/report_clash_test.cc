@@ -71,6 +71,15 @@ TEST_F(ReportClashTest, NamesThatProgramsMakeOfThoseTheyAreGiven) {
   EXPECT_FALSE(clashes(path("report.json"), {"--session-files", path("")}));
 }
 
+TEST_F(ReportClashTest, WhatAScenarioNamesIsNotTakenEither) {
+  const std::string scenario = path("mine.textproto");
+  std::ofstream{scenario} << "surgeon { script: \"" << path("press.txt") << "\" }";
+  EXPECT_TRUE(clashes(path("press.txt"), {scenario}));
+  EXPECT_TRUE(clashes(path("press.txt"), {"--config=" + scenario}));
+  EXPECT_FALSE(clashes(path("other.txt"), {scenario}));
+  EXPECT_FALSE(clashes(path("press.txt"), {path("absent.textproto")}));
+}
+
 TEST_F(ReportClashTest, AVerbOrANumberIsNoFile) {
   EXPECT_FALSE(clashes("run", {"--seed", "1"}));
   EXPECT_FALSE(clashes("7", {"--seed", "7"}));
