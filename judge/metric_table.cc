@@ -34,6 +34,7 @@ constexpr std::array kTable{
     Metric{"force_step_guarded_10ms_n", [](const M& m) { return m.whole.force_step; }},
     Metric{"force_kick_10ms_n", [](const M& m) { return m.whole.force_kick; }},
     Metric{"force_drop_10ms_n", [](const M& m) { return m.whole.force_drop; }},
+    Metric{"force_unexplained_10ms_n", [](const M& m) { return m.whole.force_unexplained; }},
     Metric{"energy_given_mj", [](const M& m) { return m.whole.energy_given * 1e3; }},
     Metric{"force_peak_n", [](const M& m) { return m.force_peak; }},
     Metric{"contact_force_max_n", [](const M& m) { return m.contact_force_max; }},

@@ -69,10 +69,11 @@ struct TapMetrics {
 struct WholeRunMetrics {
   double force_step{};  ///< [N], worst change of F_h in 10 ms
   // Of pauses of a site's process.
-  double force_kick{};    ///< [N], most that the force grew in 10 ms for no motion
-  double force_drop{};    ///< [N], the same as it fell
-  double energy_given{};  ///< [J], as energy_operator, less what forces gave while the process
-                          ///< stood still
+  double force_kick{};         ///< [N], most that the force grew in 10 ms for no motion
+  double force_drop{};         ///< [N], the same as it fell
+  double force_unexplained{};  ///< [N], of both, less what the hand's way does to a spring
+  double energy_given{};       ///< [J], as energy_operator, less what forces gave while the process
+                               ///< stood still
 };
 
 /// Errors are rendered/true - 1 [-]; NaN: undefined.

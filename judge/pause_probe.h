@@ -17,6 +17,7 @@ class PauseProbe {
     double force{};       ///< [N], on the hand
     double force_true{};  ///< [N], of the tissue, had the hand pressed it
     double work{};        ///< [J], of the hand on the device
+    double position{};    ///< [m], of the hand, positive into the tissue
   };
 
   /// Once a tick.
@@ -31,22 +32,32 @@ class PauseProbe {
   [[nodiscard]] double kick() const { return kick_; }
   /// [N], the same of a force that falls.
   [[nodiscard]] double drop() const { return drop_; }
+  /// [N], the larger of both, less what the hand's own way meanwhile and in the 20 ticks before
+  /// does to the stiffest spring of a law: in where the force grows, out where it falls.
+  [[nodiscard]] double unexplained() const { return unexplained_; }
 
  private:
-  struct Forces {
-    double felt{};  ///< [N]
-    double less{};  ///< [N], than the true one
+  struct Instant {
+    double felt{};      ///< [N]
+    double less{};      ///< [N], than the true one
+    double position{};  ///< [m]
   };
+  void judge();
+  /// [m] that the hand went one way, with that sign.
+  [[nodiscard]] double way(double sign) const;
+
   static constexpr std::size_t kWindow = 10;
+  static constexpr std::size_t kMemory = 30;
   static constexpr std::size_t kAfter = 100;
 
   double energy_given_{};  ///< [J]
   double excused_{};       ///< [J], given by held forces
   bool held_before_{};
-  double kick_{};              ///< [N]
-  double drop_{};              ///< [N]
-  std::deque<Forces> forces_;  ///< newest last
-  std::size_t judged_for_{};   ///< ticks still to come
+  double kick_{};             ///< [N]
+  double drop_{};             ///< [N]
+  double unexplained_{};      ///< [N]
+  std::deque<Instant> past_;  ///< newest last
+  std::size_t judged_for_{};  ///< ticks still to come
 };
 
 }  // namespace palp::judge

@@ -35,7 +35,8 @@ std::optional<RunTick> TruthJudge::look(const PlantTruth& truth) {
                 .guarded = truth.guarded,
                 .force = truth.hand_force,
                 .force_true = truth.force_true,
-                .work = truth.hand_work});
+                .work = truth.hand_work,
+                .position = truth.hand});
   if (truth.dark && !dark_seen_) {
     dark_seen_ = true;
     const double from = seconds(truth.run_time);
@@ -72,6 +73,7 @@ RunMetrics TruthJudge::metrics() const {
   metrics.whole = {.force_step = step_max_,
                    .force_kick = pauses_.kick(),
                    .force_drop = pauses_.drop(),
+                   .force_unexplained = pauses_.unexplained(),
                    .energy_given = pauses_.energy_given()};
   // Energy has no script: what the hand gets while it waits or lets go counts too.
   metrics.energy_operator = std::max(0.0, -work_min_);

@@ -170,6 +170,7 @@ class LoggedJudge {
     metrics.whole = {.force_step = judge::kUndefined,
                      .force_kick = judge::kUndefined,
                      .force_drop = judge::kUndefined,
+                     .force_unexplained = judge::kUndefined,
                      .energy_given = judge::kUndefined};
     return metrics;
   }

@@ -38,6 +38,20 @@ TEST(PauseProbeTest, AForceThatFollowsTheMotionIsNoKick) {
   EXPECT_NEAR(probe.drop(), 0.3, 1e-12) << "the smaller of both changes";
 }
 
+TEST(PauseProbeTest, AFallAlongTheHandsWayOutIsExplainedAsFarAsASpringWouldFall) {
+  for (const double way : {0.0, 1e-3, -1e-3}) {  // [m]
+    PauseProbe probe;
+    for (int i = 0; i < 40; ++i) probe.look(pressing(1.5, 0));
+    PauseProbe::Look resumed = pressing(1.5, 0);
+    resumed.resumed = true;
+    probe.look(resumed);
+    PauseProbe::Look later = pressing(0.5, 0);
+    later.position = way;
+    probe.look(later);
+    EXPECT_NEAR(probe.unexplained(), way < 0 ? 0.35 : 1.0, 1e-12);
+  }
+}
+
 TEST(PauseProbeTest, WithoutAPauseNothingIsJudged) {
   PauseProbe probe;
   for (int i = 0; i < 20; ++i) probe.look(pressing(i % 2, 0));
