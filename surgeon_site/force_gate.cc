@@ -20,7 +20,8 @@ constexpr double nearer_to_zero(double force, double target) noexcept {
 
 }  // namespace
 
-ForceGate::ForceGate(const ForceGateConfig& config) noexcept : config_{config} {
+ForceGate::ForceGate(const ForceGateConfig& config) noexcept
+    : config_{config}, growth_{config.growth} {
   PALP_CHECK(config.force_max >= 0 && config.force_continuous > 0 && config.thermal_time > 0 &&
                  config.fade_slew > 0,
              "the limits of a gate are positive");
@@ -41,14 +42,7 @@ void ForceGate::heat_up(Duration passed) noexcept {
 
 ForceAnswer ForceGate::pass(const ForceRequest& asked, const Lapse& lapse) noexcept {
   heat_up(lapse.passed());
-  guard_left_ = std::max(Duration{0}, guard_left_ - lapse.passed());
-  fading_ = fading_ || lapse.late();
-  if (asked.state != state_ || asked.pedal_held != pedal_held_) {
-    fading_ = true;
-    guard_left_ = config_.fade_guard;
-  }
-  state_ = asked.state;
-  pedal_held_ = asked.pedal_held;
+  growth_.move(finite_or(asked.way, 0), lapse);
 
   const bool finite = std::isfinite(asked.force);
   const double wanted = finite ? asked.force : 0;
@@ -57,17 +51,13 @@ ForceAnswer ForceGate::pass(const ForceRequest& asked, const Lapse& lapse) noexc
   const double target = open ? std::clamp(wanted, -largest, largest) : 0;
   if (asked.cut || !finite) {
     force_ = 0;
-    fading_ = true;
-  } else if (fading_ || guard_left_ > Duration{0}) {
-    const double step = config_.fade_slew * seconds(lapse.period);
-    // Through an open gate only growing forces are faded in: holding one up that the law lets go of
-    // would give the hand energy behind the law's back.
-    const double from =
-        open ? nearer_to_zero(force_, target) : std::min(force_, finite_or(asked.fade_max, force_));
-    force_ = step_towards(from, target, step);
-    fading_ = force_ != target;
+  } else if (open) {
+    // Holding a force up that the law lets go of would give the hand energy behind the law's back.
+    force_ = growth_.grow(nearer_to_zero(force_, target), target);
   } else {
-    force_ = target;
+    growth_.forget();
+    const double payable = std::min(force_, finite_or(asked.fade_max, force_));
+    force_ = step_towards(payable, 0, config_.fade_slew * seconds(lapse.period));
   }
 
   ForceAnswer answer{force_, !finite || force_ != asked.force, record::NoteCode::None, 0};

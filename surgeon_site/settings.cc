@@ -32,7 +32,7 @@ ForceGateConfig make_gate(const proto::config::ForceGate& message) {
   ForceGateConfig gate;
   gate.force_max = message.force_max_n();
   gate.force_continuous = message.force_continuous_n();
-  gate.fade_slew = message.fade_slew_n_per_s();
+  gate.fade_slew = gate.growth.slew = message.fade_slew_n_per_s();
   gate.thermal_time = message.thermal_s();
   return gate;
 }

@@ -149,7 +149,13 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
   const coupling::SurgeonInput given = law_input(in.arrived, decision.engaged_now);
   const coupling::SurgeonOutput wanted = coupling::step(parts_.law, given, lapse);
   const bool cut = hand_.faulted || hand_.emergency_stop || in.user.emergency_stop;
-  answer_ = gate_.pass({wanted.force, now_.state, hand_.pedal_held, cut, wanted.fade_max}, lapse);
+  answer_ = gate_.pass({.force = wanted.force,
+                        .way = decision.engaged_now ? 0 : given.position - now_.position,
+                        .state = now_.state,
+                        .pedal_held = hand_.pedal_held,
+                        .cut = cut,
+                        .fade_max = wanted.fade_max},
+                       lapse);
   force_before_ = now_.force;
   now_.force = answer_.force;
   at_hand_.give(answer_.force, 1);
