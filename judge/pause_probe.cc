@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palp::judge {
 namespace {
 
 constexpr double kStiffest = 650;  // [N/m], the spring of the tanks
+constexpr double kDamping = 15;    // [N s/m], the largest impedance of `wave`
+constexpr double kTick = 1e-3;     // [s]
 
 }  // namespace
 
@@ -32,12 +35,17 @@ void PauseProbe::look(const Look& now) {
   judge();
 }
 
-double PauseProbe::way(double sign) const {
-  double sum = 0;
+double PauseProbe::explained(double sign) const {
+  double way = 0;
+  double faster = 0;
+  double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < past_.size(); ++i) {
-    sum += std::max(0.0, sign * (past_[i].position - past_[i - 1].position));
+    const double step = sign * (past_[i].position - past_[i - 1].position);
+    way += std::max(0.0, step);
+    least = std::min(least, step / kTick);
+    faster = step / kTick - least;
   }
-  return sum;
+  return kStiffest * way + kDamping * faster;
 }
 
 void PauseProbe::judge() {
@@ -47,8 +55,8 @@ void PauseProbe::judge() {
   const double kick = std::min(std::abs(change), std::abs(now.less - before.less));
   double& worst = std::abs(now.felt) > std::abs(before.felt) ? kick_ : drop_;
   worst = std::max(worst, kick);
-  const double explained = kStiffest * way(change > 0 ? 1 : -1);
-  unexplained_ = std::max(unexplained_, std::min(kick, std::abs(change) - explained));
+  const double left = std::abs(change) - explained(change > 0 ? 1 : -1);
+  unexplained_ = std::max(unexplained_, std::min(kick, left));
 }
 
 }  // namespace palp::judge

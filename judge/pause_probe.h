@@ -32,8 +32,9 @@ class PauseProbe {
   [[nodiscard]] double kick() const { return kick_; }
   /// [N], the same of a force that falls.
   [[nodiscard]] double drop() const { return drop_; }
-  /// [N], the larger of both, less what the hand's own way meanwhile and in the 20 ticks before
-  /// does to the stiffest spring of a law: in where the force grows, out where it falls.
+  /// [N], the larger of both, less what the hand's own motion meanwhile and in the 20 ticks before
+  /// does to the stiffest spring and the strongest damper of a law: inwards and faster where the
+  /// force grows, outwards and slower where it falls.
   [[nodiscard]] double unexplained() const { return unexplained_; }
 
  private:
@@ -43,8 +44,8 @@ class PauseProbe {
     double position{};  ///< [m]
   };
   void judge();
-  /// [m] that the hand went one way, with that sign.
-  [[nodiscard]] double way(double sign) const;
+  /// [N], of such a spring and damper, with that sign.
+  [[nodiscard]] double explained(double sign) const;
 
   static constexpr std::size_t kWindow = 10;
   static constexpr std::size_t kMemory = 30;

@@ -38,18 +38,31 @@ TEST(PauseProbeTest, AForceThatFollowsTheMotionIsNoKick) {
   EXPECT_NEAR(probe.drop(), 0.3, 1e-12) << "the smaller of both changes";
 }
 
+/// What is left of a fall of 1 N while the hand goes `way` [m] in ten ticks, at one speed.
+double left_of_a_fall(double way) {
+  PauseProbe probe;
+  PauseProbe::Look at = pressing(1.5, 0);
+  for (int i = 0; i < 40; ++i, at.position += way / 10) probe.look(at);
+  at.resumed = true;
+  for (int i = 0; i < 10; ++i, at.position += way / 10, at.force -= 0.1) probe.look(at);
+  probe.look(at);
+  return probe.unexplained();
+}
+
 TEST(PauseProbeTest, AFallAlongTheHandsWayOutIsExplainedAsFarAsASpringWouldFall) {
-  for (const double way : {0.0, 1e-3, -1e-3}) {  // [m]
-    PauseProbe probe;
-    for (int i = 0; i < 40; ++i) probe.look(pressing(1.5, 0));
-    PauseProbe::Look resumed = pressing(1.5, 0);
-    resumed.resumed = true;
-    probe.look(resumed);
-    PauseProbe::Look later = pressing(0.5, 0);
-    later.position = way;
-    probe.look(later);
-    EXPECT_NEAR(probe.unexplained(), way < 0 ? 0.35 : 1.0, 1e-12);
-  }
+  EXPECT_NEAR(left_of_a_fall(0), 1.0, 1e-12);
+  EXPECT_NEAR(left_of_a_fall(0.2e-3), 1.0, 1e-12) << "a way in explains no fall";
+  EXPECT_NEAR(left_of_a_fall(-0.2e-3), 1 - 3 * 0.2e-3 * 650, 1e-9) << "of 30 ticks";
+}
+
+TEST(PauseProbeTest, ADamperExplainsWhatAHandDoesThatTurns) {
+  PauseProbe probe;
+  for (int i = 0; i < 40; ++i) probe.look(pressing(1.5, 0));
+  PauseProbe::Look turned = pressing(0.9, 0);
+  turned.resumed = true;
+  turned.position = -30e-6;  // 30 mm/s
+  probe.look(turned);
+  EXPECT_NEAR(probe.unexplained(), 0.6 - 650 * 30e-6 - 15 * 30e-3, 1e-9);
 }
 
 TEST(PauseProbeTest, WithoutAPauseNothingIsJudged) {
