@@ -17,8 +17,9 @@ using site_program::ExitStatus;
 namespace {
 
 DeviceLook look_at_card(const CardPlan& plan) {
-  const std::string name{ScanCard::kName};
-  io::HidAddress commands = ScanCard::address(0);
+  const CardModel& model = card_model(plan.installation.kind);
+  const std::string name{model.name};
+  io::HidAddress commands = ScanCard::address(model, 0);
   commands.serial = plan.serial;
   const io::HidLook seen = io::look_for_hid({{name, {commands}}}).front();
   DeviceLook look;
@@ -28,7 +29,10 @@ DeviceLook look_at_card(const CardPlan& plan) {
   look.usable = seen.usable;
   look.found = seen.found;
   // It looks the same, and yet no HID interface of it will ever be listed.
-  if (seen.address.empty()) look.found += "; a USB-1608FS-Plus is no HID device and cannot be used";
+  if (seen.address.empty()) {
+    look.found +=
+        "; a " + name.substr(name.find(' ') + 1) + "-Plus is no HID device and cannot be used";
+  }
   return look;
 }
 

@@ -149,11 +149,16 @@ Result<DevicePlan> make_plan(const ModbusDevice& message, const std::string& whe
 }
 
 Result<CardPlan> make_card_plan(const proto::config::HidCard& message, const std::string& where) {
-  if (message.n_per_v() == 0) {
-    return fail(where + ": " + std::string{ScanCard::kName} + " is not calibrated: no n_per_v");
+  const CardModel& model = *card_named(message.model());
+  const std::string name{model.name};
+  if (message.n_per_v() == 0) return fail(where + ": " + name + " is not calibrated: no n_per_v");
+  if (message.range() >= model.full_scales.size()) {
+    return fail(where + ": " + name + " has the ranges 0 to " +
+                std::to_string(model.full_scales.size() - 1));
   }
   CardPlan plan;
   CardInstallation& built_in = plan.installation;
+  built_in.kind = model.kind;
   built_in.channel = static_cast<std::uint8_t>(message.channel());
   built_in.range = static_cast<std::uint8_t>(message.range());
   built_in.newtons_per_volt = message.n_per_v();

@@ -71,6 +71,7 @@ Result<MasterPlan> make_master_plan(const KnownMaster& master,
   if (master.force && plan.installation.force_unit <= 0) {
     return fail(name + ": " + std::string{master.name} + " is not calibrated: no mn_per_count");
   }
+  if (!master.force) plan.installation.force_unit = 0;  // whatever the file says
   plan.pedal_button = static_cast<int>(told.pedal_button());
   plan.serial = told.serial();
   plan.rates.speed_max = told.rate_mm_per_s() * 1e-3;
