@@ -18,6 +18,7 @@ constexpr std::size_t kPacketBytes = 64;
 constexpr int kPacketsMax = 64;     // of one interface and cycle: the kernel keeps no more
 constexpr double kNearFull = 0.99;  // [-], of the scale
 constexpr Duration kPacketHalf = std::chrono::microseconds{500};
+constexpr std::size_t kOutOfOrderMax = 3;  // in a row, and the count begins with the next
 constexpr std::uint8_t kStopScan = 0x12;
 
 std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) noexcept {
@@ -104,6 +105,7 @@ void ScanCard::reach(const Clock& clock) {
     now_.state = CardState::Starting;
     now_.why = {};
     index_known_ = false;
+    out_of_order_ = 0;
     same_ = 0;
     load_.resume();
     heard_at_ = clock.now() + kMemoryPatience;
@@ -206,11 +208,15 @@ bool ScanCard::drain() {
 }
 
 void ScanCard::take(const Packet& packet) {
+  // Those of a scan that somebody began before, and of whom the kernel kept some: it starts anew.
+  if (out_of_order_ >= kOutOfOrderMax) index_ = packet.index;
   const auto ahead = static_cast<std::int16_t>(packet.index - index_);
   if (ahead < -static_cast<int>(model_.interfaces) || (ahead < 0 && now_.lost == 0)) {
     ++now_.broken;
+    ++out_of_order_;
     return;
   }
+  out_of_order_ = 0;
   if (ahead < 0) {
     --now_.lost;  // late: its interface had been read already when it came
   } else {

@@ -94,7 +94,8 @@ class ScanCard {
   std::vector<Packet> packets_;  ///< of this cycle
   bool tried_{};
   bool index_known_{};
-  std::uint16_t index_{};  ///< of the next packet
+  std::uint16_t index_{};       ///< of the next packet
+  std::size_t out_of_order_{};  ///< packets in a row that follow none
   std::uint16_t last_raw_{};
   std::uint32_t same_{};   ///< equal samples in a row
   double sum_{};           ///< [V], of the samples of this cycle

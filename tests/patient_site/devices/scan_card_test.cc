@@ -65,6 +65,17 @@ TEST_F(ScanCardTest, ALatePacketIsNoLoss) {
   EXPECT_EQ(reading.packets, 14U);
 }
 
+TEST_F(ScanCardTest, PacketsOfAnOlderScanDoNotKeepItFromItsOwn) {
+  index_ = 3000;
+  for (int i = 0; i < 20; ++i) packet(0x8000);  // left in the kernel by who was here before
+  (void)step();
+  index_ = 0;
+  const CardReading reading = run(60, 0x8000);
+  EXPECT_EQ(reading.state, CardState::Ready) << reading.why;
+  EXPECT_LE(reading.broken, 3U);
+  EXPECT_EQ(reading.lost, 0U);
+}
+
 TEST_F(ScanCardTest, StuckSaturatedAndTouchedAreSeen) {
   (void)run(50, 0x8000);
   EXPECT_TRUE(run(1, 0xFFF0).saturated);
