@@ -37,14 +37,19 @@ class DriveModel {
     built_in.stuck_after = std::chrono::milliseconds{300};
     return built_in;
   }
+  /// Only the drive, not our driver.
+  void pass(Duration span) {
+    for (const TimePoint end = clock.at + span; clock.at < end;
+         clock.at += std::chrono::milliseconds{1}) {
+      advance();
+    }
+    ++noise_;
+    tell();
+  }
   /// So many of the driver's periods.
   const DeviceReading& cycles(int count) {
     for (int i = 0; i < count; ++i) {
-      const TimePoint next = clock.at + profile_.period;
-      for (; clock.at < next; clock.at += std::chrono::milliseconds{1}) advance();
-      clock.at = next;
-      ++noise_;
-      tell();
+      pass(profile_.period);
       if (alive) command.valid_until = clock.at + std::chrono::milliseconds{50};
       reading = device_.cycle(clock, command);
     }
@@ -68,7 +73,8 @@ class DriveModel {
   bool swapped{};    ///< words of 32 bits, in both ways
   bool quiet{};      ///< without noise: stuck
   bool no_number{};
-  double offset{};  ///< [m], what it reads too much
+  double offset{};    ///< [m], what it reads too much
+  double stop_at{1};  ///< [m], it goes no further than that either way
 
  private:
   void heed(std::uint16_t address) {
@@ -89,7 +95,7 @@ class DriveModel {
   }
   void advance() {
     constexpr double kStep = kSpeed * 1e-3;
-    place_ += std::clamp(target_ - place_, -kStep, kStep);
+    place_ = std::clamp(place_ + std::clamp(target_ - place_, -kStep, kStep), -stop_at, stop_at);
     tell();
   }
   void tell() {
