@@ -9,7 +9,9 @@
 
 namespace palp::patient {
 
-/// The verb `devices`: which of them are there, what they read, why one cannot be used. Moves none.
+/// The verb `devices`: which of them are there, what they read, why one cannot be used; `devices
+/// test NAME`: a guided check of one, which ends in a calibration file. Moves none but in such a
+/// check.
 class DevicesCommand {
  public:
   /// Declares the verb; this object outlives the line's parse().
@@ -18,6 +20,12 @@ class DevicesCommand {
   [[nodiscard]] site_program::ExitStatus run() const;
 
  private:
+  [[nodiscard]] site_program::ExitStatus list(const DevicePlans& plans) const;
+  [[nodiscard]] site_program::ExitStatus test(const DevicePlans& plans) const;
+
+  std::string what_;
+  std::string name_;
+  std::string write_;
   std::string file_;
   bool json_{};
 };

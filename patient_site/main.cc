@@ -24,6 +24,7 @@
 #include "patient_site/settings.h"
 #include "patient_site/settings_devices.h"
 #include "patient_site/simulated_phantom.h"
+#include "patient_site/tare_rule.h"
 #include "patient_site/tissue_record.h"
 #include "site_program/build_info.h"
 #include "site_program/check_command.h"
@@ -191,6 +192,7 @@ class Program {
   /// nullopt: they are ready.
   [[nodiscard]] std::optional<ExitStatus> await_devices(io::Terminal& terminal);
   void tell_of_devices();
+  void tare();
   void look(TimePoint now);
   void show(const PatientStatus& status, TimePoint now);
   void listen();  ///< Thread: estimator
@@ -206,6 +208,7 @@ class Program {
   SimulatedPhantom simulated_;
   std::unique_ptr<DeviceRig> rig_;  ///< null: the simulated one
   std::uint32_t resets_{};
+  std::uint32_t tares_{};
   coupling::PatientCoupling law_;
   link::Link link_;
   site_program::Runner runner_;
@@ -240,6 +243,14 @@ void Program::tell_of_devices() {
   }
 }
 
+void Program::tare() {
+  if (!rig_) return line_.info("a simulated sensor needs no tare");
+  if (const auto why = why_no_tare(node_.status().get())) {
+    return line_.warn("the tare was refused: " + std::string{*why});
+  }
+  rig_->tare();
+}
+
 ExitStatus Program::run(io::Terminal& terminal) {
   if (auto ended = await_devices(terminal)) return *ended;
   runner_.start(link_, [this](TimePoint now) { node_.tick(now); });
@@ -252,6 +263,7 @@ ExitStatus Program::run(io::Terminal& terminal) {
     node_.commands().put({.emergency_stop = false, .resets = terminal.resets()});
     // A reset frees the devices first; the site hears of the next, once they are ready.
     if (rig_ && std::exchange(resets_, terminal.resets()) != resets_) rig_->restart();
+    if (std::exchange(tares_, terminal.tares()) != tares_) tare();
     const TimePoint now = clock_.now();
     look(now);
     if (stop) return end(runner_.sessions() > 0 ? "completed" : "no session");

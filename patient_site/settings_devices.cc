@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 #include <vector>
+
+#include <google/protobuf/text_format.h>
 
 #include "common/config/settings_text.h"
 #include "common/core/whole_file.h"
@@ -149,11 +152,16 @@ Result<DevicePlan> make_plan(const ModbusDevice& message, const std::string& whe
 }
 
 Result<CardPlan> make_card_plan(const proto::config::HidCard& message, const std::string& where) {
-  if (message.n_per_v() == 0) {
-    return fail(where + ": " + std::string{ScanCard::kName} + " is not calibrated: no n_per_v");
+  const CardModel& model = *card_named(message.model());
+  const std::string name{model.name};
+  if (message.n_per_v() == 0) return fail(where + ": " + name + " is not calibrated: no n_per_v");
+  if (message.range() >= model.full_scales.size()) {
+    return fail(where + ": " + name + " has the ranges 0 to " +
+                std::to_string(model.full_scales.size() - 1));
   }
   CardPlan plan;
   CardInstallation& built_in = plan.installation;
+  built_in.kind = model.kind;
   built_in.channel = static_cast<std::uint8_t>(message.channel());
   built_in.range = static_cast<std::uint8_t>(message.range());
   built_in.newtons_per_volt = message.n_per_v();
@@ -261,6 +269,74 @@ Result<DevicePlans> read_device_plans(const std::string& path) {
   auto plans = make_device_plans(*text, path);
   if (plans) plans->text = *text;
   return plans;
+}
+
+namespace {
+
+/// As a person reads it: no more digits than a check can tell.
+double rounded(double value) {
+  const double size = std::pow(10, 5 - std::floor(std::log10(std::abs(value))));
+  return value == 0 ? 0 : std::round(value * size) / size;
+}
+
+void enter(const DevicePlan& found, ModbusDevice& message) {
+  const DeviceInstallation& built_in = found.installation;
+  if (found.profile.move) {
+    message.set_zero_mm(rounded(built_in.zero * 1e3));
+    message.set_reversed(built_in.reversed);
+    message.set_um_per_count(rounded(built_in.position_unit * 1e6));
+    message.set_travel_min_mm(rounded(built_in.travel_min * 1e3));
+    message.set_travel_max_mm(rounded(built_in.travel_max * 1e3));
+    message.set_lag_ms(rounded(found.lag * 1e3));
+  }
+  if (!found.profile.force) return;
+  message.set_mn_per_count(rounded(built_in.force_unit * 1e3));
+  message.set_force_reversed(built_in.force_reversed);
+  message.set_unloaded_n(rounded(built_in.force_zero));
+  message.set_noise_mn(rounded(found.noise * 1e3));
+}
+
+/// The whole file, with `change` done to it, if it is sound then.
+Result<std::string> changed_text(std::string_view text,
+                                 const std::string& name,
+                                 const std::function<void(PatientDeviceFile&)>& change) {
+  PatientDeviceFile message;
+  if (const auto merged = config::merge_text(text, name, message); !merged) {
+    return tl::unexpected{merged.error()};
+  }
+  change(message);
+  std::string changed;
+  google::protobuf::TextFormat::PrintToString(message, &changed);
+  if (const auto plans = make_device_plans(changed, name); !plans) {
+    return tl::unexpected{plans.error()};
+  }
+  return changed;
+}
+
+}  // namespace
+
+Result<std::string> calibrated_text(std::string_view text,
+                                    const std::string& name,
+                                    std::string_view place,
+                                    const DevicePlan& found) {
+  return changed_text(text, name, [&](PatientDeviceFile& file) {
+    enter(found,
+          place == "normal" ? *file.mutable_normal()
+          : place == "x"    ? *file.mutable_x()
+          : place == "y"    ? *file.mutable_y()
+                            : *file.mutable_cell());
+  });
+}
+
+Result<std::string> calibrated_text(std::string_view text,
+                                    const std::string& name,
+                                    const CardPlan& found) {
+  return changed_text(text, name, [&](PatientDeviceFile& file) {
+    proto::config::HidCard& card = *file.mutable_card();
+    card.set_n_per_v(rounded(found.installation.newtons_per_volt));
+    card.set_unloaded_n(rounded(found.installation.load.force_zero));
+    card.set_noise_mn(rounded(found.noise * 1e3));
+  });
 }
 
 }  // namespace palp::patient

@@ -13,6 +13,16 @@ namespace palp::patient {
 [[nodiscard]] Result<DevicePlans> make_device_plans(std::string_view text, const std::string& name);
 [[nodiscard]] Result<DevicePlans> read_device_plans(const std::string& path);
 
+/// The file's `text` with what a check found of one of its devices, "normal", "x", "y" or "cell".
+[[nodiscard]] Result<std::string> calibrated_text(std::string_view text,
+                                                  const std::string& name,
+                                                  std::string_view place,
+                                                  const DevicePlan& found);
+/// The same of its card.
+[[nodiscard]] Result<std::string> calibrated_text(std::string_view text,
+                                                  const std::string& name,
+                                                  const CardPlan& found);
+
 /// A profile by its name, "iai", or "file:PATH".
 [[nodiscard]] Result<DeviceProfile> find_profile(const std::string& name);
 

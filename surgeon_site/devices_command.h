@@ -8,7 +8,8 @@
 
 namespace palp::surgeon {
 
-/// The verb `devices`: which masters are there, and why one cannot be used. Moves none.
+/// The verb `devices`: which masters are there, and why one cannot be used; `devices test NAME`: a
+/// guided check of one, which ends in a calibration file. Moves none but in such a check.
 class DevicesCommand {
  public:
   /// Declares the verb; this object outlives the line's parse().
@@ -17,6 +18,13 @@ class DevicesCommand {
   [[nodiscard]] site_program::ExitStatus run() const;
 
  private:
+  [[nodiscard]] site_program::ExitStatus list() const;
+  [[nodiscard]] site_program::ExitStatus test() const;
+
+  std::string what_;
+  std::string name_;
+  std::string file_;
+  std::string write_;
   bool json_{};
 };
 

@@ -1,6 +1,9 @@
 #include "surgeon_site/settings_devices.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include <google/protobuf/text_format.h>
 
 #include "common/config/settings_text.h"
 #include "common/core/whole_file.h"
@@ -71,6 +74,7 @@ Result<MasterPlan> make_master_plan(const KnownMaster& master,
   if (master.force && plan.installation.force_unit <= 0) {
     return fail(name + ": " + std::string{master.name} + " is not calibrated: no mn_per_count");
   }
+  if (!master.force) plan.installation.force_unit = 0;  // whatever the file says
   plan.pedal_button = static_cast<int>(told.pedal_button());
   plan.serial = told.serial();
   plan.rates.speed_max = told.rate_mm_per_s() * 1e-3;
@@ -91,6 +95,38 @@ Result<MasterPlan> read_master_plan(const KnownMaster& master, const std::string
   const auto text = read_whole_file(path);
   if (!text) return tl::unexpected{text.error()};
   return make_master_plan(master, *text, path);
+}
+
+Result<std::string> calibrated_text(std::string_view text,
+                                    const std::string& name,
+                                    const MasterPlan& found) {
+  proto::config::SurgeonDeviceFile message;
+  if (const auto merged = config::merge_text(text, name, message); !merged) {
+    return tl::unexpected{merged.error()};
+  }
+  HidMasterDevice& master = *message.mutable_master();
+  const MasterInstallation& built_in = found.installation;
+  // As a person reads it: no more digits than a check can tell.
+  const auto rounded = [](double value) {
+    const double size = std::pow(10, 5 - std::floor(std::log10(std::abs(value))));
+    return value == 0 ? 0 : std::round(value * size) / size;
+  };
+  if (found.product->force) {
+    master.set_um_per_count(rounded(built_in.position_unit * 1e6));
+    master.set_mn_per_count(rounded(built_in.force_unit * 1e3));
+    master.set_zero_mm(rounded(built_in.zero * 1e3));
+    master.set_reversed(built_in.reversed);
+    master.set_force_reversed(built_in.force_reversed);
+    master.set_travel_min_mm(rounded(built_in.travel_min * 1e3));
+    master.set_travel_max_mm(rounded(built_in.travel_max * 1e3));
+    master.set_lag_ms(rounded(found.facts.lag * 1e3));
+  }
+  std::string changed;
+  google::protobuf::TextFormat::PrintToString(message, &changed);
+  if (const auto plan = make_master_plan(*found.product, changed, name); !plan) {
+    return tl::unexpected{plan.error()};
+  }
+  return changed;
 }
 
 }  // namespace palp::surgeon

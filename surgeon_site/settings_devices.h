@@ -16,4 +16,9 @@ namespace palp::surgeon {
 [[nodiscard]] Result<MasterPlan> read_master_plan(const KnownMaster& master,
                                                   const std::string& path);
 
+/// The file's `text` with what a check found of its master.
+[[nodiscard]] Result<std::string> calibrated_text(std::string_view text,
+                                                  const std::string& name,
+                                                  const MasterPlan& found);
+
 }  // namespace palp::surgeon

@@ -10,7 +10,7 @@ constexpr Duration kCardPeriod = std::chrono::milliseconds{1};
 constexpr Duration kNoCardSpin{0};
 
 ScanCard::Ports borrowed(const CardThread::Ports& owned) {
-  ScanCard::Ports ports{};
+  ScanCard::Ports ports(owned.size());
   std::ranges::transform(owned, ports.begin(), [](const auto& port) { return port.get(); });
   return ports;
 }
@@ -31,7 +31,7 @@ CardThread::~CardThread() {
 }
 
 void CardThread::cycle() {
-  const CardReading reading = card_.cycle(clock_, restarts_.get());
+  const CardReading reading = card_.cycle(clock_, asks_.get());
   to_rt_.put(reading);
   to_main_.put(reading);
 }

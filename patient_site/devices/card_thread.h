@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/core/mailbox.h"
 #include "common/io/realtime/periodic_thread.h"
@@ -16,7 +16,7 @@ namespace palp::patient {
 /// A force card on a thread of its own at 1 kHz, between mailboxes.
 class CardThread {
  public:
-  using Ports = std::array<std::unique_ptr<io::ReportPort>, ScanCard::kPorts>;
+  using Ports = std::vector<std::unique_ptr<io::ReportPort>>;
   /// Starts at once. `priority`: SCHED_FIFO, 0: none.
   CardThread(const CardInstallation& installation, Ports ports, int priority);
   /// Ends the thread, then the scan.
@@ -29,7 +29,15 @@ class CardThread {
   /// Thread: main.
   [[nodiscard]] const CardReading& status() noexcept { return to_main_.get(); }
   /// Thread: main. Out of a fault, if it is in one: with a new tare.
-  void restart() noexcept { restarts_.put(++restarted_); }
+  void restart() noexcept {
+    ++asked_.restarts;
+    asks_.put(asked_);
+  }
+  /// Thread: main. A new tare, while it is ready; its news is in the reading.
+  void tare() noexcept {
+    ++asked_.tares;
+    asks_.put(asked_);
+  }
 
  private:
   void cycle();
@@ -37,11 +45,11 @@ class CardThread {
   Ports ports_;
   ScanCard card_;
   io::SteadyClock clock_;
-  Mailbox<CardReading> to_rt_;       ///< writer: device; reader: rt
-  Mailbox<CardReading> to_main_;     ///< writer: device; reader: main
-  Mailbox<std::uint32_t> restarts_;  ///< writer: main; reader: device
-  std::uint32_t restarted_{};        ///< main's
-  io::PeriodicThread thread_;        ///< last: it uses all of the above
+  Mailbox<CardReading> to_rt_;    ///< writer: device; reader: rt
+  Mailbox<CardReading> to_main_;  ///< writer: device; reader: main
+  Mailbox<DeviceAsks> asks_;      ///< writer: main; reader: device
+  DeviceAsks asked_;              ///< main's
+  io::PeriodicThread thread_;     ///< last: it uses all of the above
 };
 
 /// A card's channel as the site's force sensor. Thread: rt; `card` outlives it.

@@ -47,12 +47,12 @@ ForceSensorFacts sensor_facts_of(const DevicePlan& plan) noexcept {
 ForceSensorFacts sensor_facts_of(const CardPlan& plan) noexcept {
   constexpr double kRate = 1000;         // [Hz], of packets
   constexpr double kCardDelay = 1.5e-3;  // [s], half a packet, and until its turn
-  constexpr double kSteps = 65'536;      // of 16 bits
   ForceSensorFacts facts;
   const CardInstallation& built_in = plan.installation;
   facts.pole = plan.pole;
-  facts.step = std::abs(built_in.newtons_per_volt) * 2 *
-               card_ranges().at(built_in.range).full_scale / kSteps;
+  const CardModel& model = card_model(built_in.kind);
+  facts.step =
+      std::abs(built_in.newtons_per_volt) * 2 * model.full_scales.at(built_in.range) / model.steps;
   facts.range = built_in.load.force_range;
   facts.noise = plan.noise;
   facts.rate = kRate;

@@ -44,6 +44,10 @@ std::string describe_reason(const DeviceReading& reading, const DeviceProfile& p
       return "the position jumped";
     case DeviceReason::Touched:
       return "the tare was refused: something touches the sensor";
+    case DeviceReason::Overloaded:
+      return "the reading is at the end of its range";
+    case DeviceReason::OutOfReach:
+      return "its position is far outside its travel: are unit and word order the device's?";
   }
   return "?";
 }

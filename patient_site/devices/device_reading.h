@@ -6,6 +6,7 @@
 
 #include "common/core/time.h"
 #include "patient_site/devices/device_profile.h"
+#include "patient_site/devices/load_check.h"
 
 namespace palp::patient {
 
@@ -25,8 +26,10 @@ enum class DeviceReason : std::uint8_t {
   NoLife,       ///< answers, and its life word stands still
   NotFinite,
   Stuck,
-  Jumped,  ///< a position that no motion leads to
-  Touched  ///< the tare was refused
+  Jumped,      ///< a position that no motion leads to
+  Touched,     ///< the tare was refused
+  Overloaded,  ///< its force is at the end of its range from the start on
+  OutOfReach   ///< far outside its travel: unit or word order are not the device's
 };
 
 /// Newest state of a device, as it crosses threads.
@@ -42,8 +45,15 @@ struct DeviceReading {
   double velocity{};         ///< [m/s]
   double force{};            ///< [N], tared
   double zero{};             ///< [N], the tare
+  TareNews tare;
   bool saturated{};
   bool at_limit{};
+};
+
+/// What a person asks of a device; each counts up.
+struct DeviceAsks {
+  std::uint32_t restarts{};  ///< out of a fault, from the beginning
+  std::uint32_t tares{};     ///< a new tare
 };
 
 /// What an axis shall do, and until when.
@@ -51,7 +61,7 @@ struct DeviceCommand {
   bool move{};      ///< towards `target`; else hold
   double target{};  ///< [m], of the site
   TimePoint valid_until{};
-  std::uint32_t restarts{};  ///< counts up: out of a fault, from the beginning
+  DeviceAsks asks;
 };
 
 /// "not healthy: emergency stop". Allocates.

@@ -1,6 +1,8 @@
 #include "patient_site/devices/device_rig.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <utility>
 
 #include "common/core/check.h"
@@ -21,18 +23,32 @@ std::string sentence_of(DeviceThread& device) {
   return why.empty() ? text : text + ", " + why;
 }
 
-std::string sentence_of(const CardReading& card) {
-  const std::string text =
-      "force sensor (" + std::string{ScanCard::kName} + "): " + std::string{to_string(card.state)};
+std::string sentence_of(const std::string& product, const CardReading& card) {
+  const std::string text = "force sensor (" + product + "): " + std::string{to_string(card.state)};
   return card.why.empty() ? text : text + ", " + std::string{card.why};
+}
+
+/// What became of a tare since `before`; nullopt: nothing new.
+std::optional<DeviceNews> tare_news(const std::string& who,
+                                    const TareNews& before,
+                                    const TareNews& now) {
+  if (now.refused != before.refused) {
+    return DeviceNews{who + ": the tare was refused, something touches the sensor", false};
+  }
+  if (now.taken == before.taken) return std::nullopt;
+  std::array<char, 64> moved{};
+  (void)std::snprintf(
+      moved.data(), moved.size(), ": tared, its zero has moved by %.0f mN", now.moved * 1e3);
+  return DeviceNews{who + moved.data(), true};
 }
 
 std::unique_ptr<CardThread> make_card(const CardPlan& plan, int priority) {
   CardThread::Ports ports;
-  for (std::size_t i = 0; i < ports.size(); ++i) {
-    io::HidAddress address = ScanCard::address(static_cast<int>(i));
+  const CardModel& model = card_model(plan.installation.kind);
+  for (std::size_t i = 0; i <= model.interfaces; ++i) {
+    io::HidAddress address = ScanCard::address(model, static_cast<int>(i));
     address.serial = plan.serial;
-    ports[i] = std::make_unique<io::HidPort>(std::move(address));
+    ports.push_back(std::make_unique<io::HidPort>(std::move(address)));
   }
   return std::make_unique<CardThread>(plan.installation, std::move(ports), priority);
 }
@@ -48,6 +64,7 @@ DeviceRig::DeviceRig(const DevicePlans& plans, int priority) {
   const PatientDevices facts = facts_of(plans);
   stage_ = std::make_unique<RegisterStage>(std::array<DeviceThread*, 3>{normal, x, y}, facts.stage);
   if (plans.card) {
+    card_name_ = card_model(plans.card->installation.kind).name;
     card_ = make_card(*plans.card, priority);
     force_ = std::make_unique<CardForce>(*card_, facts.sensor);
   } else {
@@ -85,7 +102,7 @@ std::optional<std::string> DeviceRig::hopeless(Duration waited) {
   const CardReading& card = card_->status();
   if (card.state == CardState::Ready) return std::nullopt;
   const bool given_up = card.state == CardState::Fault || waited >= kReachPatience;
-  return given_up ? std::optional{sentence_of(card)} : std::nullopt;
+  return given_up ? std::optional{sentence_of(card_name_, card)} : std::nullopt;
 }
 
 std::vector<DeviceNews> DeviceRig::news() {
@@ -94,14 +111,20 @@ std::vector<DeviceNews> DeviceRig::news() {
     const CardReading& card = card_->status();
     const bool same_state = std::exchange(card_state_, card.state) == card.state;
     const bool same_why = std::exchange(card_why_, card.why) == card.why;
-    if (!same_state || !same_why) all.push_back({sentence_of(card), card.why.empty()});
+    if (!same_state || !same_why) all.push_back({sentence_of(card_name_, card), card.why.empty()});
+    const TareNews before = std::exchange(card_tare_, card.tare);
+    if (auto news = tare_news("force sensor (" + card_name_ + ")", before, card.tare)) {
+      all.push_back(std::move(*news));
+    }
   }
   for (std::size_t i = 0; i < threads_.size(); ++i) {
     const DeviceReading& reading = threads_[i]->status();
-    const Known before = std::exchange(known_[i], {reading.state, reading.reason});
+    const Known before = std::exchange(known_[i], {reading.state, reading.reason, reading.tare});
     if (before.state != reading.state || before.reason != reading.reason) {
       all.push_back({sentence_of(*threads_[i]), reading.reason == DeviceReason::None});
     }
+    const std::string who = threads_[i]->name() + " (" + threads_[i]->profile().name + ")";
+    if (auto news = tare_news(who, before.tare, reading.tare)) all.push_back(std::move(*news));
   }
   return all;
 }
@@ -109,6 +132,13 @@ std::vector<DeviceNews> DeviceRig::news() {
 void DeviceRig::restart() noexcept {
   for (const auto& device : threads_) device->restart();
   if (card_) card_->restart();
+}
+
+void DeviceRig::tare() noexcept {
+  if (card_) return card_->tare();
+  for (const auto& device : threads_) {
+    if (device->profile().force) device->tare();
+  }
 }
 
 }  // namespace palp::patient

@@ -33,6 +33,9 @@ class DeviceRig {
   [[nodiscard]] std::vector<DeviceNews> news();
   /// Out of their faults, from the beginning of their start.
   void restart() noexcept;
+  /// A new tare of what feels the force; news() says what became of it. It is refused where
+  /// something touches; that the tip is clear of the tissue, the caller sees to.
+  void tare() noexcept;
 
   [[nodiscard]] Stage& stage() noexcept { return *stage_; }
   [[nodiscard]] ForceSensor& sensor() noexcept { return *force_; }
@@ -44,14 +47,17 @@ class DeviceRig {
   struct Known {
     DeviceState state{};
     DeviceReason reason{};
+    TareNews tare;
   };
 
   std::vector<std::unique_ptr<DeviceThread>> threads_;
   std::vector<Known> known_;  ///< as told last, of each
   std::unique_ptr<RegisterStage> stage_;
   std::unique_ptr<CardThread> card_;  ///< null: the force is felt over Modbus
-  CardState card_state_{};            ///< as told last
-  std::string_view card_why_;         ///< as told last
+  std::string card_name_;
+  CardState card_state_{};     ///< as told last
+  TareNews card_tare_;         ///< as told last
+  std::string_view card_why_;  ///< as told last
   std::unique_ptr<ForceSensor> force_;
 };
 

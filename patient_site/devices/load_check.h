@@ -2,18 +2,35 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "common/core/time.h"
 #include "patient_site/devices/device_profile.h"
 
 namespace palp::patient {
 
+/// What became of tares that were asked for.
+struct TareNews {
+  std::uint32_t taken{};    ///< so many, the first not counted
+  std::uint32_t refused{};  ///< something touched, or the reading was not quiet
+  double moved{};           ///< [N], the zero by the last of them: its drift
+};
+
 /// What a force sensor's readings are worth: takes the tare in quiet air, refuses it where
 /// something touches, and notices readings that are saturated, not finite, or always the same. The
-/// tare is taken once; a sensor that comes back may be pressed. Thread: its device's. A value.
+/// tare is taken once, and again when asked for; a sensor that comes back may be pressed. Thread:
+/// its device's. A value.
 class LoadCheck {
  public:
-  enum class Verdict : std::uint8_t { Taring, Good, Saturated, NotFinite, Stuck, Touched };
+  enum class Verdict : std::uint8_t {
+    Taring,
+    Good,
+    Saturated,
+    NotFinite,
+    Stuck,
+    Touched,
+    Overloaded  ///< saturated as long as a tare takes, before there was one
+  };
 
   explicit LoadCheck(const DeviceInstallation& config) noexcept : config_{config} {}
 
@@ -23,23 +40,35 @@ class LoadCheck {
     if (!begun_ || force != last_) changed_at_ = now;
     begun_ = true;
     last_ = force;
-    if (std::abs(force) >= kFull * config_.force_range) return Verdict::Saturated;
+    if (std::abs(force) >= kFull * config_.force_range) return saturated(now);
+    saturated_since_.reset();
     if (config_.stuck_after > Duration{0} && now - changed_at_ > config_.stuck_after) {
       return Verdict::Stuck;
     }
-    return tared_ ? Verdict::Good : tare(force, now);
+    if (tared_ && !again_) return Verdict::Good;
+    const Verdict verdict = tare(force, now);
+    return again_ ? judge_again(verdict) : verdict;
   }
   /// A new tare with the next readings: after a refusal, where the user wants it.
   void begin_tare() noexcept {
-    tared_ = false;
+    tared_ = again_ = false;
+    count_ = 0;
+  }
+  /// A new tare beside the readings, which keep the old one until it is taken.
+  void begin_tare_again() noexcept {
+    again_ = tared_;
     count_ = 0;
   }
   /// After a gap: sameness before it proves nothing.
-  void resume() noexcept { begun_ = false; }
+  void resume() noexcept {
+    begun_ = false;
+    saturated_since_.reset();
+  }
 
   [[nodiscard]] bool tared() const noexcept { return tared_; }
   [[nodiscard]] double zero() const noexcept { return zero_; }    ///< [N]
   [[nodiscard]] double noise() const noexcept { return noise_; }  ///< [N], rms, in that quiet air
+  [[nodiscard]] const TareNews& news() const noexcept { return news_; }
 
  private:
   static constexpr double kFull = 0.99;  // [-], of the range
@@ -60,14 +89,30 @@ class LoadCheck {
     if (std::abs(mean) > config_.tare_within || noise_ > config_.tare_noise) {
       return Verdict::Touched;
     }
+    news_.moved = config_.force_zero + mean - zero_;
     zero_ = config_.force_zero + mean;
     tared_ = true;
     return Verdict::Good;
+  }
+  [[nodiscard]] Verdict judge_again(Verdict verdict) noexcept {
+    if (verdict == Verdict::Taring) return Verdict::Good;
+    again_ = false;
+    ++(verdict == Verdict::Good ? news_.taken : news_.refused);
+    return Verdict::Good;
+  }
+  [[nodiscard]] Verdict saturated(TimePoint now) noexcept {
+    if (again_) (void)judge_again(Verdict::Touched);
+    if (!saturated_since_) saturated_since_ = now;
+    return !tared_ && now - *saturated_since_ > config_.tare_time ? Verdict::Overloaded
+                                                                  : Verdict::Saturated;
   }
 
   DeviceInstallation config_;
   bool begun_{};
   bool tared_{};
+  bool again_{};  ///< a tare that was asked for is under way
+  TareNews news_;
+  std::optional<TimePoint> saturated_since_;
   double last_{};  ///< [N]
   TimePoint changed_at_{};
   TimePoint tare_began_{};

@@ -16,6 +16,7 @@ constexpr Duration kHealthWait = std::chrono::seconds{1};  // after the last ste
 constexpr std::uint32_t kRetriesMax = 3;
 constexpr double kJumpFree = 2e-3;      // [m], more than any rounding or late stamp
 constexpr double kJumpSpeed = 3;        // [-], times the speed of the axis
+constexpr double kReach = 0.1;          // [m], beyond its travel an axis may stand
 constexpr double kVelocityShare = 0.5;  // of the newest difference
 constexpr std::int64_t kStallPeriods = 5;
 constexpr std::uint64_t kStateEvery = 10;  // readings
@@ -42,8 +43,9 @@ RegisterDevice::RegisterDevice(DeviceProfile profile,
 
 DeviceReading RegisterDevice::cycle(const Clock& clock, const DeviceCommand& command) {
   const TimePoint now = clock.now();
-  if (std::exchange(restarts_, command.restarts) != command.restarts &&
-      now_.state == DeviceState::Fault) {
+  const DeviceAsks before = std::exchange(asks_, command.asks);
+  if (before.tares != asks_.tares && now_.state == DeviceState::Ready) load_.begin_tare_again();
+  if (before.restarts != asks_.restarts && now_.state == DeviceState::Fault) {
     if (now_.reason == DeviceReason::Touched) load_.begin_tare();
     enter_start(now);
   }
@@ -163,6 +165,9 @@ void RegisterDevice::take_position(TimePoint sampled_at) {
     fail(DeviceReason::Jumped, 0);
     return;
   }
+  if (now_.state == DeviceState::Ready && !within_reach(position)) {
+    return fail(DeviceReason::OutOfReach, 0);
+  }
   now_.velocity = position_known_ && span > 0
                       ? now_.velocity + kVelocityShare * (way / span - now_.velocity)
                       : 0;
@@ -183,10 +188,18 @@ void RegisterDevice::take_force(TimePoint sampled_at) {
     return;
   }
   now_.zero = load_.zero();
+  now_.tare = load_.news();
   now_.force = force - load_.zero();
   if (!ready) return;
   if (verdict == LoadCheck::Verdict::Stuck) fail(DeviceReason::Stuck, 0);
   if (verdict == LoadCheck::Verdict::Touched) fail(DeviceReason::Touched, 0);
+  if (verdict == LoadCheck::Verdict::Overloaded) fail(DeviceReason::Overloaded, 0);
+}
+
+/// A wrong unit or word order makes metres of millimetres; a target in them sends it anywhere.
+bool RegisterDevice::within_reach(double position) const noexcept {
+  return position > installation_.travel_min - kReach &&
+         position < installation_.travel_max + kReach;
 }
 
 bool RegisterDevice::meets(const RegisterCondition& condition) const noexcept {
@@ -238,6 +251,7 @@ void RegisterDevice::proceed(TimePoint now) {
     if (now - step_began_ > kHealthWait) fail(DeviceReason::NotHealthy, *index);
     return;
   }
+  if (profile_.position && !within_reach(now_.position)) return fail(DeviceReason::OutOfReach, 0);
   if (profile_.force && !load_.tared()) return;
   now_.state = DeviceState::Ready;
   ++now_.starts;

@@ -53,6 +53,7 @@ class RegisterDevice {
   [[nodiscard]] io::PortFault send(const RegisterWrite& write);
   [[nodiscard]] std::size_t words_of(const RegisterWrite& write,
                                      std::span<std::uint16_t> words) const noexcept;
+  [[nodiscard]] bool within_reach(double position) const noexcept;
   [[nodiscard]] double raw_position(double position) const noexcept;
   void note_transfer(io::PortFault fault, TimePoint now);
   void fail(DeviceReason reason, std::uint32_t detail);
@@ -72,7 +73,7 @@ class RegisterDevice {
   std::size_t step_{};  ///< of the start
   bool step_sent_{};
   TimePoint step_began_{};
-  std::uint32_t restarts_{};
+  DeviceAsks asks_;        ///< as heard last
   bool position_known_{};  ///< since the start
   AxisMotion motion_;      ///< commanded
   AxisMotion delivered_;   ///< the last of them that arrived

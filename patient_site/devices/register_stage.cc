@@ -36,7 +36,7 @@ DeviceThread::~DeviceThread() {
 
 void DeviceThread::cycle() {
   DeviceCommand command = command_.get();
-  command.restarts = restarts_.get();
+  command.asks = asks_.get();
   const DeviceReading reading = device_.cycle(clock_, command);
   to_rt_.put(reading);
   to_main_.put(reading);
@@ -68,7 +68,7 @@ void RegisterStage::move_to(const StageTarget& target) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (axes_[i] == nullptr) continue;
     axes_[i]->command(
-        {.move = true, .target = targets[i], .valid_until = at_ + kCommandValid, .restarts = 0});
+        {.move = true, .target = targets[i], .valid_until = at_ + kCommandValid, .asks = {}});
   }
 }
 

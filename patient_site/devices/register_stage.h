@@ -39,7 +39,15 @@ class DeviceThread {
   /// Thread: main.
   [[nodiscard]] const DeviceReading& status() noexcept { return to_main_.get(); }
   /// Thread: main. Out of a fault, if it is in one, to the beginning of its start.
-  void restart() noexcept { restarts_.put(++restarted_); }
+  void restart() noexcept {
+    ++asked_.restarts;
+    asks_.put(asked_);
+  }
+  /// Thread: main. A new tare, while it is ready; its news is in the reading.
+  void tare() noexcept {
+    ++asked_.tares;
+    asks_.put(asked_);
+  }
   /// Thread: any.
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const DeviceProfile& profile() const noexcept { return device_.profile(); }
@@ -51,12 +59,12 @@ class DeviceThread {
   std::unique_ptr<io::RegisterPort> port_;
   RegisterDevice device_;
   io::SteadyClock clock_;
-  Mailbox<DeviceReading> to_rt_;     ///< writer: device; reader: rt
-  Mailbox<DeviceReading> to_main_;   ///< writer: device; reader: main
-  Mailbox<DeviceCommand> command_;   ///< writer: rt; reader: device
-  Mailbox<std::uint32_t> restarts_;  ///< writer: main; reader: device
-  std::uint32_t restarted_{};        ///< main's
-  io::PeriodicThread thread_;        ///< last: it uses all of the above
+  Mailbox<DeviceReading> to_rt_;    ///< writer: device; reader: rt
+  Mailbox<DeviceReading> to_main_;  ///< writer: device; reader: main
+  Mailbox<DeviceCommand> command_;  ///< writer: rt; reader: device
+  Mailbox<DeviceAsks> asks_;        ///< writer: main; reader: device
+  DeviceAsks asked_;                ///< main's
+  io::PeriodicThread thread_;       ///< last: it uses all of the above
 };
 
 /// A stage of one axis along the normal, or of three, of any makers. Thread: rt; `axes` outlive it.

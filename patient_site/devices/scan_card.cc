@@ -11,17 +11,15 @@ namespace {
 using io::PortFault;
 
 constexpr std::uint16_t kCardVendor = 0x09DB;
-constexpr std::uint16_t kCardProduct = 0x007D;
 constexpr Duration kCardReopenPause = std::chrono::milliseconds{500};
 constexpr Duration kMemoryPatience = std::chrono::milliseconds{200};
 constexpr Duration kMemoryWait = std::chrono::milliseconds{20};
 constexpr std::size_t kPacketBytes = 64;
-constexpr int kPacketsMax = 64;              // of one interface and cycle: the kernel keeps no more
-constexpr std::uint32_t kSameSamples = 100;  // no sensor of 16 bits is as quiet
-constexpr double kNearFull = 0.99;           // [-], of the scale
+constexpr int kPacketsMax = 64;     // of one interface and cycle: the kernel keeps no more
+constexpr double kNearFull = 0.99;  // [-], of the scale
 constexpr Duration kPacketHalf = std::chrono::microseconds{500};
+constexpr std::size_t kOutOfOrderMax = 3;  // in a row, and the count begins with the next
 constexpr std::uint8_t kStopScan = 0x12;
-constexpr int kInterfaces = 6;  // of data
 
 std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) noexcept {
   return static_cast<std::uint16_t>(bytes[at] | (bytes[at + 1] << 8U));
@@ -48,17 +46,19 @@ std::string_view to_string(CardState state) noexcept {
   return "?";
 }
 
-io::HidAddress ScanCard::address(int interface_number) {
+io::HidAddress ScanCard::address(const CardModel& model, int interface_number) {
   return {.vendor = kCardVendor,
-          .product = kCardProduct,
+          .product = model.product,
           .interface_number = interface_number,
           .usage_page = 0,
           .serial = {}};
 }
 
-CardReading ScanCard::cycle(const Clock& clock, std::uint32_t restarts) {
+CardReading ScanCard::cycle(const Clock& clock, const DeviceAsks& asks) {
   const TimePoint began = clock.now();
-  if (std::exchange(restarts_, restarts) != restarts && now_.state == CardState::Fault) {
+  const DeviceAsks before = std::exchange(asks_, asks);
+  if (before.tares != asks.tares && now_.state == CardState::Ready) load_.begin_tare_again();
+  if (before.restarts != asks.restarts && now_.state == CardState::Fault) {
     load_.begin_tare();
     load_.resume();
     now_.state = CardState::Starting;
@@ -105,6 +105,7 @@ void ScanCard::reach(const Clock& clock) {
     now_.state = CardState::Starting;
     now_.why = {};
     index_known_ = false;
+    out_of_order_ = 0;
     same_ = 0;
     load_.resume();
     heard_at_ = clock.now() + kMemoryPatience;
@@ -114,17 +115,15 @@ void ScanCard::reach(const Clock& clock) {
 }
 
 bool ScanCard::start_scan() {
-  std::array<std::uint8_t, 9> queue{0x13};
-  std::fill(queue.begin() + 1, queue.end(), installation_.range);
-  // 30,959.75 Hz, without end; about a packet a millisecond, at once.
-  const std::uint8_t channel = installation_.channel;
-  const std::array<std::uint8_t, 11> scan{0x11, channel, channel, 0, 0, 0, 0, 0, 0x43, 0x01, 0x04};
-  return ports_[0]->write(queue) == PortFault::None && ports_[0]->write(scan) == PortFault::None;
+  return std::ranges::all_of(
+      scan_requests(model_, installation_.channel, installation_.range),
+      [this](const auto& one) { return ports_[0]->write(one) == PortFault::None; });
 }
 
 bool ScanCard::read_calibration(const Clock& clock) {
   // A scan that a dead host left running would mix into the answers.
   (void)ports_[0]->write(std::array<std::uint8_t, 1>{kStopScan});
+  if (!model_.own_calibration) return true;
   const CardRange& range = card_ranges().at(installation_.range);
   const std::uint16_t channel = installation_.channel;
   std::array<std::uint8_t, 4> ground{};
@@ -180,7 +179,7 @@ bool ScanCard::read_memory(const Clock& clock,
 bool ScanCard::drain() {
   packets_.clear();
   std::array<std::uint8_t, kPacketBytes + 1> bytes{};
-  for (std::size_t i = 1; i < kPorts; ++i) {
+  for (std::size_t i = 1; i < ports_.size(); ++i) {
     for (int n = 0; n < kPacketsMax; ++n) {
       std::size_t length{};
       if (ports_[i]->read(bytes, length, Duration{0}) != PortFault::None) return false;
@@ -209,11 +208,15 @@ bool ScanCard::drain() {
 }
 
 void ScanCard::take(const Packet& packet) {
+  // Those of a scan that somebody began before, and of whom the kernel kept some: it starts anew.
+  if (out_of_order_ >= kOutOfOrderMax) index_ = packet.index;
   const auto ahead = static_cast<std::int16_t>(packet.index - index_);
-  if (ahead < -kInterfaces || (ahead < 0 && now_.lost == 0)) {
+  if (ahead < -static_cast<int>(model_.interfaces) || (ahead < 0 && now_.lost == 0)) {
     ++now_.broken;
+    ++out_of_order_;
     return;
   }
+  out_of_order_ = 0;
   if (ahead < 0) {
     --now_.lost;  // late: its interface had been read already when it came
   } else {
@@ -221,13 +224,12 @@ void ScanCard::take(const Packet& packet) {
     index_ = static_cast<std::uint16_t>(packet.index + 1);
   }
   ++now_.packets;
-  const CardRange& range = card_ranges().at(installation_.range);
+  const double most = kNearFull * model_.full_scales.at(installation_.range);
   for (const std::uint16_t raw : packet.samples) {
     same_ = raw == std::exchange(last_raw_, raw) ? same_ + 1 : 0;
-    const double calibrated = line_.slope * raw + line_.offset;
-    full_ = full_ || std::abs(volts_of(calibrated, range)) >= kNearFull * range.full_scale ||
-            raw == 0 || raw == 0xFFFF;
-    sum_ += calibrated;
+    const double volts = volts_of_sample(model_, installation_.range, line_, raw);
+    full_ = full_ || std::abs(volts) >= most || at_end(model_, installation_.range, raw);
+    sum_ += volts;
     ++count_;
   }
 }
@@ -235,18 +237,22 @@ void ScanCard::take(const Packet& packet) {
 void ScanCard::finish(TimePoint now) {
   ++now_.number;
   now_.sampled_at = now - kPacketHalf;
-  now_.volts = volts_of(sum_ / count_, card_ranges().at(installation_.range));
-  const bool stuck = same_ >= kSameSamples && !full_;
+  now_.volts = sum_ / count_;
+  const bool stuck = model_.same_samples > 0 && same_ >= model_.same_samples && !full_;
   const LoadCheck::Verdict verdict =
       load_.take(now_.volts * installation_.newtons_per_volt, now_.sampled_at);
   now_.saturated = full_ || verdict == LoadCheck::Verdict::Saturated;
   now_.zero = load_.zero();
+  now_.tare = load_.news();
   now_.force = now_.volts * installation_.newtons_per_volt - load_.zero();
   if (now_.state == CardState::Fault) return;
   if (stuck || verdict == LoadCheck::Verdict::Stuck) return fail("the reading is stuck");
   if (verdict == LoadCheck::Verdict::NotFinite) return fail("a reading is no number");
   if (verdict == LoadCheck::Verdict::Touched) {
     return fail("the tare was refused: something touches the sensor");
+  }
+  if (verdict == LoadCheck::Verdict::Overloaded) {
+    return fail("the reading is at the end of its range");
   }
   if (now_.state == CardState::Starting && load_.tared()) {
     now_.state = CardState::Ready;

@@ -6,20 +6,23 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/core/time.h"
 #include "common/io/device/report_port.h"
-#include "patient_site/devices/card_calibration.h"
+#include "patient_site/devices/card_model.h"
 #include "patient_site/devices/device_profile.h"
+#include "patient_site/devices/device_reading.h"
 #include "patient_site/devices/load_check.h"
 
 namespace palp::patient {
 
 /// Where the transducer hangs on the card, and how it is built in.
 struct CardInstallation {
+  CardKind kind{};
   std::uint8_t channel{};                          ///< 0 to 7
-  std::uint8_t range{};                            ///< number in card_ranges()
+  std::uint8_t range{};                            ///< number among the model's
   double newtons_per_volt{};                       ///< [N/V]; compression is positive; not 0
   DeviceInstallation load;                         ///< range, tare
   Duration silence{std::chrono::milliseconds{5}};  ///< longer is a fault
@@ -41,24 +44,26 @@ struct CardReading {
   double volts{};           ///< [V]
   double force{};           ///< [N], tared
   double zero{};            ///< [N], the tare
+  TareNews tare;
   bool saturated{};
 };
 
-/// An MCC USB-1608FS that samples one channel without pause: 31 samples a packet, about a packet a
-/// millisecond, in turn over six interfaces. All samples of a cycle are averaged into one reading.
-/// Told the time. Thread: its device's. The ports outlive it.
+/// A card that samples one channel without pause. All samples of a cycle are averaged into one
+/// reading. Told the time. Thread: its device's. The ports outlive it.
 class ScanCard {
  public:
-  static constexpr std::string_view kName{"MCC USB-1608FS"};
-  static constexpr std::size_t kPorts = 7;  ///< commands, then six of data
-  using Ports = std::array<io::ReportPort*, kPorts>;
-  [[nodiscard]] static io::HidAddress address(int interface_number);
+  /// Commands, then one for each interface of data.
+  using Ports = std::vector<io::ReportPort*>;
+  [[nodiscard]] static io::HidAddress address(const CardModel& model, int interface_number);
 
-  ScanCard(const CardInstallation& installation, Ports ports) noexcept
-      : installation_{installation}, ports_{ports}, load_{installation.load} {}
+  ScanCard(const CardInstallation& installation, Ports ports)
+      : installation_{installation},
+        model_{card_model(installation.kind)},
+        ports_{std::move(ports)},
+        load_{installation.load} {}
 
-  /// One period. `restarts` counts up: out of a fault, from the beginning.
-  CardReading cycle(const Clock& clock, std::uint32_t restarts);
+  /// One period.
+  CardReading cycle(const Clock& clock, const DeviceAsks& asks);
   /// On the way out: ends the scan.
   void stop();
 
@@ -81,6 +86,7 @@ class ScanCard {
   void close_all();
 
   CardInstallation installation_;
+  const CardModel& model_;
   Ports ports_;
   LoadCheck load_;
   CardReading now_;
@@ -88,13 +94,14 @@ class ScanCard {
   std::vector<Packet> packets_;  ///< of this cycle
   bool tried_{};
   bool index_known_{};
-  std::uint16_t index_{};  ///< of the next packet
+  std::uint16_t index_{};       ///< of the next packet
+  std::size_t out_of_order_{};  ///< packets in a row that follow none
   std::uint16_t last_raw_{};
   std::uint32_t same_{};   ///< equal samples in a row
-  double sum_{};           ///< [counts], of the samples of this cycle
+  double sum_{};           ///< [V], of the samples of this cycle
   std::uint32_t count_{};  ///< of them
   bool full_{};            ///< one of them at the end of the scale
-  std::uint32_t restarts_{};
+  DeviceAsks asks_;        ///< as heard last
   TimePoint heard_at_{};
   TimePoint reopen_at_{};
 };

@@ -37,6 +37,10 @@ constexpr std::array<std::uint8_t, 2> kStopAll{0x0C, 0x04};
 constexpr std::array<std::uint8_t, 2> kFullGain{0x0D, 0xFF};
 constexpr std::array<std::uint8_t, 4> kNewConstant{0x11, 0x01, 0x00, 0x00};
 
+// Asks for the position of the axis. What its own protocol answers is only a sign of life.
+constexpr std::uint8_t kVendorReport = 0xA1;
+constexpr std::array<std::uint8_t, 25> kWhereIsTheAxis{kVendorReport, 0x01, 0x01, 0x0A, 0x00, 0x0E};
+
 constexpr Duration kEffectAgain = std::chrono::milliseconds{40};  // of its 100 ms
 constexpr int kResetsMax = 3;
 constexpr double kForceCountsMax = 32'767;
@@ -102,6 +106,10 @@ StartOutcome ForceFeedbackBoard::start(io::ReportPort& port, TimePoint now, std:
       break;
     case Step::Start:
       fault = start_effect(port, now);
+      step_ = Step::Ask;
+      break;
+    case Step::Ask:  // a handle that stands still might not report for a while
+      fault = port.write(kWhereIsTheAxis);
       step_ = Step::Wait;
       break;
     case Step::Wait:
@@ -161,6 +169,7 @@ bool ForceFeedbackBoard::take(std::span<const std::uint8_t> report,
     sample.emergency_stop = (report[1] & kSafetySwitch) == 0;
     return true;
   }
+  if (report.size() == kWhereIsTheAxis.size() && report[0] == kVendorReport) return true;
   const bool axes = report.size() >= kAxesBytes && (report.size() - kAxesBytes) % 2 == 0 &&
                     report.size() <= kAxesBytes + 2 * kAxesMost && report[0] == kAxesReport;
   if (!axes) return false;

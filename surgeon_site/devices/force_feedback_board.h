@@ -21,7 +21,7 @@ class ForceFeedbackBoard final : public MasterProtocol {
   void stop(io::ReportPort& port) override;
 
  private:
-  enum class Step : std::uint8_t { Reset, Enable, Gain, Create, Load, Set, Start, Wait, Done };
+  enum class Step : std::uint8_t { Reset, Enable, Gain, Create, Load, Set, Start, Ask, Wait, Done };
   [[nodiscard]] StartOutcome load(io::ReportPort& port, std::string_view& why);
   [[nodiscard]] io::PortFault set_effect(io::ReportPort& port) const;
   [[nodiscard]] io::PortFault start_effect(io::ReportPort& port, TimePoint now);

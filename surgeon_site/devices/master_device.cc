@@ -148,7 +148,8 @@ void MasterDevice::adopt(TimePoint now) {
 void MasterDevice::derive_velocity(double way, double span) noexcept {
   if (span <= 0) return;
   const double share = 1 - std::exp(-2 * std::numbers::pi * installation_.velocity_pole * span);
-  now_.velocity += share * (way / span - now_.velocity);
+  const double fastest = installation_.speed_max;  // what is faster is no hand
+  now_.velocity += share * (std::clamp(way / span, -fastest, fastest) - now_.velocity);
 }
 
 void MasterDevice::proceed(TimePoint now) {

@@ -10,7 +10,8 @@ namespace {
 constexpr Duration kMasterReachPatience = std::chrono::seconds{5};
 constexpr Duration kMasterStartPatience = std::chrono::seconds{10};
 
-/// Where one of a product's models is there, that one; else any, which then is told to be absent.
+}  // namespace
+
 io::HidAddress address_of(const MasterPlan& plan) {
   std::vector<io::HidAddress> all = addresses_of(plan.product->kind);
   for (io::HidAddress& one : all) one.serial = plan.serial;
@@ -21,8 +22,6 @@ io::HidAddress address_of(const MasterPlan& plan) {
   }
   return all.front();
 }
-
-}  // namespace
 
 MasterRig::MasterRig(const MasterPlan& plan, int priority)
     : product_{plan.product->name},

@@ -151,6 +151,7 @@ Violations clocks_and_sleeps(const Source& source) {
                           "tests/common/io/*",
                           "tests/common/io/*/*",
                           "tests/system/*",
+                          "tests/system/machine/*",
                           "tests/bench/*",
                           "tests/support/realtime_*"});
 }

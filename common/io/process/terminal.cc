@@ -103,9 +103,11 @@ std::optional<StopCause> Terminal::wait_for_stop(Duration span) {
     if (count > 0) {
       const auto resets = std::count(typed.begin(), typed.begin() + count, 'r');
       const auto marks = std::count(typed.begin(), typed.begin() + count, 'm');
+      const auto tares = std::count(typed.begin(), typed.begin() + count, 't');
       resets_ += static_cast<std::uint32_t>(resets);
       marks_ += static_cast<std::uint32_t>(marks);
-      if (resets + marks < count) cause_ = StopCause::Key;
+      tares_ += static_cast<std::uint32_t>(tares);
+      if (resets + marks + tares < count) cause_ = StopCause::Key;
     } else {
       keys_ = false;  // the terminal went away
     }

@@ -13,7 +13,8 @@ namespace palp::io {
 
 enum class StopCause : std::uint8_t { Key, Signal };
 
-/// The person at the terminal: r asks for a reset, m marks a moment; any other key, ^C, SIGTERM or
+/// The person at the terminal: r asks for a reset, m marks a moment, t
+/// asks for a tare; any other key, ^C, SIGTERM or
 /// the terminal's own end asks the program to stop; a second signal ends it hard. That nobody reads
 /// its output any more does not end it. Make it first in main, before any thread: threads inherit
 /// that the signals wait. Keys are read one by one and without echo while standard input is a
@@ -33,6 +34,8 @@ class Terminal {
   [[nodiscard]] std::uint32_t resets() const noexcept { return resets_; }
   /// How often m was pressed.
   [[nodiscard]] std::uint32_t marks() const noexcept { return marks_; }
+  /// How often t was pressed.
+  [[nodiscard]] std::uint32_t tares() const noexcept { return tares_; }
   /// Whether standard output is one (and a line may be written over).
   [[nodiscard]] static bool output_is_terminal() noexcept;
   /// How wide it is now; 0: unknown, or standard output is none.
@@ -49,6 +52,7 @@ class Terminal {
   bool restored_{};
   std::uint32_t resets_{};
   std::uint32_t marks_{};
+  std::uint32_t tares_{};
   std::optional<StopCause> cause_;
 };
 

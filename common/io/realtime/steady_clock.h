@@ -10,6 +10,8 @@ class SteadyClock final : public Clock {
   [[nodiscard]] TimePoint now() const noexcept override;
   /// Sleeps until `deadline`; returns at once if it has passed.
   void sleep_until(TimePoint deadline) const noexcept;
+  /// Sleeps for so long.
+  void pass(Duration span) const noexcept { sleep_until(now() + span); }
 };
 
 }  // namespace palp::io

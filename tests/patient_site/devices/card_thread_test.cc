@@ -69,7 +69,7 @@ TEST(CardThreadTest, TaresAndFeelsWithAThreadOfItsOwn) {
   built_in.load.tare_time = std::chrono::milliseconds{10};
   built_in.silence = std::chrono::seconds{30};  // of no account here
   CardThread::Ports ports;
-  for (std::size_t i = 0; i < ports.size(); ++i) ports[i] = std::make_unique<FreeCard>(i);
+  for (std::size_t i = 0; i <= 6; ++i) ports.push_back(std::make_unique<FreeCard>(i));
   CardThread card{built_in, std::move(ports), 0};
   CardForce force{card, ForceSensorFacts{}};
   const io::SteadyClock clock;

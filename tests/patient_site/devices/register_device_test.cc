@@ -5,7 +5,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 #include "patient_site/devices/device_profile.h"
 #include "patient_site/devices/device_reading.h"
@@ -164,7 +163,7 @@ TEST(RegisterDeviceTest, AnEmergencyStopIsAFaultUntilRestarted) {
   EXPECT_TRUE(axis.port.coils[0x42C]) << "told to stop";
   axis.port.words[0x9005] = 0x3010;
   EXPECT_EQ(axis.cycles(100).state, DeviceState::Fault);
-  ++axis.command.restarts;
+  ++axis.command.asks.restarts;
   EXPECT_EQ(axis.cycles(30).state, DeviceState::Ready) << axis.why();
 }
 
@@ -234,7 +233,7 @@ TEST(RegisterDeviceTest, ATouchedSensorIsNotTared) {
   EXPECT_EQ(cell.cycles(40).state, DeviceState::Fault);
   EXPECT_THAT(cell.why(), HasSubstr("something touches"));
   cell.port.words[8] = 3;
-  ++cell.command.restarts;
+  ++cell.command.asks.restarts;
   EXPECT_EQ(cell.cycles(40).state, DeviceState::Ready) << cell.why();
 }
 
@@ -246,29 +245,21 @@ TEST(RegisterDeviceTest, AFloatThatIsNoNumberIsAFault) {
   EXPECT_EQ(cell.why(), "a reading is no number");
 }
 
-/// Whatever comes, in whatever order: no step beyond the speed, no position beyond the travel.
-RC_GTEST_PROP(RegisterDeviceTest, NoSequenceOfFaultsMakesItJump, ()) {
-  Axis axis{*rc::gen::element(std::string{"iai"}, std::string{"orca"})};
-  const std::uint16_t state = 0x9005;
-  axis.port.words[0x9001] = 5000;
-  axis.port.words[342] = 50'000;
-  axis.cycles(80);
-  for (int i = 0; i < 20; ++i) {
-    axis.move(static_cast<double>(*rc::gen::inRange(-300, 300)) * 1e-3);
-    axis.port.fault = *rc::gen::weightedElement<PortFault>({{8, PortFault::None},
-                                                            {1, PortFault::Lost},
-                                                            {1, PortFault::NoReply},
-                                                            {1, PortFault::BrokenFrame},
-                                                            {1, PortFault::WrongStation},
-                                                            {1, PortFault::Refused}});
-    axis.port.openable = *rc::gen::element(true, true, false);
-    axis.port.words[state] = *rc::gen::element<std::uint16_t>(0x3010, 0x3010, 0xB010, 0x2010);
-    axis.alive = *rc::gen::element(true, true, false);
-    axis.command.restarts += static_cast<std::uint32_t>(*rc::gen::inRange(0, 2));
-    axis.cycles(*rc::gen::inRange(1, 60));
-    RC_ASSERT(axis.fastest <= 0.1 + 0.003);
-    RC_ASSERT(std::abs(axis.reading.position) <= 0.1 + 1e-5);
-  }
+TEST(RegisterDeviceTest, ATareThatIsAskedForKeepsTheOldOneWhereSomethingTouches) {
+  Axis cell{"tlb4"};
+  ASSERT_EQ(cell.cycles(40).state, DeviceState::Ready) << cell.why();
+  cell.port.words[8] = 5;
+  ++cell.command.asks.tares;
+  cell.cycles(40);
+  EXPECT_EQ(cell.reading.tare.taken, 1U);
+  EXPECT_NEAR(cell.reading.tare.moved, 0.05, 1e-9);
+  EXPECT_NEAR(cell.reading.force, 0, 1e-9);
+  cell.port.words[8] = 105;
+  ++cell.command.asks.tares;
+  cell.cycles(40);
+  EXPECT_EQ(cell.reading.state, DeviceState::Ready) << cell.why();
+  EXPECT_EQ(cell.reading.tare.refused, 1U);
+  EXPECT_NEAR(cell.reading.force, 1, 1e-9);
 }
 
 TEST(DeviceFlawTest, NamesWhatIsNotRead) {

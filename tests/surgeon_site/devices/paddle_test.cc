@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "common/core/random.h"
 #include "surgeon_site/devices/firmware/paddle/paddle_report.h"
 #include "surgeon_site/devices/master_device.h"
 #include "surgeon_site/devices/master_protocol.h"
@@ -190,52 +189,6 @@ TEST_F(PaddleTest, OnTheWayOutItTakesTheForceAway) {
   bench_.device.stop();
   EXPECT_EQ(last().force_un, 0);
   EXPECT_EQ(last().valid_for_ms, 0);
-}
-
-TEST_F(PaddleTest, NoSequenceOfFaultsGivesForceThatIsNotAskedFor) {
-  for (std::uint64_t run = 0; run < 1000; ++run) {
-    const RandomStream stream{16, run};
-    std::uint64_t index = 0;
-    const auto draw = [&](std::uint64_t count) { return stream.bits(index++) % count; };
-    state_.flags = palp_paddle::kStateCalibrated;
-    state_.position_nm = 0;
-    raw_->there = raw_->writable = true;
-    for (int i = 0; i < 12; ++i) {
-      switch (draw(12)) {
-        case 0:
-          state_.flags = static_cast<std::uint16_t>(draw(65'536));
-          break;
-        case 1:
-          state_.position_nm = static_cast<std::int32_t>(draw(1ULL << 32U));
-          break;
-        case 2:
-          raw_->there = !raw_->there;
-          break;
-        case 3:
-          raw_->writable = !raw_->writable;
-          break;
-        case 4:
-          raw_->input.push_back(Bytes(draw(70), static_cast<std::uint8_t>(i)));
-          break;
-        case 5:
-          bench_.clock.at += milliseconds{static_cast<int>(draw(700))};
-          break;
-        case 6:
-          ++bench_.command.restarts;
-          break;
-        default:
-          break;
-      }
-      if (raw_->there && draw(8) != 0) report();
-      const double asked = static_cast<double>(draw(9)) - 4;
-      const MasterReading reading = bench_.step(asked);
-      ASSERT_TRUE(reading.state == MasterState::Ready || reading.force == 0) << run;
-      ASSERT_LE(std::abs(reading.force), std::min(3.0, std::abs(asked)));
-      ASSERT_LE(std::abs(reading.velocity), 3);
-    }
-    raw_->written.clear();
-    raw_->input.clear();
-  }
 }
 
 class UncalibratedTest : public PaddleTest {

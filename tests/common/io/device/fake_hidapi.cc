@@ -102,6 +102,7 @@ void hid_close(hid_device* handle) {
 int hid_read_timeout(hid_device* handle, unsigned char* data, size_t length, int /*wait_ms*/) {
   Device& device = *handle->device;
   if (!device.there) return -1;
+  device.before_read();
   if (device.input.empty()) return 0;
   const Bytes report = std::move(device.input.front());
   device.input.pop_front();

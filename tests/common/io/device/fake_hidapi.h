@@ -28,6 +28,7 @@ struct Device {
   std::vector<Bytes> written;   ///< output reports as hid_write was given them
   std::vector<Bytes> features;  ///< as hid_send_feature_report was given them
   std::function<void(const Bytes&)> on_write{[](const Bytes&) {}};
+  std::function<void()> before_read{[] {}};  ///< of each read: a device that lives in time
   std::function<Bytes(std::uint8_t id)> feature{[](std::uint8_t) { return Bytes{}; }};
   int opened{};  ///< times
   bool open{};

@@ -70,6 +70,8 @@ void press_keys() {
   if (terminal.resets() != 1) _exit(4);
   if (write(keyboard, "m", 1) != 1 || terminal.wait_for_stop(seconds{10})) _exit(5);
   if (terminal.marks() != 1 || terminal.resets() != 1) _exit(6);
+  if (write(keyboard, "t", 1) != 1 || terminal.wait_for_stop(seconds{10})) _exit(10);
+  if (terminal.tares() != 1 || terminal.marks() != 1) _exit(11);
   if (write(keyboard, "rmq", 3) != 3) _exit(7);
   if (terminal.wait_for_stop(seconds{10}) != StopCause::Key) _exit(8);
   _exit(terminal.resets() == 2 && terminal.marks() == 2 ? 0 : 9);
