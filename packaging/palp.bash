@@ -21,7 +21,7 @@ _palp() {
         --coupling) candidates="direct wave tdpa mmt" ;;
         --grip) candidates="light mid firm arm" ;;
         --phantom) candidates="paper-5mm paper-10mm paper-15mm paper-20mm paper-25mm none" ;;
-        --master) candidates="script:standard script:demo script:breath script:long" ;;
+        --master) candidates="script:standard script:demo script:breath script:long pointer" ;;
         *) [ -n "$verb" ] || candidates=$verbs ;;
       esac
       ;;

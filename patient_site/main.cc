@@ -30,6 +30,7 @@
 #include "site_program/check_command.h"
 #include "site_program/exit_status.h"
 #include "site_program/impaired_reception.h"
+#include "site_program/monitoring.h"
 #include "site_program/recording.h"
 #include "site_program/runner.h"
 #include "site_program/session_info.h"
@@ -166,7 +167,10 @@ class Program {
         law_{coupling::make_patient_coupling(settings_.coupling, plan.facts).value()},
         link_{settings_.link, std::make_unique<link::WireCodec>()},
         runner_{plan.runner},
-        recording_{settings_.record, proven(std::move(plan.info)), 2},
+        recording_{settings_.record,
+                   proven(std::move(plan.info)),
+                   2,
+                   settings_.monitor.serve ? std::optional{settings_.loop.period} : std::nullopt},
         worker_{depth::with_sensor(settings_.estimator, plan.facts.sensor),
                 {contact_, depth_, recording_.recorder(1)}},
         node_{settings_.node,
@@ -177,6 +181,11 @@ class Program {
                recording_.recorder(0),
                contact_,
                depth_}},
+        monitoring_{settings_.monitor,
+                    {{"coupling", settings_.coupling.name},
+                     {"version", std::string{site_program::version()}}},
+                    recording_,
+                    std::nullopt},
         began_at_{clock_.now()},
         estimator_{"palp-estimator", kEstimatorPause, [this](TimePoint) { listen(); }} {}
   ~Program() { runner_.halt(); }
@@ -217,6 +226,7 @@ class Program {
   Mailbox<DepthEstimate> depth_;                       ///< writer: estimator, reader: rt
   EstimatorWorker worker_;
   PatientNode node_;
+  site_program::Monitoring monitoring_;
   io::SteadyClock clock_;
   TimePoint began_at_;
   site_program::StatusLine line_;
@@ -257,6 +267,7 @@ ExitStatus Program::run(io::Terminal& terminal) {
   std::printf("listening on %s\n", runner_.local().c_str());
   std::fflush(stdout);
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
+  monitoring_.announce(line_);
   while (true) {
     const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
     recording_.mark(terminal.marks(), clock_.now());
@@ -318,6 +329,7 @@ void Program::stop(site_program::SiteReport& report) {
   report.estimate_p50 = latencies_.quantile(0.5);
   report.estimate_max = latencies_.max();
   runner_.account(report);
+  monitoring_.stop();
   report.records = recording_.stop(figures_of(report));
   recording_.tell_news(line_);
   show(status, clock_.now());

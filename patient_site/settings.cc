@@ -143,6 +143,7 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
   made.estimator = *estimator;
   made.impairment = settings::make_impairment(message.impairment());
   made.record = *record;
+  made.monitor = settings::make_monitor(message.monitor());
   made.duration = from_seconds(message.duration_s());
   made.seed = message.seed();
   return made;

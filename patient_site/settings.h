@@ -37,6 +37,7 @@ struct Settings {
   settings::LoopSettings loop;
   settings::ImpairmentSettings impairment;
   settings::RecordSettings record;
+  settings::MonitorSettings monitor;
   Duration duration{};  ///< 0: until told to stop
   std::uint64_t seed{1};
 };

@@ -11,8 +11,7 @@ namespace {
 bool of_no_tick(const Record& record) {
   using palp::record::NoteCode;
   if (const auto* note = std::get_if<Note>(&record)) {
-    const auto code = static_cast<NoteCode>(note->code);
-    return code == NoteCode::Marked || code == NoteCode::DiskNearlyFull;
+    return static_cast<NoteCode>(note->code) >= NoteCode::Marked;
   }
   return std::holds_alternative<ContactSample>(record) ||
          std::holds_alternative<DepthEstimate>(record) ||

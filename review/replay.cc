@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/denormals.h"
 #include "common/core/number_text.h"
 #include "common/core/spsc_queue.h"
 #include "common/record/session_reader.h"
@@ -205,6 +206,7 @@ const SiteTick* tick_of(const std::vector<Record>& records) {
 Result<ReplayReport> replay_surgeon(const RunBytes& files,
                                     const surgeon::SurgeonConfig& config,
                                     const coupling::CouplingConfig& coupling) {
+  const DenormalFlush flush;  // as the loop that is done again
   ReplayReport report;
   LoggedTicks ticks{files};
   RecordComparison comparison{link::Role::Surgeon};
@@ -226,6 +228,7 @@ Result<ReplayReport> replay_surgeon(const RunBytes& files,
 }
 
 Result<ReplayReport> replay_patient(const RunBytes& files, const PatientParts& parts) {
+  const DenormalFlush flush;  // as the loop that is done again
   ReplayReport report;
   RecordComparison comparison{link::Role::Patient};
   PatientRun run{files, parts};
@@ -248,6 +251,7 @@ Result<ReplayReport> replay_patient(const RunBytes& files, const PatientParts& p
 }
 
 Result<WhatIf> what_if_patient(const RunBytes& files, const PatientParts& parts) {
+  const DenormalFlush flush;  // as the loop that is done again
   WhatIf report;
   PatientRun run{files, parts};
   double square = 0;

@@ -61,11 +61,15 @@ bool shown_elsewhere(record::NoteCode code) {
 
 RecordDesk::RecordDesk(const settings::RecordSettings& settings,
                        record::SessionInfo info,
-                       std::size_t writer_count)
+                       std::size_t writer_count,
+                       std::optional<Duration> live_period)
     : prefix_{settings.files}, info_{std::move(info)} {
   if (!prefix_.empty() || !settings.file.empty()) {
     open(prefix_.empty() ? settings.file : next_path());
     if (!sink_) throw std::runtime_error{file_fault_};
+  }
+  if (live_period) {  // on the file's line of time, where there is one
+    feed_.emplace(info_.site, sink_ ? info_.clock : wall_clock(), *live_period);
   }
   tick_.reserve(kTickRecords);
   for (std::size_t i = 0; i <= writer_count; ++i) {  // the last is the maker's own
@@ -149,6 +153,7 @@ void RecordDesk::drain() {
     dropped_ += queue->dropped();
   }
   if (writer_) writer_->set_dropped(dropped_);
+  if (feed_) feed_->tell(writer_ && !writer_->failed());
   write_peer();
 }
 
@@ -199,6 +204,7 @@ std::string RecordDesk::fault() const {
 
 void RecordDesk::write(const Record& record) {
   tell_of(record);
+  if (feed_) feed_->take(record);
   if (writer_) {
     (void)writer_->write(record);
   } else if (!file_fault_.empty()) {

@@ -14,6 +14,7 @@
 #include "common/record/queue_recorder.h"
 #include "common/record/session_writer.h"
 #include "common/settings/site_settings.h"
+#include "monitor/feed.h"
 #include "site_program/disk_forecast.h"
 
 namespace palp::site_program {
@@ -47,7 +48,8 @@ class RecordDesk {
   /// As Recording. Thread: its maker's.
   RecordDesk(const settings::RecordSettings& settings,
              record::SessionInfo info,
-             std::size_t writer_count);
+             std::size_t writer_count,
+             std::optional<Duration> live_period);
 
   /// Writes what waits; once close() was said, the last of it, and closes the file.
   void work(TimePoint now);
@@ -59,6 +61,8 @@ class RecordDesk {
   /// Once work() has come back from that. Thread: the maker's.
   [[nodiscard]] const RecordAccount& account() const noexcept { return account_; }
 
+  /// Null where nobody looks on.
+  [[nodiscard]] monitor::Feed* feed() noexcept { return feed_ ? &*feed_ : nullptr; }
   [[nodiscard]] record::Recorder& recorder(std::size_t writer) { return *queues_.at(writer); }
   /// Into the queue behind those of the writers. Thread: the maker's.
   void note(const Note& note) noexcept { (void)queues_.back()->record(note); }
@@ -94,6 +98,7 @@ class RecordDesk {
   std::optional<record::FileSink> sink_;
   std::optional<record::SessionWriter> writer_;
   std::vector<std::unique_ptr<record::QueueRecorder>> queues_;
+  std::optional<monitor::Feed> feed_;
   SpscQueue<News> news_{kNewsMax};                ///< reader: the maker
   SpscQueue<io::PeerIdentity> peers_{kPeersMax};  ///< writer: the maker
   std::optional<io::PeerIdentity> peer_;          ///< in no file yet

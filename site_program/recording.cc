@@ -19,8 +19,9 @@ constexpr Duration kPatience = std::chrono::seconds{10};
 
 Recording::Recording(const settings::RecordSettings& settings,
                      record::SessionInfo info,
-                     std::size_t writer_count)
-    : desk_{std::make_unique<RecordDesk>(settings, std::move(info), writer_count)},
+                     std::size_t writer_count,
+                     std::optional<Duration> live_period)
+    : desk_{std::make_unique<RecordDesk>(settings, std::move(info), writer_count, live_period)},
       began_{io::SteadyClock{}.now()},
       loop_{std::make_unique<io::BackgroundLoop>(
           "palp-record", kPause, [desk = desk_.get()](TimePoint now) { desk->work(now); })} {}
@@ -37,10 +38,9 @@ Duration Recording::silent_for() {
 }
 
 void Recording::mark(std::uint32_t count, TimePoint now) {
-  constexpr auto kCode = static_cast<std::uint16_t>(record::NoteCode::Marked);
   while (marks_ < count) {
     ++marks_;
-    desk_->note(Note{.at = now, .code = kCode, .detail = static_cast<double>(marks_)});
+    note(record::NoteCode::Marked, static_cast<double>(marks_), now);
   }
 }
 

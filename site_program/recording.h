@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/io/realtime/background_loop.h"
+#include "common/record/notes.h"
 #include "site_program/record_desk.h"
 #include "site_program/status_line.h"
 
@@ -17,17 +19,25 @@ namespace palp::site_program {
 /// Thread: its maker's; each recorder() has one writer of its own.
 class Recording {
  public:
-  /// `info.opened_at` and its clock are filled in here.
+  /// `info.opened_at` and its clock are filled in here. `live_period`: of the site's ticks, where
+  /// somebody looks on: then there is a feed().
   /// @throws std::runtime_error with one sentence where the file cannot be created or begun.
   Recording(const settings::RecordSettings& settings,
             record::SessionInfo info,
-            std::size_t writer_count);
+            std::size_t writer_count,
+            std::optional<Duration> live_period = {});
   /// As stop().
   ~Recording();
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
 
   [[nodiscard]] record::Recorder& recorder(std::size_t writer) { return desk_->recorder(writer); }
+  /// What the site's monitor shows; null where nobody looks on. Until stop().
+  [[nodiscard]] monitor::Feed* feed() noexcept { return desk_->feed(); }
+  /// What a client asked for.
+  void note(record::NoteCode code, double detail, TimePoint now) noexcept {
+    desk_->note(Note{.at = now, .code = static_cast<std::uint16_t>(code), .detail = detail});
+  }
   /// Notes a moment for each mark that is new of `count`.
   void mark(std::uint32_t count, TimePoint now);
   /// Into the file of that session: who the peer is.

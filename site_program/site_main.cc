@@ -29,6 +29,9 @@ void declare_session_flags(config::CommandLine& line) {
   line.knob("--through", "link.through");
   line.knob("--room", "link.room");
   line.knob("--insecure", "link.insecure");
+  line.knob("--monitor", "monitor.serve");
+  line.knob("--monitor-port", "monitor.port");
+  line.knob("--monitor-origin", "monitor.origin");
 }
 
 int run(const SiteMain& program, int argc, const char* const* argv) {

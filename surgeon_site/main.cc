@@ -19,6 +19,7 @@
 #include "site_program/check_command.h"
 #include "site_program/exit_status.h"
 #include "site_program/impaired_reception.h"
+#include "site_program/monitoring.h"
 #include "site_program/peer_watch.h"
 #include "site_program/recording.h"
 #include "site_program/runner.h"
@@ -30,6 +31,7 @@
 #include "surgeon_site/devices/master_rig.h"
 #include "surgeon_site/devices_command.h"
 #include "surgeon_site/display.h"
+#include "surgeon_site/pointer_hand.h"
 #include "surgeon_site/script_reader.h"
 #include "surgeon_site/settings.h"
 #include "surgeon_site/settings_devices.h"
@@ -45,6 +47,7 @@ using site_program::ExitStatus;
 
 constexpr Duration kDisplayPeriod = std::chrono::milliseconds{100};
 constexpr Duration kDevicePause = std::chrono::milliseconds{20};
+constexpr std::string_view kPointer = "pointer";  ///< the master that lies on the monitor's page
 
 void declare_flags(config::CommandLine& line, config::Document& document, std::string& report) {
   line.report(report, "palp.site/2");
@@ -85,7 +88,7 @@ std::optional<ExitStatus> end_of_script(const SurgeonStatus& status) {
 struct Plan {
   Settings settings;
   std::optional<GestureScript> script;  ///< of a simulated hand
-  std::optional<MasterPlan> master;     ///< of a real one
+  std::optional<MasterPlan> master;     ///< of a real one; neither: a pointer
   HandFacts facts;
   coupling::SurgeonCoupling law;
   site_program::RunnerConfig runner;
@@ -101,6 +104,10 @@ struct HandPlan {
 
 Result<HandPlan> plan_hand(const Settings& settings) {
   HandPlan hand;
+  if (settings.master == kPointer) {
+    hand.facts = facts_of(settings.hand);
+    return hand;
+  }
   const KnownMaster* const product = master_named(settings.master);
   if (product == nullptr) {
     auto script = load_script(settings.master, {settings.hand.plant.grip.stiffness, {}});
@@ -125,7 +132,19 @@ std::unique_ptr<SimulatedHand> make_scripted(const SimulatedHandConfig& hand,
   return script ? std::make_unique<SimulatedHand>(hand, std::move(*script)) : nullptr;
 }
 
-/// Started, not ready; null where the hand is a script's.
+/// Null unless the hand is that of a pointer.
+std::unique_ptr<PointerHand> make_pointer(const Settings& settings) {
+  if (settings.master != kPointer) return nullptr;
+  const SimulatedHandConfig& hand = settings.hand;
+  return std::make_unique<PointerHand>(
+      PointerHandConfig{.plant = hand.plant,
+                        .encoder_step = hand.encoder_step,
+                        .velocity_cut_off = hand.velocity_cut_off,
+                        .force_max = hand.force_max,
+                        .force_continuous = hand.force_continuous});
+}
+
+/// Started, not ready; null where the hand is no device's.
 std::unique_ptr<MasterRig> start_master(const std::optional<MasterPlan>& plan, int priority) {
   return plan ? std::make_unique<MasterRig>(*plan, std::max(0, priority - 1)) : nullptr;
 }
@@ -134,6 +153,7 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   const auto bad = [](const Error& error) { return tl::unexpected{exit_status_of(error)}; };
   auto settings = make_settings(document);
   if (!settings) return bad(settings.error());
+  if (settings->master == kPointer) settings->monitor.serve = true;
   const auto meeting = site_program::meeting_place("--peer", settings->peer, settings->protection);
   if (!meeting) return tl::unexpected{meeting.error()};
   if (*meeting) settings->peer = settings->protection.through;
@@ -183,12 +203,23 @@ class Program {
       : settings_{std::move(plan.settings)},
         scripted_{make_scripted(settings_.hand, std::move(plan.script))},
         rig_{start_master(plan.master, settings_.loop.priority)},
+        pointer_{make_pointer(settings_)},
         law_{std::move(plan.law)},
         link_{settings_.link, std::make_unique<link::WireCodec>()},
         runner_{plan.runner},
-        recording_{settings_.record, proven(std::move(plan.info)), 1},
-        node_{settings_.node,
-              {rig_ ? rig_->device() : *scripted_, law_, link_, recording_.recorder(0)}},
+        recording_{settings_.record,
+                   proven(std::move(plan.info)),
+                   1,
+                   settings_.monitor.serve ? std::optional{settings_.loop.period} : std::nullopt},
+        node_{settings_.node, {device(), law_, link_, recording_.recorder(0)}},
+        monitoring_{
+            settings_.monitor,
+            {{"coupling", settings_.coupling.name},
+             {"master", settings_.master},
+             {"version", std::string{site_program::version()}}},
+            recording_,
+            site_program::MonitoredSite{.stops = &node_.stops(),
+                                        .pointer = pointer_ ? &pointer_->reports() : nullptr}},
         began_at_{clock_.now()},
         watch_{{.peer = settings_.peer,
                 .patience_at_first = settings_.link.closed_after,
@@ -211,6 +242,11 @@ class Program {
   void tell_of_master();
   void show(const SurgeonStatus& status, TimePoint now);
 
+  [[nodiscard]] HapticDevice& device() noexcept {
+    if (rig_) return rig_->device();
+    if (pointer_) return *pointer_;
+    return *scripted_;
+  }
   [[nodiscard]] record::SessionInfo proven(record::SessionInfo info) const {
     runner_.describe_identity(info);
     return info;
@@ -218,13 +254,15 @@ class Program {
 
   const Settings settings_;
   std::unique_ptr<SimulatedHand> scripted_;
-  std::unique_ptr<MasterRig> rig_;  ///< null: the scripted one
+  std::unique_ptr<MasterRig> rig_;
+  std::unique_ptr<PointerHand> pointer_;  ///< one of these three
   std::uint32_t resets_{};
   coupling::SurgeonCoupling law_;
   link::Link link_;
   site_program::Runner runner_;
   site_program::Recording recording_;
   SurgeonNode node_;
+  site_program::Monitoring monitoring_;
   io::SteadyClock clock_;
   TimePoint began_at_;
   site_program::PeerWatch watch_;
@@ -254,21 +292,29 @@ void Program::tell_of_master() {
 }
 
 ExitStatus Program::run(io::Terminal& terminal) {
+  if (pointer_ && !monitoring_.fault().empty()) {
+    return site_program::cannot_start("no pointer without its page: " + monitoring_.fault());
+  }
   if (auto ended = await_master(terminal)) return *ended;
   runner_.start(link_, [this](TimePoint now) { node_.tick(now); });
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
+  monitoring_.announce(line_);
   line_.info(
       "calling " + settings_.peer +
       (terminal.reads_keys() ? "; r resets a stop, m marks a moment, any other key ends" : ""));
   while (true) {
     const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
-    recording_.mark(terminal.marks(), clock_.now());
-    node_.commands().put({.emergency_stop = false, .resets = terminal.resets()});
+    monitoring_.look(recording_, clock_.now());
+    recording_.mark(terminal.marks() + monitoring_.marks(), clock_.now());
+    const std::uint32_t resets = terminal.resets() + monitoring_.resets();
+    node_.commands().put({.emergency_stop = false, .resets = resets});
     // A reset frees the master first; the site hears of the next, once it is ready.
-    if (rig_ && std::exchange(resets_, terminal.resets()) != resets_) rig_->restart();
+    const bool reset = std::exchange(resets_, resets) != resets;
+    if (rig_ && reset) rig_->restart();
     tell_of_master();
     if (const auto exit_status = look(clock_.now())) return *exit_status;
     if (stop) return {ExitCode::CutShort, "aborted", "aborted by the user"};
+    if (monitoring_.end_asked()) return {ExitCode::Done, "ended", ""};
   }
 }
 
@@ -310,6 +356,7 @@ void Program::stop(site_program::SiteReport& report) {
   report.link = status.link;
   report.round_trips = round_trips_;
   runner_.account(report);
+  monitoring_.stop();
   report.records = recording_.stop(figures_of(report));
   recording_.tell_news(line_);
   line_.end();

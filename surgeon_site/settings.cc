@@ -68,6 +68,7 @@ Result<Settings> make_settings(const proto::config::SurgeonConfig& message) {
   made.hand = *hand;
   made.impairment = settings::make_impairment(message.impairment());
   made.record = *record;
+  made.monitor = settings::make_monitor(message.monitor());
   made.duration = from_seconds(message.duration_s());
   made.give_up_after = from_seconds(message.give_up_after_s());
   made.seed = message.seed();

@@ -36,6 +36,7 @@ struct Settings {
   settings::LoopSettings loop;
   settings::ImpairmentSettings impairment;
   settings::RecordSettings record;
+  settings::MonitorSettings monitor;
   Duration duration{};                                ///< 0: until the script ends
   Duration give_up_after{std::chrono::seconds{120}};  ///< a patient site that fell silent
   std::uint64_t seed{1};

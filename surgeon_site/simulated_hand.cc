@@ -6,7 +6,6 @@
 #include <numbers>
 #include <utility>
 
-#include "common/core/check.h"
 #include "common/core/limits.h"
 
 namespace palp::surgeon {
@@ -16,14 +15,9 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::numbers::pi;
 
-constexpr Duration kPeriod = milliseconds{1};
 /// The intent is asked for, and the encoder read, once a part; one period is one part.
 constexpr Duration kPartMax = microseconds{1500};
 constexpr Duration kPauseMax = milliseconds{100};  ///< keeps read() within its 50 us
-
-double low_pass_gain(double cut_off, Duration span) noexcept {
-  return 1 - std::exp(-2 * pi * cut_off * seconds(span));
-}
 
 }  // namespace
 
@@ -38,11 +32,10 @@ SimulatedHand::SimulatedHand(const SimulatedHandConfig& config, GestureScript sc
     : config_{config},
       person_{config.person, std::move(script)},
       plant_{config.plant, person_.intent().position},
-      velocity_gain_{low_pass_gain(config.velocity_cut_off, kPeriod)} {
-  PALP_CHECK(config.encoder_step > 0, "an encoder counts steps");
+      encoder_{config.encoder_step, config.velocity_cut_off, plant_.position()} {
   if (person_.script().has_tremor()) config_.tremor = 0;
   pull_ = pull();
-  state_.position = config_.encoder_step * std::round(plant_.position() / config_.encoder_step);
+  state_.position = encoder_.position();
   state_.place = person_.intent().place;
 }
 
@@ -60,17 +53,9 @@ void SimulatedHand::live(Duration span) noexcept {
   const Pull next = pull();
   plant_.advance(pull_, next, force_, span);
   pull_ = next;
-  sample(span);
-}
-
-void SimulatedHand::sample(Duration span) noexcept {
-  const double position =
-      config_.encoder_step * std::round(plant_.position() / config_.encoder_step);
-  const double gain =
-      span == kPeriod ? velocity_gain_ : low_pass_gain(config_.velocity_cut_off, span);
-  const double rate = (position - state_.position) / seconds(span);
-  state_.velocity += gain * (rate - state_.velocity);
-  state_.position = position;
+  encoder_.sample(plant_.position(), span);
+  state_.position = encoder_.position();
+  state_.velocity = encoder_.velocity();
 }
 
 HandState SimulatedHand::read(TimePoint now) noexcept {

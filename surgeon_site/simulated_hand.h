@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/core/time.h"
+#include "surgeon_site/encoder.h"
 #include "surgeon_site/gesture_script.h"
 #include "surgeon_site/hand_plant.h"
 #include "surgeon_site/haptic_device.h"
@@ -56,16 +57,15 @@ class SimulatedHand final : public HapticDevice {
  private:
   [[nodiscard]] Pull pull() const noexcept;
   void live(Duration span) noexcept;
-  void sample(Duration span) noexcept;
 
   SimulatedHandConfig config_;
   ScriptedOperator person_;
   HandPlant plant_;
+  Encoder encoder_;
   Pull pull_;
   HandState state_;
-  Duration age_{};          ///< time lived
-  double force_{};          ///< [N]
-  double velocity_gain_{};  ///< [-], of the low pass for a part of one period
+  Duration age_{};  ///< time lived
+  double force_{};  ///< [N]
   bool started_{};
   bool held_in_plane_{};
 };

@@ -1,5 +1,7 @@
 #include "surgeon_site/surgeon_node.h"
 
+#include <utility>
+
 namespace palp::surgeon {
 
 SurgeonNode::SurgeonNode(const SurgeonConfig& config, Parts parts)
@@ -11,6 +13,8 @@ SurgeonInputs SurgeonNode::read(TimePoint now) noexcept {
   in.hand = parts_.device.read(now);
   in.script = parts_.device.progress();
   in.user = commands_.get();
+  const std::uint32_t obeyed = std::exchange(stopped_, stops_.get());
+  if (stopped_ != obeyed) in.user.emergency_stop = true;
   in.arrived = parts_.link.receive(now);
   in.link = parts_.link.health(now);
   if (in.link.session_id != control_.status().link.session_id) {

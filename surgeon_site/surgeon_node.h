@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "common/core/mailbox.h"
 #include "common/core/time.h"
 #include "common/core/user_command.h"
@@ -31,6 +33,9 @@ class SurgeonNode {
 
   /// Writer: the user's thread. Reader: rt.
   [[nodiscard]] Mailbox<UserCommand>& commands() noexcept { return commands_; }
+  /// How often somebody else than the user at the terminal asked to stop: each is an emergency
+  /// stop. Writer: the monitor's thread. Reader: rt.
+  [[nodiscard]] Mailbox<std::uint32_t>& stops() noexcept { return stops_; }
   /// Writer: rt. Reader: the display's thread.
   [[nodiscard]] Mailbox<SurgeonStatus>& status() noexcept { return status_; }
 
@@ -40,6 +45,8 @@ class SurgeonNode {
   Parts parts_;
   SurgeonControl control_;
   Mailbox<UserCommand> commands_;
+  Mailbox<std::uint32_t> stops_;
+  std::uint32_t stopped_{};  ///< so many of them were obeyed
   Mailbox<SurgeonStatus> status_;
 };
 

@@ -98,6 +98,36 @@ bool Json::is_null() const noexcept { return std::holds_alternative<std::nullptr
 bool Json::is_object() const noexcept { return std::holds_alternative<Object>(value_); }
 bool Json::is_unsigned() const noexcept { return std::holds_alternative<std::uint64_t>(value_); }
 
+std::optional<double> Json::number() const noexcept {
+  if (const auto* real = std::get_if<double>(&value_)) return *real;
+  if (const auto* whole = std::get_if<std::int64_t>(&value_)) return static_cast<double>(*whole);
+  if (const auto* natural = std::get_if<std::uint64_t>(&value_)) {
+    return static_cast<double>(*natural);
+  }
+  return std::nullopt;
+}
+
+std::optional<bool> Json::truth() const noexcept {
+  const auto* const truth = std::get_if<bool>(&value_);
+  return truth != nullptr ? std::optional{*truth} : std::nullopt;
+}
+
+std::optional<std::string_view> Json::text() const noexcept {
+  const auto* const text = std::get_if<std::string>(&value_);
+  return text != nullptr ? std::optional<std::string_view>{*text} : std::nullopt;
+}
+
+std::span<const Json> Json::parts() const noexcept {
+  const auto* const list = std::get_if<Array>(&value_);
+  return list != nullptr ? std::span<const Json>{*list} : std::span<const Json>{};
+}
+
+std::span<const std::string> Json::names() const noexcept {
+  const auto* const object = std::get_if<Object>(&value_);
+  return object != nullptr ? std::span<const std::string>{object->names}
+                           : std::span<const std::string>{};
+}
+
 const Json* Json::find(std::string_view name) const noexcept {
   const auto* const object = std::get_if<Object>(&value_);
   if (object == nullptr) return nullptr;
@@ -130,6 +160,12 @@ const Json& Json::operator[](std::string_view name) const {
   const Json* const found = find(name);
   PALP_CHECK(found != nullptr, "the object has this member");
   return *found;
+}
+
+const Json& Json::at_or_null(std::string_view name) const noexcept {
+  static const Json kNull;
+  const Json* const found = find(name);
+  return found != nullptr ? *found : kNull;
 }
 
 void Json::update(const Json& other) {

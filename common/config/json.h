@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -49,11 +51,18 @@ class Json {
   [[nodiscard]] bool is_null() const noexcept;
   [[nodiscard]] bool is_object() const noexcept;
   [[nodiscard]] bool is_unsigned() const noexcept;  ///< a whole number from 0
+  /// What it is, or nothing.
+  [[nodiscard]] std::optional<double> number() const noexcept;
+  [[nodiscard]] std::optional<bool> truth() const noexcept;
+  [[nodiscard]] std::optional<std::string_view> text() const noexcept;
+  [[nodiscard]] std::span<const Json> parts() const noexcept;  ///< of a list; else none
 
   /// Of an object; null becomes one.
   [[nodiscard]] bool contains(std::string_view name) const noexcept;
   Json& operator[](std::string_view name);
   [[nodiscard]] const Json& operator[](std::string_view name) const;  ///< contains() it
+  [[nodiscard]] const Json& at_or_null(std::string_view name) const noexcept;
+  [[nodiscard]] std::span<const std::string> names() const noexcept;  ///< of an object; else none
   void update(const Json& other);                                     ///< takes all members over
 
   /// Of a list; null becomes one. What is missing before `index` is null.

@@ -48,6 +48,12 @@ constexpr std::array kTexts{
     Text{NoteCode::ForceIncomplete, "the force is incomplete: lift once"},
     Text{NoteCode::ForceComplete, "the force is complete again"},
     Text{NoteCode::Marked, "a moment marked by the operator"},
+    Text{NoteCode::MarkAsked, "a client of the monitor asked for a mark"},
+    Text{NoteCode::StopAsked, "a client of the monitor asked to stop"},
+    Text{NoteCode::ResetAsked, "a client of the monitor asked for a reset"},
+    Text{NoteCode::EndAsked, "a client of the monitor ended the session"},
+    Text{NoteCode::PointerTaken, "a client of the monitor took the pointer"},
+    Text{NoteCode::PointerGiven, "a client of the monitor gave the pointer back"},
     Text{NoteCode::DiskNearlyFull, "the disk of the session file is nearly full"},
 };
 

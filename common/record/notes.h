@@ -47,7 +47,15 @@ enum class NoteCode : std::uint16_t {
   PlaceBeyondTravel = 46,   ///< detail: likewise
   ForceIncomplete = 47,     ///< the hand feels less than the tissue; detail: missing [N]
   ForceComplete = 48,       ///< again all of it
-  Marked = 49,              ///< by who sat at the terminal; detail: number of the mark
+  // From here on of no tick: who replays one leaves them out.
+  Marked = 49,  ///< by who sat at the terminal, or a client; detail: number of the mark
+  // Asked for by a client of the monitor; detail: its number.
+  MarkAsked = 50,
+  StopAsked = 51,
+  ResetAsked = 52,
+  EndAsked = 53,
+  PointerTaken = 54,
+  PointerGiven = 55,
   // Of the recording itself, written by the record thread.
   DiskNearlyFull = 64,  ///< detail: time left [s] at the rate of late
 };

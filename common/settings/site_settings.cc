@@ -101,6 +101,12 @@ Result<RecordSettings> make_record(const proto::config::Record& message) {
       .file = message.file(), .files = message.files(), .queue_records = message.queue_records()};
 }
 
+MonitorSettings make_monitor(const proto::config::Monitor& message) {
+  return {.serve = message.serve(),
+          .port = static_cast<std::uint16_t>(message.port()),
+          .origin = message.origin()};
+}
+
 std::uint64_t agreement_hash(const proto::config::Coupling& message, Duration period) {
   return random_bits(config::settings_hash(message), 0, static_cast<std::uint64_t>(period.count()));
 }

@@ -14,6 +14,7 @@ class Coupling;
 class Impairment;
 class Link;
 class Loop;
+class Monitor;
 class Record;
 }  // namespace palp::proto::config
 
@@ -48,6 +49,13 @@ struct RecordSettings {
   std::size_t queue_records{16384};
 };
 
+/// Of the page that shows the session live.
+struct MonitorSettings {
+  bool serve{};
+  std::uint16_t port{8080};  ///< 0: any free one
+  std::string origin{};      ///< of a page from elsewhere that may ask too; empty: none
+};
+
 /// Of the link: who may hear and say something on it.
 struct ProtectionSettings {
   bool insecure{};         ///< plain datagrams are accepted
@@ -65,6 +73,7 @@ struct ProtectionSettings {
 [[nodiscard]] ProtectionSettings make_protection(const proto::config::Link& message);
 [[nodiscard]] LoopSettings make_loop(const proto::config::Loop& message);
 [[nodiscard]] ImpairmentSettings make_impairment(const proto::config::Impairment& message);
+[[nodiscard]] MonitorSettings make_monitor(const proto::config::Monitor& message);
 /// The sentence says that both were asked for.
 [[nodiscard]] Result<RecordSettings> make_record(const proto::config::Record& message);
 

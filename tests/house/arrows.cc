@@ -11,7 +11,7 @@ namespace palp::house {
 namespace {
 
 /// Rooms, the longer name first where one lies in another.
-constexpr std::array<std::string_view, 34> kRooms{"common/core",
+constexpr std::array<std::string_view, 35> kRooms{"common/core",
                                                   "common/message",
                                                   "common/coupling",
                                                   "common/link",
@@ -25,6 +25,7 @@ constexpr std::array<std::string_view, 34> kRooms{"common/core",
                                                   "common/io/secure",
                                                   "common/io",
                                                   "common/plot",
+                                                  "monitor",
                                                   "site_program",
                                                   "netem/model",
                                                   "netem/syntax",
@@ -80,6 +81,10 @@ const std::vector<Arrow>& arrows() {
       {"netem/presets_command.*", {"netem/syntax", "common/config"}},
       // A relay between sites: it has no keys, and knows nothing of couplings or impairments.
       {"relay/*", {"common/link", "common/io/*", "common/config"}},
+      // The live page: what the session file gets, for screens. It sees no site and no link.
+      {"monitor/server.cc",
+       {"common/record", "common/message", "common/link", "common/io/realtime"}},
+      {"monitor/*", {"common/record", "common/message", "common/link", "common/config"}},
       // What the two programs of a session do alike: it puts parts together, as their main.cc does.
       {"site_program/*",
        {"common/config",
@@ -88,6 +93,7 @@ const std::vector<Arrow>& arrows() {
         "common/link",
         "common/record",
         "common/io/*",
+        "monitor",
         "netem/*"}},
       {"fem/main.cc", {"common/config", "common/io/process/process_time.h"}},
       {"fem/*_command.*", {"common/config", "common/plot"}},
@@ -234,7 +240,7 @@ const std::vector<Fence>& fences() {
       {"modbus/", {"common/io/device/modbus_port.cc"}},
       {"hidapi/", {"common/io/device/hid_port.cc"}},
       {"seccomp.h", {"common/io/process/system_call_filter.cc"}},
-      {"boost/", {"common/io/net/*.cc", "common/io/secure/*.cc"}},
+      {"boost/", {"common/io/net/*.cc", "common/io/secure/*.cc", "monitor/server.cc"}},
       {"google/protobuf/", protobuf_files()},
       {"zstd", {"common/record/mcap_*.cc"}},
       {"zlib.h", {"common/record/mcap_*.cc"}},

@@ -89,6 +89,7 @@ std::string text_of(const Settings& settings) {
   add(list, settings.loop);
   add(list, settings.impairment);
   add(list, settings.record);
+  add(list, settings.monitor);
   list.add("duration", settings.duration).add("seed", settings.seed);
   return list.text();
 }

@@ -60,6 +60,7 @@ std::string text_of(const Settings& settings) {
   add(list, settings.loop);
   add(list, settings.impairment);
   add(list, settings.record);
+  add(list, settings.monitor);
   list.add("duration", settings.duration)
       .add("give_up_after", settings.give_up_after)
       .add("seed", settings.seed);

@@ -107,6 +107,22 @@ bool noted(const Keeper& recorder, NoteCode code) {
   return false;
 }
 
+TEST(SurgeonNodeTest, AStopOfSomebodyElseLatchesUntilAReset) {
+  HeldDevice device;
+  Bench bench{device};
+  bench.run(500ms);
+  ASSERT_EQ(bench.status().state, SiteState::Clutched);
+  bench.node().stops().put(1);
+  bench.run(2ms);
+  EXPECT_EQ(bench.status().state, SiteState::Stopped);
+  EXPECT_EQ(bench.status().reason, NoteCode::EmergencyStop);
+  bench.run(500ms);
+  EXPECT_EQ(bench.status().state, SiteState::Stopped);
+  bench.node().commands().put({.emergency_stop = false, .resets = 1});
+  bench.run(2ms);
+  EXPECT_NE(bench.status().state, SiteState::Stopped);
+}
+
 TEST(SurgeonNodeTest, PalpatesFromBeginningToEnd) {
   SimulatedHand hand{firm_hand(), short_script()};
   Bench bench{hand};

@@ -79,5 +79,22 @@ TEST(Json, KnowsWhatItHolds) {
   EXPECT_TRUE(json["c"].is_object());
 }
 
+TEST(Json, GivesWhatItHoldsAndNothingElse) {
+  const Json json = Json::parse(R"({"a": 3, "b": -3.5, "c": "text", "d": [1, 2], "e": true})");
+  EXPECT_EQ(json["a"].number(), 3);
+  EXPECT_EQ(json["b"].number(), -3.5);
+  EXPECT_EQ(json["c"].text(), "text");
+  EXPECT_EQ(json["d"].parts().size(), 2U);
+  EXPECT_EQ(json["e"].truth(), true);
+  EXPECT_FALSE(json["c"].number());
+  EXPECT_FALSE(json["a"].text());
+  EXPECT_FALSE(json["a"].truth());
+  EXPECT_TRUE(json["a"].parts().empty());
+  EXPECT_EQ(json.names().size(), 5U);
+  EXPECT_TRUE(json["a"].names().empty());
+  EXPECT_TRUE(json.at_or_null("f").is_null());
+  EXPECT_TRUE(json["a"].at_or_null("f").is_null());
+}
+
 }  // namespace
 }  // namespace palp::config

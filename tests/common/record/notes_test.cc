@@ -17,7 +17,7 @@ TEST(NotesTest, EveryNumberHasItsOwnTextAndOthersSaySo) {
       EXPECT_TRUE(texts.insert(text).second) << code << ": " << text;
     }
   }
-  EXPECT_EQ(known, 36);
+  EXPECT_EQ(known, 42);
 }
 
 TEST(NotesTest, AStateSaysWhyWhereItIsNotTheUsualOne) {

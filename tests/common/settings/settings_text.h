@@ -87,6 +87,12 @@ inline void add(FieldList& list, const settings::ImpairmentSettings& impairment)
       .add("impairment.loss", impairment.loss);
 }
 
+inline void add(FieldList& list, const settings::MonitorSettings& monitor) {
+  list.add("monitor.serve", monitor.serve)
+      .add("monitor.port", monitor.port)
+      .add("monitor.origin", monitor.origin);
+}
+
 inline void add(FieldList& list, const settings::RecordSettings& record) {
   list.add("record.file", record.file)
       .add("record.files", record.files)

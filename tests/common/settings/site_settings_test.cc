@@ -16,12 +16,14 @@ TEST(SiteSettingsTest, EmptyMessagesGiveTheDefaultsOfTheParts) {
   add(made, make_loop({}));
   add(made, make_impairment({}));
   add(made, make_record({}).value());
+  add(made, make_monitor({}));
   settings_test::FieldList defaults;
   add(defaults, coupling::CouplingConfig{});
   add(defaults, link::LinkConfig{});
   add(defaults, LoopSettings{});
   add(defaults, ImpairmentSettings{});
   add(defaults, RecordSettings{});
+  add(defaults, MonitorSettings{});
   EXPECT_EQ(made.text(), defaults.text());
 }
 

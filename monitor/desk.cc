@@ -1,0 +1,264 @@
+#include "monitor/desk.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "common/config/json.h"
+#include "monitor/status_json.h"
+
+namespace palp::monitor {
+namespace {
+
+using config::Json;
+using record::Topic;
+
+/// What a screen can take: 50 Hz and slower. The 1 kHz topics are in the file alone.
+constexpr std::array kLive{Topic::TickView, Topic::Link, Topic::Event, Topic::Depth};
+constexpr std::uint32_t kStatusChannel = 100;
+constexpr std::size_t kKeptMax = 200;
+constexpr std::size_t kSubscriptionsMax = 64;
+constexpr std::string_view kPointerTopic = "monitor/pointer";
+
+enum ServiceId : std::uint32_t { kMark = 1, kStop, kReset, kEnd, kTake, kGive };
+
+std::uint32_t channel_id(Topic topic) noexcept { return static_cast<std::uint32_t>(topic) + 1; }
+
+std::vector<Channel> channels_of(link::Role site) {
+  std::vector<Channel> channels;
+  for (const record::TopicFormat& format : record::topics_of(site)) {
+    if (std::ranges::find(kLive, format.topic) == kLive.end()) continue;
+    channels.push_back(channel_of(format));
+  }
+  channels.push_back({.id = kStatusChannel,
+                      .topic = std::string{record::site_name(site)} + "/status",
+                      .encoding = "json",
+                      .schema_name = "palp.monitor.Status",
+                      .schema = status_schema()});
+  return channels;
+}
+
+std::vector<Service> services_of(const Controls& controls) {
+  if (controls.requests == nullptr) return {};
+  std::vector<Service> services{
+      {kMark, "mark"}, {kStop, "stop"}, {kReset, "reset"}, {kEnd, "end_session"}};
+  if (controls.pointer == nullptr) return services;
+  services.push_back({kTake, "pointer/take"});
+  services.push_back({kGive, "pointer/give"});
+  return services;
+}
+
+}  // namespace
+
+Desk::Desk(const DeskConfig& config, Controls controls)
+    : config_{config},
+      controls_{controls},
+      channels_{channels_of(config.site)},
+      services_{services_of(controls)} {}
+
+std::uint32_t Desk::join(Right right, TimePoint now) {
+  if (right == Right::None || clients_.size() >= kClientsMax) return 0;
+  const std::uint32_t number = ++joined_;
+  Client& client = clients_[number];
+  client.right = right;
+  client.heard_at = now;
+  const bool controllable = right == Right::Control && !services_.empty();
+  Greeting greeting{.name = config_.program,
+                    .run = config_.run,
+                    .controllable = controllable,
+                    .facts = config_.facts};
+  greeting.facts.emplace_back("site", record::site_name(config_.site));
+  greeting.facts.emplace_back("client", std::to_string(number));
+  greeting.facts.emplace_back("right", controllable ? "control" : "view");
+  greeting.facts.emplace_back("pointer", controls_.pointer != nullptr ? "yes" : "no");
+  client.outbox.push({.text = true, .passing = false, .body = greeting_text(greeting)});
+  client.outbox.push({.text = true, .passing = false, .body = advertise_text(channels_)});
+  if (controllable) {
+    client.outbox.push({.text = true, .passing = false, .body = services_text(services_)});
+  }
+  return number;
+}
+
+void Desk::leave(std::uint32_t client, TimePoint now) {
+  if (pilot_.give(client)) {
+    controls_.pointer->put(pilot_.let_go(now));
+    ask(Request::Kind::PilotGave, client);
+  }
+  clients_.erase(client);
+}
+
+bool Desk::within_budget(Client& client, TimePoint now) noexcept {
+  client.budget = std::min(kMessagesPerSecond,
+                           client.budget + kMessagesPerSecond * seconds(now - client.heard_at));
+  client.heard_at = now;
+  if (client.budget < 1) return false;
+  client.budget -= 1;
+  return true;
+}
+
+bool Desk::hear_text(std::uint32_t number, std::string_view text, TimePoint now) {
+  Client& client = clients_.at(number);
+  if (!within_budget(client, now)) return false;
+  const auto said = read_client_text(text);
+  if (!said) {
+    tell(client, Level::Error, "this is no text of the protocol");
+    return true;
+  }
+  for (const auto& one : said->subscriptions) subscribe(client, one);
+  for (const auto& one : said->publications) {
+    if (client.right != Right::Control || one.topic != kPointerTopic || one.encoding != "json") {
+      tell(client, Level::Warning, "this client may not publish there");
+      continue;
+    }
+    client.pointer_channel = one.id;
+    client.publishes = true;
+  }
+  if (said->op == ClientText::Op::Unsubscribe) {
+    for (const std::uint32_t id : said->ids) client.subscriptions.erase(id);
+  } else if (said->op == ClientText::Op::Unadvertise) {
+    if (std::ranges::find(said->ids, client.pointer_channel) != said->ids.end()) {
+      client.publishes = false;
+    }
+  }
+  return true;
+}
+
+/// Who comes late is told of what happened before.
+void Desk::subscribe(Client& client, const ClientText::Subscription& wanted) {
+  const bool known = std::ranges::any_of(
+      channels_, [&wanted](const Channel& one) { return one.id == wanted.channel; });
+  if (!known || client.subscriptions.size() >= kSubscriptionsMax) {
+    return tell(client, Level::Warning, "there is no such channel");
+  }
+  if (!client.subscriptions.emplace(wanted.id, wanted.channel).second) {
+    return tell(client, Level::Warning, "this subscription exists");
+  }
+  for (const Kept& one : kept_) {
+    if (one.channel != wanted.channel) continue;
+    client.outbox.push(
+        {.text = false,
+         .passing = false,
+         .body = message_bytes(wanted.id, one.stamp, std::as_bytes(std::span{one.bytes}))});
+  }
+}
+
+bool Desk::hear_bytes(std::uint32_t number, std::string_view bytes, TimePoint now) {
+  Client& client = clients_.at(number);
+  if (!within_budget(client, now)) return false;
+  const auto said = read_client_bytes(bytes);
+  if (!said) {
+    tell(client, Level::Error, "these are no bytes of the protocol");
+  } else if (said->call) {
+    answer_call(number, client, *said, now);
+  } else if (client.publishes && said->id == client.pointer_channel) {
+    hear_pointer(number, said->payload, now);
+  } else {
+    tell(client, Level::Warning, "this client has no such channel");
+  }
+  return true;
+}
+
+void Desk::hear_pointer(std::uint32_t number, std::string_view json, TimePoint now) {
+  if (controls_.pointer == nullptr) return;
+  if (const auto report = pilot_.hear(number, json, now)) controls_.pointer->put(*report);
+}
+
+void Desk::answer_call(std::uint32_t number,
+                       Client& client,
+                       const ClientBytes& call,
+                       TimePoint now) {
+  const bool known =
+      std::ranges::any_of(services_, [&call](const Service& one) { return one.id == call.id; });
+  std::string refusal;
+  if (client.right != Right::Control) {
+    refusal = "this client may only look";
+  } else if (!known || call.encoding != "json") {
+    refusal = "there is no such service";
+  }
+  if (!refusal.empty()) {
+    client.outbox.push({.text = true,
+                        .passing = false,
+                        .body = call_failure_text(call.id, call.call_id, refusal)});
+    return;
+  }
+  const std::string why = serve(number, call, now);
+  const Json answer{{"ok", why.empty()}, {"why", why}};
+  client.outbox.push({.text = false,
+                      .passing = false,
+                      .body = call_answer_bytes(call.id, call.call_id, answer.dump())});
+}
+
+std::string Desk::serve(std::uint32_t number, const ClientBytes& call, TimePoint now) {
+  switch (call.id) {
+    case kMark:
+      ask(Request::Kind::Mark, number);
+      return {};
+    case kStop:
+      if (controls_.stops != nullptr) controls_.stops->put(++stops_);
+      ask(Request::Kind::Stop, number);
+      return {};
+    case kReset:
+      ask(Request::Kind::Reset, number);
+      return {};
+    case kEnd:
+      ask(Request::Kind::End, number);
+      return {};
+    case kTake: {
+      const auto request = is_shallow(call.payload) ? Json::parse(call.payload) : Json{};
+      const auto name = request.at_or_null("name").text().value_or("");
+      if (pilot_.client() == number) return {};
+      if (!pilot_.take(number, name)) {
+        const std::string who = pilot_.name().empty() ? "" : " (" + pilot_.name() + ")";
+        return "client " + std::to_string(pilot_.client()) + who + " has the pointer";
+      }
+      ask(Request::Kind::PilotTook, number);
+      return {};
+    }
+    case kGive:
+      if (!pilot_.give(number)) return "this client does not have the pointer";
+      controls_.pointer->put(pilot_.let_go(now));
+      ask(Request::Kind::PilotGave, number);
+      return {};
+    default:
+      return "there is no such service";
+  }
+}
+
+void Desk::ask(Request::Kind kind, std::uint32_t client) {
+  if (controls_.requests != nullptr) (void)controls_.requests->try_enqueue({kind, client});
+}
+
+void Desk::tell(Client& client, Level level, std::string_view sentence) {
+  client.outbox.push({.text = true, .passing = true, .body = status_text(level, sentence)});
+}
+
+void Desk::send(std::uint32_t channel, std::uint64_t stamp, std::span<const std::byte> payload) {
+  for (auto& [number, client] : clients_) {
+    for (const auto& [id, wanted] : client.subscriptions) {
+      if (wanted != channel) continue;
+      client.outbox.push(
+          {.text = false, .passing = true, .body = message_bytes(id, stamp, payload)});
+    }
+  }
+}
+
+void Desk::publish(const LiveMessage& message) {
+  const std::uint32_t channel = channel_id(message.topic);
+  if (message.topic == Topic::Event || message.topic == Topic::Depth) {
+    std::string bytes(message.size, '\0');
+    std::ranges::transform(
+        message.payload(), bytes.begin(), [](std::byte one) { return static_cast<char>(one); });
+    kept_.push_back({channel, message.stamp, std::move(bytes)});
+    if (kept_.size() > kKeptMax) kept_.pop_front();
+  }
+  send(channel, message.stamp, message.payload());
+}
+
+void Desk::publish(const LiveStatus& status) {
+  if (status.stamp == told_) return;
+  told_ = status.stamp;
+  const std::string json = status_json(status, pilot_, clients_.size());
+  send(kStatusChannel, status.stamp, std::as_bytes(std::span{json}));
+}
+
+}  // namespace palp::monitor

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/core/time.h"
+#include "monitor/access.h"
+#include "monitor/controls.h"
+#include "monitor/feed.h"
+#include "monitor/outbox.h"
+#include "monitor/pilot.h"
+#include "monitor/protocol.h"
+
+namespace palp::monitor {
+
+struct DeskConfig {
+  link::Role site{};
+  std::string program;  ///< "palp-surgeon"
+  std::string run;      ///< another at each start
+  /// What a client may know of the session before its first message: coupling, master, version.
+  std::vector<std::pair<std::string, std::string>> facts{};
+};
+
+/// All clients at once, without a socket: who asked for what, what each is sent, and what of it is
+/// asked of the site. Bytes of clients may be anything. Thread: monitor.
+class Desk {
+ public:
+  static constexpr std::size_t kClientsMax = 32;
+  static constexpr std::size_t kWaitingMax = 256 * 1024;  ///< [bytes], of one client
+  static constexpr double kMessagesPerSecond = 120;       ///< [1/s], of one client, in the mean
+
+  Desk(const DeskConfig& config, Controls controls);
+
+  /// @returns its number, 1, 2, ...; 0: there are too many.
+  [[nodiscard]] std::uint32_t join(Right right, TimePoint now);
+  void leave(std::uint32_t client, TimePoint now);
+  [[nodiscard]] std::size_t clients() const noexcept { return clients_.size(); }
+  [[nodiscard]] Outbox& outbox(std::uint32_t client) { return clients_.at(client).outbox; }
+
+  /// false: it is no client of ours any more, and is to be closed.
+  [[nodiscard]] bool hear_text(std::uint32_t client, std::string_view text, TimePoint now);
+  [[nodiscard]] bool hear_bytes(std::uint32_t client, std::string_view bytes, TimePoint now);
+  /// An answer to a ping.
+  void heard_pong(std::uint32_t client, Duration round_trip) noexcept {
+    pilot_.heard_pong(client, round_trip);
+  }
+  [[nodiscard]] std::uint32_t pilot() const noexcept { return pilot_.client(); }
+
+  void publish(const LiveMessage& message);
+  void publish(const LiveStatus& status);
+
+ private:
+  struct Client {
+    Right right{};
+    Outbox outbox{kWaitingMax};
+    std::map<std::uint32_t, std::uint32_t> subscriptions;  ///< of ids to channels
+    std::uint32_t pointer_channel{};
+    bool publishes{};
+    double budget{kMessagesPerSecond};  ///< [-], messages it may send at once
+    TimePoint heard_at{};
+  };
+  struct Kept {
+    std::uint32_t channel{};
+    std::uint64_t stamp{};
+    std::string bytes;
+  };
+
+  [[nodiscard]] bool within_budget(Client& client, TimePoint now) noexcept;
+  void subscribe(Client& client, const ClientText::Subscription& wanted);
+  void hear_pointer(std::uint32_t number, std::string_view json, TimePoint now);
+  void answer_call(std::uint32_t number, Client& client, const ClientBytes& call, TimePoint now);
+  /// Empty: done. Else why not.
+  [[nodiscard]] std::string serve(std::uint32_t number, const ClientBytes& call, TimePoint now);
+  void ask(Request::Kind kind, std::uint32_t client);
+  void tell(Client& client, Level level, std::string_view sentence);
+  void send(std::uint32_t channel, std::uint64_t stamp, std::span<const std::byte> payload);
+
+  DeskConfig config_;
+  Controls controls_;
+  std::vector<Channel> channels_;
+  std::vector<Service> services_;
+  std::map<std::uint32_t, Client> clients_;
+  std::uint32_t joined_{};
+  std::uint32_t stops_{};
+  Pilot pilot_;
+  std::deque<Kept> kept_;  ///< events and depths so far, for who comes late
+  std::uint64_t told_{};   ///< stamp of the newest status
+};
+
+}  // namespace palp::monitor

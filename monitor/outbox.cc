@@ -1,0 +1,29 @@
+#include "monitor/outbox.h"
+
+#include <iterator>
+#include <utility>
+
+namespace palp::monitor {
+
+void Outbox::push(Frame frame) {
+  waiting_ += frame.body.size();
+  frames_.push_back(std::move(frame));
+  auto one = std::next(frames_.begin(), sending_ ? 1 : 0);
+  while (waiting_ > bound_ && one != frames_.end() && std::next(one) != frames_.end()) {
+    if (!one->passing) {
+      ++one;
+      continue;
+    }
+    waiting_ -= one->body.size();
+    ++dropped_;
+    one = frames_.erase(one);
+  }
+}
+
+void Outbox::pop() {
+  waiting_ -= frames_.front().body.size();
+  frames_.pop_front();
+  sending_ = false;
+}
+
+}  // namespace palp::monitor

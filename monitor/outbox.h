@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <string>
+
+namespace palp::monitor {
+
+/// A frame of the protocol on its way to one client.
+struct Frame {
+  bool text{};     ///< else bytes
+  bool passing{};  ///< a newer one makes up for its loss
+  std::string body;
+};
+
+/// What one client has not taken yet, bounded: where it takes nothing, passing frames give way, the
+/// oldest first. Answers wait; a client that lets even those pile up is given up. Thread: one.
+class Outbox {
+ public:
+  explicit Outbox(std::size_t bound) noexcept : bound_{bound} {}
+
+  void push(Frame frame);
+  [[nodiscard]] bool empty() const noexcept { return frames_.empty(); }
+  /// The oldest: it is on its way from now on and stays until pop(). Not empty.
+  [[nodiscard]] const Frame& begin_first() noexcept {
+    sending_ = true;
+    return frames_.front();
+  }
+  void pop();
+
+  [[nodiscard]] std::size_t waiting() const noexcept { return waiting_; }  ///< [bytes]
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
+  [[nodiscard]] bool hopeless() const noexcept { return waiting_ > 2 * bound_; }
+
+ private:
+  std::size_t bound_;  ///< [bytes]
+  std::list<Frame> frames_;
+  std::size_t waiting_{};
+  std::uint64_t dropped_{};
+  bool sending_{};
+};
+
+}  // namespace palp::monitor

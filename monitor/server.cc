@@ -1,0 +1,369 @@
+#include "monitor/server.h"
+
+#include <algorithm>
+#include <cstring>
+#include <list>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include "common/io/realtime/background_loop.h"
+#include "common/io/realtime/steady_clock.h"
+#include "monitor/page_files.h"
+
+namespace palp::monitor {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+
+constexpr Duration kRound = std::chrono::milliseconds{10};
+constexpr Duration kPingEvery = std::chrono::milliseconds{250};
+constexpr auto kRequestTime = std::chrono::seconds{10};
+constexpr auto kIdleTime = std::chrono::seconds{20};
+constexpr std::size_t kConnectionsMax = 64;     ///< clients, and who has not shown a token yet
+constexpr std::size_t kMessageMax = 16 * 1024;  ///< [bytes], of a client
+constexpr std::uint32_t kHeaderMax = 8 * 1024;  ///< [bytes]
+constexpr std::uint64_t kBodyMax = 1024;        ///< [bytes], nobody asks with one
+constexpr const char* kPolicy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+    "connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+
+std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
+
+/// The value behind "?token=" in a request's target; empty: there is none.
+std::string_view token_in(std::string_view target) {
+  constexpr std::string_view kName = "token=";
+  const auto query = target.find('?');
+  if (query == target.npos) return {};
+  std::string_view rest = target.substr(query + 1);
+  while (!rest.empty()) {
+    const std::string_view one = rest.substr(0, rest.find('&'));
+    if (one.starts_with(kName)) return one.substr(kName.size());
+    rest.remove_prefix(std::min(rest.size(), one.size() + 1));
+  }
+  return {};
+}
+
+/// The one of ours that a client offers first; empty: none.
+std::string_view subprotocol_of(std::string_view offered) {
+  for (const std::string_view ours : kSubprotocols) {
+    if (offered.find(ours) != offered.npos) return ours;
+  }
+  return {};
+}
+
+/// What a connection needs of all others.
+struct Shared {
+  Access access;
+  Desk desk;
+  io::SteadyClock clock{};
+};
+
+/// One connection, from its request to its end. It lives until nothing of it is under way.
+class Connection {
+ public:
+  Connection(Shared& shared, tcp::socket socket) : shared_{shared}, stream_{std::move(socket)} {}
+  ~Connection() { close(); }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  void start();
+  void close();
+  /// Sends what waits for it.
+  void pump();
+  void ping(TimePoint now);
+  [[nodiscard]] bool over() const noexcept { return closed_ && under_way_ == 0; }
+  [[nodiscard]] bool is_client() const noexcept { return client_ != 0; }
+  [[nodiscard]] std::uint32_t client() const noexcept { return client_; }
+
+ private:
+  /// A handler that counts as under way, and is not run after the end.
+  template <class Handler>
+  auto counted(Handler handler) {
+    ++under_way_;
+    return [this, handler](beast::error_code error, auto... rest) {
+      --under_way_;
+      if (closed_) return;
+      if (error) return close();
+      handler(rest...);
+    };
+  }
+
+  void answer();
+  void reply(http::status status, std::string_view media_type, std::string_view text);
+  void refuse(http::status status, std::string_view sentence) {
+    reply(status, "text/plain; charset=utf-8", sentence);
+  }
+  void upgrade();
+  void become_client();
+  void read();
+  void hear();
+  void heard_pong(std::string_view payload);
+
+  Shared& shared_;
+  beast::tcp_stream stream_;  ///< moved into the socket below by an upgrade
+  std::optional<websocket::stream<beast::tcp_stream>> socket_;
+  beast::flat_buffer in_;
+  std::optional<http::request_parser<http::string_body>> parser_{std::in_place};
+  http::response<http::string_body> response_;
+  Right right_{};
+  std::uint32_t client_{};  ///< its number at the desk; 0: none yet
+  int under_way_{};
+  bool writing_{};
+  bool pinging_{};
+  TimePoint pinged_at_{};
+  std::uint64_t pings_{};
+  bool closed_{};
+};
+
+void Connection::start() {
+  parser_->header_limit(kHeaderMax);
+  parser_->body_limit(kBodyMax);
+  stream_.expires_after(kRequestTime);
+  http::async_read(stream_, in_, *parser_, counted([this](std::size_t) { answer(); }));
+}
+
+void Connection::close() {
+  if (closed_) return;
+  closed_ = true;
+  if (is_client()) shared_.desk.leave(client_, shared_.clock.now());
+  beast::error_code ignored;
+  (void)beast::get_lowest_layer(socket_ ? socket_->next_layer() : stream_).socket().close(ignored);
+}
+
+void Connection::answer() {
+  const auto& request = parser_->get();
+  const std::string_view host = view_of(request[http::field::host]);
+  const std::string_view origin = view_of(request[http::field::origin]);
+  if (!Access::host_allowed(host)) {
+    return refuse(http::status::forbidden, "this site answers to its loopback names only\n");
+  }
+  if (!shared_.access.origin_allowed(origin, host)) {
+    return refuse(http::status::forbidden, "pages from elsewhere may not ask here\n");
+  }
+  if (websocket::is_upgrade(request)) return upgrade();
+  if (request.method() != http::verb::get) {
+    return refuse(http::status::method_not_allowed, "only GET is known here\n");
+  }
+  const std::string_view target = view_of(request.target());
+  const PageFile file = page_file(target.substr(0, target.find('?')));
+  if (file.media_type.empty()) return refuse(http::status::not_found, "there is no such page\n");
+  reply(http::status::ok, file.media_type, file.text);
+}
+
+void Connection::reply(http::status status, std::string_view media_type, std::string_view text) {
+  response_ = {status, 11};
+  response_.set(http::field::content_type, media_type);
+  response_.set("Content-Security-Policy", kPolicy);
+  response_.set("X-Content-Type-Options", "nosniff");
+  response_.set("Referrer-Policy", "no-referrer");
+  response_.set("Cross-Origin-Resource-Policy", "same-origin");
+  response_.set("Cross-Origin-Opener-Policy", "same-origin");
+  response_.set(http::field::cache_control, "no-store");
+  response_.body() = text;
+  response_.keep_alive(false);
+  response_.prepare_payload();
+  stream_.expires_after(kRequestTime);
+  http::async_write(stream_, response_, counted([this](std::size_t) {
+                      beast::error_code ignored;
+                      (void)stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+                      close();
+                    }));
+}
+
+void Connection::upgrade() {
+  const auto& request = parser_->get();
+  const TimePoint now = shared_.clock.now();
+  right_ = shared_.access.right_of(token_in(view_of(request.target())), now);
+  if (right_ == Right::None) {
+    if (shared_.access.weary(now)) return close();
+    return refuse(http::status::unauthorized, "nothing is shown without this run's token\n");
+  }
+  if (shared_.desk.clients() >= Desk::kClientsMax) {
+    return refuse(http::status::service_unavailable, "too many clients look already\n");
+  }
+  const std::string_view offered = view_of(request[http::field::sec_websocket_protocol]);
+  const std::string chosen{subprotocol_of(offered)};
+  if (chosen.empty() && !offered.empty()) {
+    return refuse(http::status::bad_request, "foxglove.sdk.v1 is spoken here\n");
+  }
+  stream_.expires_never();
+  socket_.emplace(std::move(stream_));
+  socket_->set_option(websocket::stream_base::timeout{kRequestTime, kIdleTime, true});
+  socket_->set_option(websocket::stream_base::decorator{[chosen](websocket::response_type& to) {
+    if (!chosen.empty()) to.set(http::field::sec_websocket_protocol, chosen);
+  }});
+  websocket::permessage_deflate plain;
+  plain.server_enable = false;
+  socket_->set_option(plain);
+  socket_->read_message_max(kMessageMax);
+  socket_->auto_fragment(false);
+  beast::error_code ignored;
+  (void)beast::get_lowest_layer(*socket_).socket().set_option(tcp::no_delay{true}, ignored);
+  ++under_way_;
+  socket_->async_accept(request, [this](beast::error_code error) {
+    --under_way_;
+    if (closed_) return;
+    error ? close() : become_client();
+  });
+}
+
+void Connection::become_client() {
+  parser_.reset();
+  client_ = shared_.desk.join(right_, shared_.clock.now());
+  if (client_ == 0) return close();
+  socket_->control_callback([this](websocket::frame_type kind, beast::string_view payload) {
+    if (kind == websocket::frame_type::pong) heard_pong(view_of(payload));
+  });
+  pump();
+  read();
+}
+
+void Connection::read() {
+  socket_->async_read(in_, counted([this](std::size_t) { hear(); }));
+}
+
+void Connection::hear() {
+  const std::string_view said{static_cast<const char*>(in_.data().data()), in_.size()};
+  const TimePoint now = shared_.clock.now();
+  const bool stays = socket_->got_text() ? shared_.desk.hear_text(client_, said, now)
+                                         : shared_.desk.hear_bytes(client_, said, now);
+  in_.consume(in_.size());
+  if (!stays) return close();
+  pump();
+  if (!closed_) read();
+}
+
+void Connection::pump() {
+  if (!is_client() || closed_ || writing_) return;
+  Outbox& outbox = shared_.desk.outbox(client_);
+  if (outbox.hopeless()) return close();
+  if (outbox.empty()) return;
+  const Frame& frame = outbox.begin_first();
+  writing_ = true;
+  socket_->text(frame.text);
+  socket_->async_write(asio::buffer(frame.body), counted([this](std::size_t) {
+                         writing_ = false;
+                         shared_.desk.outbox(client_).pop();
+                         pump();
+                       }));
+}
+
+void Connection::ping(TimePoint now) {
+  if (!is_client() || closed_ || pinging_ || now - pinged_at_ < kPingEvery) return;
+  pinging_ = true;
+  pinged_at_ = now;
+  const std::string number = std::to_string(++pings_);
+  ++under_way_;
+  socket_->async_ping(websocket::ping_data{number.c_str()}, [this](beast::error_code error) {
+    --under_way_;
+    pinging_ = false;
+    if (!closed_ && error) close();
+  });
+}
+
+/// Only of the newest: what answers an older one has been late already.
+void Connection::heard_pong(std::string_view payload) {
+  if (!is_client() || payload != std::to_string(pings_)) return;
+  shared_.desk.heard_pong(client_, shared_.clock.now() - pinged_at_);
+}
+
+}  // namespace
+
+/// All that the monitor's thread owns.
+class Server::Io {
+ public:
+  Io(const ServerConfig& config, Controls controls, Feed& feed);
+  /// A round: what is new goes out, then whatever clients say for a while.
+  void work(TimePoint now);
+  [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
+
+ private:
+  void accept(tcp::acceptor& acceptor);
+  void take(tcp::socket socket);
+
+  Feed& feed_;
+  Shared shared_;
+  asio::io_context context_{1};
+  std::list<tcp::acceptor> acceptors_;
+  std::uint16_t port_{};
+  std::list<Connection> connections_;  ///< the oldest first
+  LiveMessage message_;
+};
+
+Server::Io::Io(const ServerConfig& config, Controls controls, Feed& feed)
+    : feed_{feed},
+      shared_{.access = Access{config.tokens, config.origins},
+              .desk = Desk{config.desk, controls}} {
+  const auto open = [this](const asio::ip::address& address, std::uint16_t port) {
+    acceptors_.emplace_back(context_, tcp::endpoint{address, port});
+    port_ = acceptors_.back().local_endpoint().port();
+    accept(acceptors_.back());
+  };
+  try {
+    open(asio::ip::address_v4::loopback(), config.port);
+  } catch (const boost::system::system_error& error) {
+    throw std::runtime_error{"the monitor cannot listen on 127.0.0.1:" +
+                             std::to_string(config.port) + ": " + error.code().message()};
+  }
+  try {
+    open(asio::ip::address_v6::loopback(), port_);
+  } catch (const boost::system::system_error&) {  // a machine without IPv6 has the other
+    return;
+  }
+}
+
+void Server::Io::accept(tcp::acceptor& acceptor) {
+  acceptor.async_accept([this, &acceptor](beast::error_code error, tcp::socket socket) {
+    if (error == asio::error::operation_aborted) return;
+    if (!error) take(std::move(socket));
+    accept(acceptor);
+  });
+}
+
+/// Where there are too many, the oldest that has shown no token makes room: a stranger's thousand
+/// connections keep nobody out.
+void Server::Io::take(tcp::socket socket) {
+  const auto open = [](const Connection& one) { return !one.over(); };
+  if (std::ranges::count_if(connections_, open) >= static_cast<std::ptrdiff_t>(kConnectionsMax)) {
+    const auto oldest = std::ranges::find_if(
+        connections_, [](const Connection& one) { return !one.is_client() && !one.over(); });
+    if (oldest == connections_.end()) return;
+    oldest->close();
+  }
+  connections_.emplace_back(shared_, std::move(socket)).start();
+}
+
+void Server::Io::work(TimePoint now) {
+  while (feed_.next(message_)) shared_.desk.publish(message_);
+  shared_.desk.publish(feed_.status());
+  for (Connection& one : connections_) {
+    one.pump();
+    one.ping(now);
+  }
+  context_.restart();
+  context_.run_for(kRound);
+  connections_.remove_if([](const Connection& one) { return one.over(); });
+}
+
+Server::Server(const ServerConfig& config, Controls controls, Feed& feed)
+    : io_{std::make_unique<Io>(config, controls, feed)},
+      loop_{std::make_unique<io::BackgroundLoop>(
+          "palp-monitor", Duration{0}, [io = io_.get()](TimePoint now) { io->work(now); })} {}
+
+Server::~Server() = default;
+
+std::uint16_t Server::port() const noexcept { return io_->port(); }
+
+}  // namespace palp::monitor

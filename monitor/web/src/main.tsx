@@ -1,0 +1,207 @@
+import { render, type ComponentChildren } from 'preact';
+import { useEffect, useState } from 'preact/hooks';
+import { ForceStrip, PlaceStrip } from './charts';
+import { Client } from './client';
+import { Model, type Status } from './model';
+import { Pilot } from './pilot';
+import { Section } from './section';
+import { Sound } from './sound';
+import { wordsOf } from './words';
+import './style.css';
+
+const FORCE_LIMIT_N = 8.5, FORCE_SCALE_N = 3;
+const TEXT_MS = 100;
+const TOKEN = 'palp-token';
+
+/** From the address once, then kept by this tab alone. */
+function token(): string {
+  const given = location.hash.slice(1);
+  if (given) {
+    sessionStorage.setItem(TOKEN, given);
+    history.replaceState(null, '', location.pathname + location.search);
+  }
+  return given || sessionStorage.getItem(TOKEN) || '';
+}
+
+const model = new Model(), sound = new Sound();
+let wantsPointer = true, askedAt = -1e9;
+const say = (text: string, tone: '' | 'warn' | 'bad' = '') => model.happen(Date.now(), text, tone);
+
+const client = new Client(token(), {
+  greeted: greeting => model.begin(greeting),
+  heard: (topic, stamp, message) => {
+    const now = performance.now();
+    model.hear(topic, stamp, message, now);
+    if (topic !== 'status') return;
+    const s = model.status!;
+    sound.play(model.patient ? 0 : Math.abs(s.force_n));
+    if (wantsPointer && model.hasPointer && s.pilot === 0 && now - askedAt > 1000) void takePointer(now);
+  },
+  said: sentence => say(sentence, 'warn'),
+  ended: refused => { pilot.up(); model.refused = refused && !model.greeting; },
+});
+const pilot = new Pilot(client, model);
+
+async function takePointer(now: number): Promise<void> {
+  askedAt = now;
+  const answer = await client.call('pointer/take', { name: new URLSearchParams(location.search).get('name') ?? '' });
+  wantsPointer = answer.ok;
+  if (!answer.ok) say(answer.why, 'warn');
+}
+
+async function ask(service: string): Promise<void> {
+  if (service === 'stop') pilot.up();
+  const answer = await client.call(service);
+  if (!answer.ok) say(answer.why, 'warn');
+}
+
+addEventListener('keydown', e => {
+  if (e.repeat || e.ctrlKey || e.altKey || e.metaKey) return;
+  const key = e.key.toLowerCase();
+  if (key === 'escape' && model.mayControl) void ask('stop');
+  else if (key === 'm' && model.mayControl) void ask('mark');
+  else if (key === 'r' && model.mayControl && model.status?.state === 'STOPPED') void ask('reset');
+  else if (key === 's') sound.toggle();
+});
+
+function Row({ name, id, unit, tone, children }: { name: string; id?: string; unit?: string; tone?: string; children: ComponentChildren }) {
+  return <div class="row"><dt>{name}</dt><dd class={tone} id={id}>{children}{unit && <small> {unit}</small>}</dd></div>;
+}
+
+function Gauge({ force }: { force: number }) {
+  const share = Math.min(1, Math.max(0, force / FORCE_SCALE_N)) * 100;
+  return <div class="gauge" role="meter" aria-valuemin={0} aria-valuemax={FORCE_LIMIT_N} aria-valuenow={+force.toFixed(2)} aria-label="Contact force in newtons"><i style={{ width: `${share}%` }} /></div>;
+}
+
+const clock = (at: number): string => new Date(at).toLocaleTimeString('en-GB');
+
+function Touch({ s }: { s: Status | undefined }) {
+  const last = model.strokes.find(one => one.stiffness > 0);
+  return <section class="card touch">
+    <header><h2>Touch</h2><span class="unit">contact force</span></header>
+    <p class="big"><span id="force">{s ? Math.max(0, model.contact(s)).toFixed(2) : '-'}</span> N</p>
+    <Gauge force={s ? model.contact(s) : 0} />
+    <dl>
+      <Row name="Indentation" id="indentation" unit="mm">{s ? Math.max(0, model.tip(s)).toFixed(1) : '-'}</Row>
+      {!model.patient && <Row name="Felt by the hand" unit="N">{s ? s.force_n.toFixed(2) : '-'}</Row>}
+      <Row name="Stiffness, last stroke" id="stiffness" unit="N/m">{last ? last.stiffness.toFixed(0) : '-'}</Row>
+    </dl>
+  </section>;
+}
+
+function Inclusion() {
+  const d = model.depth;
+  let big = <p class="big none"><span id="depth">-</span></p>, text = 'Tap once: press 3 mm or more, and lift again.', verdict = 'no stroke yet', sign = '○';
+  if (d?.verdict === 'FOUND') {
+    big = <p class="big found"><span id="depth">{d.depth.toFixed(1)}</span> mm</p>;
+    text = d.high > d.low ? `between ${d.low.toFixed(1)} and ${d.high.toFixed(1)} mm, 95 %` : 'this estimator tells no interval';
+    [sign, verdict] = ['✓', 'found'];
+  } else if (d?.verdict === 'NONE') {
+    big = <p class="big none"><span id="depth">none</span></p>;
+    text = d.low > 0 ? `nothing of 5 mm radius or more above ${d.low.toFixed(1)} mm` : 'nothing is excluded';
+    verdict = 'no inclusion';
+  } else if (d) {
+    big = <p class="big none"><span id="depth">?</span></p>;
+    text = `No statement: ${model.why(d)}.`;
+    [sign, verdict] = ['▲', 'not trusted'];
+  }
+  return <section class="card inclusion">
+    <header><h2>Inclusion</h2><span class="unit">below the surface</span></header>
+    {big}
+    <p class="interval" id="interval">{text}</p>
+    <dl><Row name="Verdict" id="verdict" tone={d?.verdict === 'FOUND' ? 'ok' : d?.verdict === 'INVALID' ? 'warn' : ''}><b aria-hidden="true">{sign}</b> {verdict}</Row>
+      <Row name="Strokes" id="stroke-count">{model.strokes.length}</Row></dl>
+  </section>;
+}
+
+function Strokes() {
+  return <section class="card strokes">
+    <header><h2>Strokes</h2><span class="unit">newest first</span></header>
+    <div class="scroll" tabIndex={0} aria-label="Table of strokes"><table><thead><tr><th>time</th><th>place<small> mm</small></th><th>press<small> mm</small></th><th>force<small> N</small></th><th>stiffness<small> N/m</small></th><th>inclusion<small> mm</small></th></tr></thead>
+      <tbody id="strokes">{model.strokes.map(one => <tr key={one.began}>
+        <td>{clock(one.began)}</td><td>{one.x.toFixed(1)}</td><td>{one.press.toFixed(1)}</td><td>{one.force.toFixed(2)}</td>
+        <td>{one.stiffness > 0 ? one.stiffness.toFixed(0) : '-'}</td>
+        <td class={one.depth?.verdict === 'FOUND' ? '' : 'dim'}>{!one.depth ? '-' : one.depth.verdict === 'FOUND' ? one.depth.depth.toFixed(1) : one.depth.verdict === 'NONE' ? 'none' : '?'}</td>
+      </tr>)}</tbody></table>
+      {model.strokes.length === 0 && <p class="empty">No stroke yet.</p>}</div>
+  </section>;
+}
+
+function LinkCard({ s, stale }: { s: Status | undefined; stale: boolean }) {
+  const number = (name: string) => typeof model.link[name] === 'number' ? model.link[name] as number : 0;
+  const sent = number('accepted') + number('lost'), live = s?.link === 'LIVE' && !stale;
+  return <section class="card link">
+    <header><h2>Link</h2><span class={'unit ' + (live ? 'ok' : 'bad')}>{live ? '✓' : '▲'} {stale ? 'unknown' : s!.link.toLowerCase()}</span></header>
+    <dl>
+      <Row name="Round trip" id="round-trip" unit="ms">{s ? s.round_trip_ms.toFixed(1) : '-'}</Row>
+      <Row name="Jitter" unit="ms">{(number('jitter_ns') / 1e6).toFixed(1)}</Row>
+      <Row name="Lost" unit="%">{sent > 0 ? (number('lost') / sent * 100).toFixed(2) : '-'}</Row>
+      <Row name="Last heard" unit="ms ago" tone={live ? '' : 'bad'}>{s ? s.gap_ms.toFixed(0) : '-'}</Row>
+      {!model.patient && <Row name="Touch is" id="age" unit="ms old">{s ? model.age(s).toFixed(0) : '-'}</Row>}
+      <Row name="Missed ticks" unit={`of ${s ? s.ticks.toLocaleString('en') : 0}`}>{s ? s.ticks_missed.toLocaleString('en') : '-'}</Row>
+    </dl>
+  </section>;
+}
+
+function Session({ s }: { s: Status | undefined }) {
+  const facts = model.greeting?.metadata ?? {};
+  return <section class="card session">
+    <header><h2>Session</h2></header>
+    <dl>
+      <Row name="Coupling">{facts.coupling ?? '-'}</Row>
+      {!model.patient && <Row name="Master">{facts.master ?? '-'}</Row>}
+      {model.hasPointer && <Row name="Pointer" id="pointer">{!s || s.pilot === 0 ? 'nobody' : model.pilots ? 'you' : `client ${s.pilot}${s.pilot_name ? ` (${s.pilot_name})` : ''}`}</Row>}
+      <Row name="Looking on">{s ? s.clients : '-'}</Row>
+    </dl>
+    {model.hasPointer && s && s.pilot === 0 && !wantsPointer && <button onClick={() => { wantsPointer = true; void takePointer(performance.now()); }}>Take the pointer</button>}
+    {model.pilots && <button onClick={() => { wantsPointer = false; pilot.up(); void ask('pointer/give'); }}>Give the pointer</button>}
+    {model.mayControl && <button id="end" onClick={() => { if (confirm('End the session at this site?')) void ask('end_session'); }}>End session</button>}
+  </section>;
+}
+
+function Events() {
+  return <section class="card events">
+    <header><h2>Events</h2></header>
+    <ol tabIndex={0} aria-label="Events, newest first" id="events">{model.happenings.slice(0, 40).map((one, i) => <li key={`${one.at} ${i}`} class={one.tone}><time>{clock(one.at)}</time>{one.tone === 'bad' ? '■ ' : one.tone === 'warn' ? '▲ ' : ''}{one.text}</li>)}</ol>
+  </section>;
+}
+
+function Bar({ stale }: { stale: boolean }) {
+  const s = model.status, words = wordsOf(model, stale, pilot.finger !== undefined), alarm = words.tone === 'bad' || words.word === 'Hold';
+  const live = s?.link === 'LIVE' && !stale;
+  return <header class="bar">
+    <span class="brand">Palp<small>{model.greeting ? `${model.patient ? 'patient' : 'surgeon'} site${model.mayControl ? '' : ', only to look'}` : 'monitor'}</small></span>
+    <span class={'state ' + words.tone} role={alarm ? 'alert' : 'status'} id="state" data-state={stale ? 'STALE' : s!.state}><b aria-hidden="true">{words.icon}</b><strong>{words.word}</strong><span>{words.text}</span></span>
+    <span class={'chip ' + (live ? 'ok' : 'bad')}><b aria-hidden="true">{live ? '✓' : '▲'}</b>Link {stale ? 'unknown' : s!.link.toLowerCase()} <em>{s && !stale ? `${s.round_trip_ms.toFixed(0)} ms` : ''}</em></span>
+    <span class={'chip ' + (s?.recording ? 'rec' : '')}><b aria-hidden="true">{s?.recording ? '●' : '○'}</b>{s?.recording ? 'Recording' : 'Not recording'}</span>
+    {!model.patient && <button class="ghost" aria-pressed={sound.on} onClick={() => sound.toggle()}>{sound.on ? 'Sound on' : 'Sound off'} <kbd>S</kbd></button>}
+    {model.mayControl && <button class="ghost" id="mark" onClick={() => void ask('mark')}>Mark <kbd>M</kbd></button>}
+    {model.mayControl && s?.state === 'STOPPED' && <button id="reset" onClick={() => void ask('reset')}>Reset <kbd>R</kbd></button>}
+    {model.mayControl && <button class="stop" id="stop" onClick={() => void ask('stop')}>Stop <kbd>Esc</kbd></button>}
+  </header>;
+}
+
+function Page() {
+  const [, redraw] = useState(0);
+  useEffect(() => { const timer = setInterval(() => redraw(n => n + 1), TEXT_MS); return () => clearInterval(timer); }, []);
+  const s = model.status, stale = model.stale(performance.now());
+  return <div class={'page' + (stale ? ' stale' : '')}>
+    <Bar stale={stale} />
+    <main>
+      <div class="left">
+        <Section model={model} pilot={pilot} control={model.hasPointer} />
+        <div class="pair"><Touch s={s} /><Inclusion /></div>
+      </div>
+      <div class="middle"><ForceStrip model={model} /><PlaceStrip model={model} /><Strokes /></div>
+      <aside class="right"><LinkCard s={s} stale={stale} /><Session s={s} /><Events /></aside>
+    </main>
+  </div>;
+}
+
+// What is shown, in numbers, for whoever automates a browser.
+Object.assign(window, {
+  palpStrokes: () => model.strokes.map(one => ({ ...one, verdict: one.depth?.verdict ?? '' })),
+  palpTip: () => { const s = model.status!; return { x: model.tipX(s), y: model.tipY(s), tip: model.tip(s) }; },
+});
+
+render(<Page />, document.getElementById('page')!);

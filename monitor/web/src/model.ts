@@ -1,0 +1,147 @@
+// All that the page knows of the session, and what it makes of it. Numbers in mm, N and ms.
+import type { Greeting } from './client';
+import type { Message } from './schema';
+
+export interface Status {
+  state: string; reason: string; refused: string; epoch: number;
+  position_mm: number; force_n: number; force_missing_n: number; x_mm: number; y_mm: number;
+  link: string; session: string; gap_ms: number; round_trip_ms: number;
+  peer_heard: boolean; peer_state: string; peer_sampled: boolean;
+  peer_position_mm: number; peer_force_n: number; peer_force_min_n: number; peer_force_max_n: number;
+  peer_x_mm: number; peer_y_mm: number;
+  ticks: number; ticks_missed: number; dropped: number; recording: boolean; clients: number;
+  pilot: number; pilot_name: string; pilot_obstacle: string;
+}
+
+export interface Depth { number: number; verdict: string; reason: string; depth: number; low: number; high: number; x: number; y: number }
+export interface Stroke { began: number; ended: number; x: number; y: number; press: number; force: number; stiffness: number; depth: Depth | undefined }
+export interface Happening { at: number; text: string; tone: '' | 'warn' | 'bad' }
+/** At the tissue and at the hand, newest last; extremes where the site told them. */
+export interface Trace { t: number[]; tip: number[]; hand: number[]; contact: number[]; contactMin: number[]; contactMax: number[]; felt: number[] }
+
+const SPAN_MS = 12500;
+const CONTACT_N = 0.12, AIR_N = 0.06;
+const KEPT = 200;
+const REASONS: Record<string, string> = {
+  STROKE_TOO_SHORT: 'the press was too shallow', STROKE_TOO_FEW_SAMPLES: 'the press was too quick',
+  STROKE_NOT_MONOTONE: 'the press went back and forth', NO_CONTACT: 'no contact was found',
+  FORCE_SATURATED: 'the force sensor was saturated', HASH_OUT_OF_RANGE: 'outside the range of the formula',
+  TOO_NOISY: 'the force is too noisy',
+};
+const number = (value: unknown): number => typeof value === 'number' ? value : 0;
+
+export class Model {
+  greeting: Greeting | undefined;
+  status: Status | undefined;
+  heardAt = 0;  // page time of the newest status
+  link: Message = {};
+  depth: Depth | undefined;
+  strokes: Stroke[] = [];  // newest first
+  happenings: Happening[] = [];  // newest first
+  trace: Trace = { t: [], tip: [], hand: [], contact: [], contactMin: [], contactMax: [], felt: [] };
+  refused = false;
+  private onset: { stroke: Stroke; tip: number; force: number } | undefined;
+  private lastDepth = 0;
+
+  get patient(): boolean { return this.greeting?.metadata.site === 'patient'; }
+  get mayControl(): boolean { return this.greeting?.metadata.right === 'control'; }
+  get hasPointer(): boolean { return this.mayControl && this.greeting?.metadata.pointer === 'yes'; }
+  get client(): number { return Number(this.greeting?.metadata.client ?? 0); }
+  get pilots(): boolean { return this.client !== 0 && this.status?.pilot === this.client; }
+
+  /** What nobody tells any more is old. */
+  stale(now: number): boolean { return !this.status || now - this.heardAt > 500; }
+
+  tip(s: Status): number { return this.patient ? s.position_mm : s.peer_position_mm; }
+  contact(s: Status): number { return this.patient ? s.force_n : s.peer_force_n; }
+  hand(s: Status): number { return this.patient ? s.peer_position_mm : s.position_mm; }
+  tipX(s: Status): number { return this.patient ? s.x_mm : s.peer_x_mm; }
+  tipY(s: Status): number { return this.patient ? s.y_mm : s.peer_y_mm; }
+  /** [ms] how old what is shown of the other site is: its way here, and the silence since. */
+  age(s: Status): number {
+    const way = number(this.link.delay_in_ns) / 1e6 || s.round_trip_ms / 2;
+    return this.patient ? 0 : way + s.gap_ms;
+  }
+
+  begin(greeting: Greeting): void {
+    if (this.greeting && this.greeting.sessionId !== greeting.sessionId) Object.assign(this, new Model());
+    // The site tells again what happened before.
+    this.happenings = [];
+    this.lastDepth = 0;
+    this.greeting = greeting;
+    this.refused = false;
+  }
+
+  hear(topic: string, stamp: number, message: Message, now: number): void {
+    if (topic === 'status') this.hearStatus(message as unknown as Status, stamp, now);
+    else if (topic === 'link') this.link = message;
+    else if (topic === 'depth') this.hearDepth(message, stamp);
+    else if (topic === 'event') this.hearEvent(message, stamp);
+  }
+
+  private hearStatus(s: Status, stamp: number, now: number): void {
+    this.status = s;
+    this.heardAt = now;
+    const t = this.trace;
+    t.t.push(stamp);
+    t.tip.push(this.tip(s));
+    t.hand.push(this.hand(s));
+    t.contact.push(this.contact(s));
+    t.contactMin.push(this.patient ? s.force_n : s.peer_force_min_n);
+    t.contactMax.push(this.patient ? s.force_n : s.peer_force_max_n);
+    t.felt.push(this.patient ? 0 : s.force_n);
+    let old = 0;
+    while (old < t.t.length && t.t[old]! < stamp - SPAN_MS) old++;
+    if (old > 50) for (const column of Object.values(t) as number[][]) column.splice(0, old);
+    this.follow(s, stamp);
+  }
+
+  /** A stroke: from the first touch until the tip is in the air again. */
+  private follow(s: Status, stamp: number): void {
+    const force = this.patient ? s.force_n : s.peer_force_max_n, tip = this.tip(s);
+    if (!this.onset) {
+      if (force < CONTACT_N || !s.peer_heard) return;
+      const stroke: Stroke = { began: stamp, ended: stamp, x: this.tipX(s), y: this.tipY(s), press: tip, force, stiffness: 0, depth: undefined };
+      this.onset = { stroke, tip, force };
+      this.strokes.unshift(stroke);
+      if (this.strokes.length > KEPT) this.strokes.pop();
+    }
+    const { stroke } = this.onset;
+    stroke.ended = stamp;
+    if (force > stroke.force) stroke.force = force;
+    if (tip > stroke.press) {
+      stroke.press = tip;
+      if (tip > this.onset.tip + 0.3) stroke.stiffness = (stroke.force - this.onset.force) / (tip - this.onset.tip) * 1e3;
+    }
+    if (force < AIR_N) this.onset = undefined;
+  }
+
+  private hearDepth(m: Message, stamp: number): void {
+    const depth: Depth = {
+      number: number(m.number), verdict: String(m.verdict), reason: String(m.reason),
+      depth: number(m.depth_m) * 1e3, low: number(m.depth_low_m) * 1e3, high: number(m.depth_high_m) * 1e3,
+      x: number(m.x_m) * 1e3, y: number(m.y_m) * 1e3,
+    };
+    if (depth.number === 0 || depth.number === this.lastDepth) return;
+    this.lastDepth = depth.number;
+    this.depth = depth;
+    const stroke = this.strokes.find(one => !one.depth && Math.hypot(one.x - depth.x, one.y - depth.y) < 1);
+    if (stroke) stroke.depth = depth;
+    this.happen(stamp, depth.verdict === 'FOUND' ? `Inclusion ${depth.depth.toFixed(1)} mm deep` : depth.verdict === 'NONE' ? 'No inclusion here' : `No depth: ${this.why(depth)}`, '');
+  }
+
+  why(depth: Depth): string { return REASONS[depth.reason] ?? depth.reason.toLowerCase().replaceAll('_', ' '); }
+
+  private hearEvent(m: Message, stamp: number): void {
+    const state = (value: unknown) => String(value).toLowerCase();
+    const text = m.kind === 'TRANSITION' ? `${state(m.to)}: ${String(m.text)}` : String(m.text) + (m.code === 49 ? ` (${number(m.detail)})` : '');
+    const to = m.kind === 'TRANSITION' ? state(m.to) : '';
+    this.happen(stamp, text.charAt(0).toUpperCase() + text.slice(1), to === 'stopped' ? 'bad' : to === 'hold' || to === 'retract' ? 'warn' : '');
+  }
+
+  happen(at: number, text: string, tone: Happening['tone']): void {
+    this.happenings.unshift({ at, text, tone });
+    this.happenings.sort((a, b) => b.at - a.at);
+    if (this.happenings.length > KEPT) this.happenings.pop();
+  }
+}

@@ -1,0 +1,88 @@
+#include "site_program/monitoring.h"
+
+#include <stdexcept>
+
+#include "common/io/process/entropy.h"
+#include "common/record/wall_clock.h"
+
+namespace palp::site_program {
+namespace {
+
+using monitor::Request;
+using record::NoteCode;
+
+/// 128 bits.
+std::string draw_token() {
+  return record::session_id_text(io::draw_entropy()) + record::session_id_text(io::draw_entropy());
+}
+
+NoteCode code_of(Request::Kind kind) {
+  switch (kind) {
+    case Request::Kind::Mark:
+      return NoteCode::MarkAsked;
+    case Request::Kind::Stop:
+      return NoteCode::StopAsked;
+    case Request::Kind::Reset:
+      return NoteCode::ResetAsked;
+    case Request::Kind::End:
+      return NoteCode::EndAsked;
+    case Request::Kind::PilotTook:
+      return NoteCode::PointerTaken;
+    case Request::Kind::PilotGave:
+      return NoteCode::PointerGiven;
+  }
+  return NoteCode::None;
+}
+
+}  // namespace
+
+Monitoring::Monitoring(const settings::MonitorSettings& settings,
+                       const Facts& facts,
+                       Recording& recording,
+                       std::optional<MonitoredSite> site) {
+  monitor::Feed* const feed = recording.feed();
+  if (!settings.serve || feed == nullptr) return;
+  tokens_.view = draw_token();
+  monitor::Controls controls;
+  if (site) {
+    tokens_.control = draw_token();
+    controls = {.requests = &requests_, .stops = site->stops, .pointer = site->pointer};
+  }
+  const std::string site_name{record::site_name(feed->site())};
+  monitor::ServerConfig config{.desk = {.site = feed->site(),
+                                        .program = "palp-" + site_name,
+                                        .run = record::session_id_text(io::draw_entropy()),
+                                        .facts = facts},
+                               .tokens = tokens_,
+                               .port = settings.port,
+                               .origins = {}};
+  if (!settings.origin.empty()) config.origins.push_back(settings.origin);
+  try {
+    server_ = std::make_unique<monitor::Server>(config, controls, *feed);
+  } catch (const std::runtime_error& error) {
+    fault_ = error.what();
+  }
+}
+
+Monitoring::~Monitoring() = default;
+
+void Monitoring::announce(StatusLine& line) const {
+  if (!fault_.empty()) line.warn(fault_ + "; the session goes on without a page");
+  if (!server_) return;
+  const std::string page = "http://127.0.0.1:" + std::to_string(server_->port()) + "/#";
+  if (!tokens_.control.empty()) line.info("monitor, with control: " + page + tokens_.control);
+  line.info("monitor, only to look: " + page + tokens_.view);
+}
+
+void Monitoring::look(Recording& recording, TimePoint now) {
+  for (Request request; requests_.try_dequeue(request);) {
+    recording.note(code_of(request.kind), request.client, now);
+    marks_ += request.kind == Request::Kind::Mark ? 1 : 0;
+    resets_ += request.kind == Request::Kind::Reset ? 1 : 0;
+    end_asked_ = end_asked_ || request.kind == Request::Kind::End;
+  }
+}
+
+void Monitoring::stop() { server_.reset(); }
+
+}  // namespace palp::site_program

@@ -1,0 +1,61 @@
+#include "monitor/outbox.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace palp::monitor {
+namespace {
+
+Frame passing(const std::string& body) { return {.text = false, .passing = true, .body = body}; }
+Frame answer(const std::string& body) { return {.text = true, .passing = false, .body = body}; }
+
+TEST(OutboxTest, TheNewestWinsAndAnswersStay) {
+  Outbox box{10};
+  box.push(answer("aaaa"));
+  for (const char* one : {"1111", "2222", "3333"}) box.push(passing(one));
+  EXPECT_EQ(box.dropped(), 2U);
+  EXPECT_EQ(box.begin_first().body, "aaaa");
+  box.pop();
+  EXPECT_EQ(box.begin_first().body, "3333");
+  box.pop();
+  EXPECT_TRUE(box.empty());
+  EXPECT_EQ(box.waiting(), 0U);
+}
+
+TEST(OutboxTest, WhatIsOnItsWayIsNotTakenAway) {
+  Outbox box{10};
+  box.push(passing("1111"));
+  const Frame& under_way = box.begin_first();
+  for (int i = 0; i < 100; ++i) box.push(passing("2222"));
+  EXPECT_EQ(under_way.body, "1111");
+  box.pop();
+  EXPECT_EQ(box.begin_first().body, "2222");
+}
+
+TEST(OutboxTest, AClientThatTakesNoAnswersIsHopeless) {
+  Outbox box{10};
+  for (int i = 0; i < 5; ++i) box.push(answer("aaaa"));
+  EXPECT_FALSE(box.hopeless());
+  box.push(answer("a"));
+  EXPECT_TRUE(box.hopeless());
+}
+
+RC_GTEST_PROP(OutboxTest,
+              NeverHoldsMoreThanItsBoundAndTheNewest,
+              (const std::vector<std::string>& all)) {
+  Outbox box{64};
+  for (const std::string& one : all) {
+    box.push(passing(one));
+    RC_ASSERT(box.waiting() <= std::max<std::size_t>(64, one.size()));
+  }
+  std::string last;
+  while (!box.empty()) {
+    last = box.begin_first().body;
+    box.pop();
+  }
+  const bool newest = all.empty() || last == all.back();
+  RC_ASSERT(newest);
+}
+
+}  // namespace
+}  // namespace palp::monitor
