@@ -108,7 +108,7 @@ try {
   await page.until('/moment marked/i.test(document.getElementById("events").innerText)', 'the mark');
   result.depth = await number(page, 'depth');
   result.interval = await page.text('interval');
-  result.strokes = await page.eval('window.palpStrokes()');
+  result.strokes = (await page.eval('window.palpStrokes()')).filter(one => one.force > 0);
   await shootAll(page, 'found');
   result.errors.push(...page.errors);
 
