@@ -59,7 +59,7 @@ const number = async (page, id) => Number.parseFloat(await page.text(id));
 /** At x [mm]; a machine that is busy may let the hand go on the way, as it would a person's. */
 async function tap(page, x) {
   const hand = new Hand(page);
-  for (let tries = 0; tries < 8; tries++) {
+  for (let tries = 0; tries < 30; tries++) {
     await page.state('CLUTCHED');
     await page.until('/Press and hold/.test(document.getElementById("state").innerText) || /stands in the tissue/.test(document.getElementById("state").innerText)', 'a hand that may press');
     try {
