@@ -88,6 +88,7 @@ TEST(DeskTest, WhoOnlyLooksMayAskForNothing) {
     EXPECT_EQ(rig.call(client, service)["message"].text(), "this client may only look");
   }
   rig.publish_pointer(client);
+  EXPECT_THAT(rig.next(client), HasSubstr("may not publish there"));
   EXPECT_TRUE(rig.point(client, kHeld));
   Request request;
   EXPECT_FALSE(rig.requests.try_dequeue(request));

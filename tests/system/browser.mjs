@@ -92,7 +92,7 @@ export class Page {
   }
   text(id) { return this.eval(`document.getElementById('${id}')?.innerText ?? ''`); }
   /** Waits until the expression holds; says what it waited for. */
-  async until(expression, what, ms = 15000) {
+  async until(expression, what, ms = 60000) {
     for (const end = Date.now() + ms; ;) {
       if (await this.eval(`!!(${expression})`).catch(() => false)) return;
       if (Date.now() > end) throw new Error(`waited ${ms} ms for: ${what}; state ${await this.text('state').catch(() => '?')}`);

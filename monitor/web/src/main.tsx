@@ -119,7 +119,7 @@ function Strokes() {
     <header><h2>Strokes</h2><span class="unit">newest first</span></header>
     <div class="scroll" tabIndex={0} aria-label="Table of strokes"><table><thead><tr><th>time</th><th>place<small> mm</small></th><th>press<small> mm</small></th><th>force<small> N</small></th><th>stiffness<small> N/m</small></th><th>inclusion<small> mm</small></th></tr></thead>
       <tbody id="strokes">{model.strokes.map(one => <tr key={one.began}>
-        <td>{clock(one.began)}</td><td>{one.x.toFixed(1)}</td><td>{one.press.toFixed(1)}</td><td>{one.force.toFixed(2)}</td>
+        <td>{clock(one.began)}</td><td>{one.x.toFixed(1)}</td><td>{one.force > 0 ? one.press.toFixed(1) : '-'}</td><td>{one.force > 0 ? one.force.toFixed(2) : '-'}</td>
         <td>{one.stiffness > 0 ? one.stiffness.toFixed(0) : '-'}</td>
         <td class={one.depth?.verdict === 'FOUND' ? '' : 'dim'}>{!one.depth ? '-' : one.depth.verdict === 'FOUND' ? one.depth.depth.toFixed(1) : one.depth.verdict === 'NONE' ? 'none' : '?'}</td>
       </tr>)}</tbody></table>
@@ -173,7 +173,7 @@ function Bar({ stale }: { stale: boolean }) {
     <span class="brand">Palp<small>{model.greeting ? `${model.patient ? 'patient' : 'surgeon'} site${model.mayControl ? '' : ', only to look'}` : 'monitor'}</small></span>
     <span class={'state ' + words.tone} role={alarm ? 'alert' : 'status'} id="state" data-state={stale ? 'STALE' : s!.state}><b aria-hidden="true">{words.icon}</b><strong>{words.word}</strong><span>{words.text}</span></span>
     <span class={'chip ' + (live ? 'ok' : 'bad')}><b aria-hidden="true">{live ? '✓' : '▲'}</b>Link {stale ? 'unknown' : s!.link.toLowerCase()} <em>{s && !stale ? `${s.round_trip_ms.toFixed(0)} ms` : ''}</em></span>
-    <span class={'chip ' + (s?.recording ? 'rec' : '')}><b aria-hidden="true">{s?.recording ? '●' : '○'}</b>{s?.recording ? 'Recording' : 'Not recording'}</span>
+    <span class={'chip ' + (s?.recording && !stale ? 'rec' : '')}><b aria-hidden="true">{s?.recording && !stale ? '●' : '○'}</b>{stale ? 'Recording unknown' : s?.recording ? 'Recording' : 'Not recording'}</span>
     {!model.patient && <button class="ghost" aria-pressed={sound.on} onClick={() => sound.toggle()}>{sound.on ? 'Sound on' : 'Sound off'} <kbd>S</kbd></button>}
     {model.mayControl && <button class="ghost" id="mark" onClick={() => void ask('mark')}>Mark <kbd>M</kbd></button>}
     {model.mayControl && s?.state === 'STOPPED' && <button id="reset" onClick={() => void ask('reset')}>Reset <kbd>R</kbd></button>}

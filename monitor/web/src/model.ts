@@ -127,6 +127,8 @@ export class Model {
     this.depth = depth;
     const stroke = this.strokes.find(one => !one.depth && Math.hypot(one.x - depth.x, one.y - depth.y) < 1);
     if (stroke) stroke.depth = depth;
+    // Of before this page was opened: what it felt like nobody knows any more.
+    else this.strokes.unshift({ began: stamp, ended: stamp, x: depth.x, y: depth.y, press: 0, force: 0, stiffness: 0, depth });
     this.happen(stamp, depth.verdict === 'FOUND' ? `Inclusion ${depth.depth.toFixed(1)} mm deep` : depth.verdict === 'NONE' ? 'No inclusion here' : `No depth: ${this.why(depth)}`, '');
   }
 
