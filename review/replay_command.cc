@@ -91,11 +91,13 @@ std::string said_of(const std::optional<DepthEstimate>& estimate) {
   return statement.says;
 }
 
+std::string lack_line(const std::string& lack) { return lack.empty() ? "" : "; the file " + lack; }
+
 std::string describe(const WhatIf& result, const ReplayAsk& ask) {
   std::string text = std::to_string(result.ticks) +
                      " ticks given to other parts; hand, stage and " +
                      "tissue did what the file says, so this is what would have been said, not " +
-                     "what would have happened\n";
+                     "what would have happened" + lack_line(result.lack) + '\n';
   if (!ask.coupling.empty()) {
     text += "target of the stage: " + number_text("", result.target_rms * 1e3, 3, " mm rms, ") +
             number_text("", result.target_max * 1e3, 3, " mm at most") +
@@ -118,7 +120,8 @@ ReplayAnswer answer_of(const ReplayReport& report) {
   answer.text = answer.same
                     ? std::to_string(report.ticks) + " ticks, " + std::to_string(report.records) +
                           " records and " + std::to_string(report.estimates) +
-                          " estimates done again: every bit is the same\n"
+                          " estimates done again: every bit is the same" + lack_line(report.lack) +
+                          '\n'
                     : "first difference: " + report.difference + '\n';
   return answer;
 }
