@@ -1,12 +1,6 @@
 #include "patient_site/estimator_worker.h"
 
 namespace palp::patient {
-namespace {
-
-// Of the air before contact: enough to see how the surface was found.
-constexpr double kAirRecorded = 1e-3;  // [m]
-
-}  // namespace
 
 EstimatorWorker::EstimatorWorker(const depth::DepthEstimatorConfig& config, Parts parts)
     : estimator_{config}, parts_{parts} {}
@@ -27,11 +21,6 @@ std::size_t EstimatorWorker::drain() {
 void EstimatorWorker::publish(const DepthEstimate& estimate) {
   ++strokes_;
   parts_.depth.put(estimate);
-  const bool surface_known = estimate.indentation_max > 0;
-  for (const depth::StrokeSample& sample : estimator_.stroke()) {
-    if (surface_known && sample.position < estimate.surface - kAirRecorded) continue;
-    record(sample.measured);
-  }
   record(estimate);
 }
 

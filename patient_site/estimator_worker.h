@@ -11,7 +11,7 @@
 namespace palp::patient {
 
 /// Runs the depth estimator beside the node: takes its samples from a queue, leaves estimates in a
-/// mailbox, and records each stroke with its estimate. Thread: estimator's, or the lab's; whoever
+/// mailbox, and records it. Thread: estimator's, or the lab's; whoever
 /// calls drain(). Owns the estimator; the rest outlives it. The recorder is its own, not the
 /// node's.
 class EstimatorWorker {

@@ -140,6 +140,8 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   info.metadata.emplace_back("force_sensor", describe(facts.sensor));
   if (*devices) {
     info.attachments.push_back({"devices.textproto", "text/plain", (*devices)->text});
+    info.metadata.emplace_back(kSensorStaleKey,
+                               std::to_string(settings->node.sensor_stale.count()));
   }
   if (tissue_known) describe_tissue(*phantom, simulation.surface_offset, settings->node.gate, info);
   return Plan{std::move(*settings),

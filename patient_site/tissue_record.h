@@ -16,5 +16,7 @@ void describe_tissue(const Phantom& phantom,
 
 /// Of the metadata: MotionGateConfig::travel_max as it was [m].
 inline constexpr const char* kTravelMaxKey = "gate_travel_max_m";
+/// Of the metadata: PatientConfig::sensor_stale as the devices' file made it [ns].
+inline constexpr const char* kSensorStaleKey = "sensor_stale_ns";
 
 }  // namespace palp::patient

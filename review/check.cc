@@ -2,13 +2,13 @@
 
 #include "common/core/printable.h"
 #include "common/record/session_reader.h"
+#include "review/lack.h"
 
 namespace palp::review {
+namespace {
 
-std::optional<std::string> first_fault(const record::FileBytes& file) {
-  record::SessionReader reader{file};
-  while (reader.next()) {
-  }
+/// Of a file that was read to its end.
+std::optional<std::string> fault_of(const record::SessionReader& reader) {
   const record::McapReadReport& report = reader.report();
   if (!report.faults.empty()) {
     return "at byte " + std::to_string(report.faults.front().offset) + ": " +
@@ -38,4 +38,14 @@ std::optional<std::string> first_fault(const record::FileBytes& file) {
   return std::nullopt;
 }
 
+}  // namespace
+
+Checked checked(const record::FileBytes& file) {
+  record::SessionReader reader{file};
+  while (reader.next()) {
+  }
+  Checked found{.fault = fault_of(reader), .lack = {}};
+  if (!found.fault) found.lack = lack_of(reader);
+  return found;
+}
 }  // namespace palp::review

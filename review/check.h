@@ -9,8 +9,11 @@
 
 namespace palp::review {
 
-/// The first fault of a session file in one sentence; nullopt: it is whole, closed, and every
-/// message decodes.
-[[nodiscard]] std::optional<std::string> first_fault(const record::FileBytes& file);
+struct Checked {
+  /// The first fault, in one sentence; nullopt: it is whole, closed, and every message decodes.
+  std::optional<std::string> fault;
+  std::string lack;  ///< of a file without fault, as lack_of() has it
+};
+[[nodiscard]] Checked checked(const record::FileBytes& file);
 
 }  // namespace palp::review

@@ -88,12 +88,11 @@ Json link_json(const Asked& asked, const SiteData& surgeon, const Json& report, 
                    {"loss", value(asked.loss)}};
   link["achieved"]["rtt_p50_ms"] =
       first_known({member(report, "round_trip_p50_ms"), value(round_trip_median_ms(surgeon))});
-  link["achieved"]["telegrams_lost"] = nullptr;
-  link["achieved"]["telegrams_accepted"] = nullptr;
-  if (surgeon.last_link) {
-    link["achieved"]["telegrams_lost"] = surgeon.last_link->health.lost;
-    link["achieved"]["telegrams_accepted"] = surgeon.last_link->health.accepted;
-  }
+  const auto& last = surgeon.last_link;
+  link["achieved"]["telegrams_lost"] =
+      first_known({member(report, "lost"), last ? Json(last->health.lost) : Json(nullptr)});
+  link["achieved"]["telegrams_accepted"] =
+      first_known({member(report, "accepted"), last ? Json(last->health.accepted) : Json(nullptr)});
   link["achieved"]["up"] = direction_json(relay, "up");
   link["achieved"]["down"] = direction_json(relay, "down");
   return link;
@@ -163,6 +162,7 @@ Json site_json(const SiteData& site, const Json& report, const std::string& path
   Json json;
   json["session_file"] = first_known({member(report, "session_file"), path});
   json["closed"] = site.report.closed;
+  json["lack"] = text_or_null(site.report.lack);
   json["messages"] = site.report.messages;
   json["ticks"] = first_known({member(report, "ticks"), site.ticks});
   json["missed_ticks"] = member(report, "missed_ticks");

@@ -2,6 +2,7 @@
 
 #include "common/core/printable.h"
 #include "common/record/session_reader.h"
+#include "review/lack.h"
 #include "review/text.h"
 
 namespace palp::review {
@@ -24,7 +25,8 @@ std::string describe_topics(const record::SessionReader& reader) {
 std::string describe_end(const record::SessionReader& reader) {
   const record::McapReadReport& report = reader.report();
   if (report.closed) {
-    return "closed in order\n";
+    const std::string lack = lack_of(reader);
+    return lack.empty() ? "closed in order\n" : "closed in order; the file " + lack + '\n';
   }
   std::string text{"the file was not closed; " + std::to_string(report.messages) +
                    " messages read"};

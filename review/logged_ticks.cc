@@ -3,6 +3,7 @@
 #include <variant>
 
 #include "common/record/notes.h"
+#include "review/lack.h"
 
 namespace palp::review {
 namespace {
@@ -13,17 +14,25 @@ bool of_no_tick(const Record& record) {
   if (const auto* note = std::get_if<Note>(&record)) {
     return static_cast<NoteCode>(note->code) >= NoteCode::Marked;
   }
-  return std::holds_alternative<ContactSample>(record) ||
-         std::holds_alternative<DepthEstimate>(record) ||
+  return std::holds_alternative<DepthEstimate>(record) ||
          std::holds_alternative<PlantTruth>(record);
 }
 
+std::uint64_t torn_in(const record::SessionReader& reader) {
+  return reader.report().chunks_damaged + reader.missing();
+}
+
 }  // namespace
+
+std::uint64_t LoggedTicks::damaged() const { return damaged_ + (reader_ ? torn_in(*reader_) : 0); }
 
 std::optional<LoggedTick> LoggedTicks::next() {
   LoggedTick tick;
   while (const auto entry = next_entry()) {
     if (of_no_tick(entry->record)) continue;
+    if (const auto* status = std::get_if<LinkStatus>(&entry->record)) {
+      dropped_ = status->records_dropped;
+    }
     tick.add(entry->record);
     if (!tick.heard) continue;
     began_at_ = began_at_.value_or(tick.heard->at);
@@ -32,11 +41,21 @@ std::optional<LoggedTick> LoggedTicks::next() {
   return std::nullopt;
 }
 
+std::uint64_t LoggedTicks::dropped_up_to_the_next_status() {
+  while (const auto entry = next_entry()) {
+    if (const auto* status = std::get_if<LinkStatus>(&entry->record)) {
+      return dropped_ = status->records_dropped;
+    }
+  }
+  return dropped_;
+}
+
 std::optional<record::SessionEntry> LoggedTicks::next_entry() {
   while (present_ < files_.size()) {
     if (!reader_) reader_.emplace(files_[present_]);
     if (auto entry = reader_->next()) return entry;
-    damaged_ += reader_->report().chunks_damaged;
+    damaged_ += torn_in(*reader_);
+    if (lack_.empty()) lack_ = lack_of(*reader_);
     reader_.reset();
     ++present_;
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/link/telegram.h"
@@ -72,10 +73,13 @@ class LoggedTicks {
   explicit LoggedTicks(const RunBytes& files) : files_{files} {}
   /// Without what the estimator's thread and the lab said; nullopt: the end.
   std::optional<LoggedTick> next();
-  /// Chunks that could not be read, so far: their ticks are missing.
-  [[nodiscard]] std::uint64_t damaged() const noexcept {
-    return damaged_ + (reader_ ? reader_->report().chunks_damaged : 0);
-  }
+  /// Chunks that could not be read and messages that are missing, so far.
+  [[nodiscard]] std::uint64_t damaged() const;
+  /// Records that never came into the file, as its statuses tell up to the next one, which is read
+  /// for it: next() must not follow. 0: none.
+  std::uint64_t dropped_up_to_the_next_status();
+  /// Of the first file that lacks something, as lack_of() has it; complete at the end.
+  [[nodiscard]] const std::string& lack() const noexcept { return lack_; }
   /// Of the first tick; next() has given one.
   [[nodiscard]] TimePoint began_at() const { return began_at_.value_or(TimePoint{}); }
 
@@ -85,6 +89,8 @@ class LoggedTicks {
   const RunBytes& files_;
   std::size_t present_{};
   std::uint64_t damaged_{};  ///< in files read to their end
+  std::uint64_t dropped_{};  ///< as the newest status tells
+  std::string lack_;
   std::optional<record::SessionReader> reader_;
   std::optional<TimePoint> began_at_;
 };

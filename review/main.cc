@@ -13,6 +13,7 @@
 #include "common/core/whole_file.h"
 #include "common/record/mapped_file.h"
 #include "common/record/mcap_reader.h"
+#include "common/record/session_encoder.h"
 #include "review/check.h"
 #include "review/compare.h"
 #include "review/demo_report.h"
@@ -70,11 +71,13 @@ ExitStatus run_check(const std::string& path) {
   if (!file) {
     return exit_status_of(file.error());
   }
-  if (const auto fault = first_fault(file->bytes())) {
-    std::cout << harmless_line(path) << ": " << *fault << '\n';
+  const Checked found = checked(file->bytes());
+  if (found.fault) {
+    std::cout << harmless_line(path) << ": " << *found.fault << '\n';
     return {ExitCode::Missed, {}};
   }
-  std::cout << harmless_line(path) << ": whole, closed, every message decodes\n";
+  std::cout << harmless_line(path) << ": whole, closed, every message decodes"
+            << (found.lack.empty() ? "" : "; the file " + found.lack) << '\n';
   return {};
 }
 
@@ -269,7 +272,14 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
       judge_session(*session, tissue ? &*tissue : nullptr, flags.page.empty() ? nullptr : &curves);
   auto taps = match_taps(*surgeon, *patient, session->time_line, judged.excursions);
   if (judged.by_truth) take_truth(taps, *session, judged.run_began, judged.metrics.taps);
-  if (!flags.json && flags.page.empty()) std::cout << tap_table(taps, overall_depth(taps));
+  if (!flags.json && flags.page.empty()) {
+    std::cout << tap_table(taps, overall_depth(taps));
+    for (const SiteData* site : {surgeon, patient}) {
+      if (site->report.lack.empty()) continue;
+      std::cout << "the " << record::site_name(site->site) << "'s file " << site->report.lack
+                << '\n';
+    }
+  }
   if (flags.report.empty() && flags.page.empty() && !flags.json) {
     return {};
   }

@@ -11,13 +11,24 @@ namespace {
 
 using Sorted = std::vector<const Record*>;
 
-/// The samples that arrived first, else as they are.
+/// A tick's own message stands behind the others of its instant, and begins with the sample.
+int order_of(const Record* one) {
+  if (std::holds_alternative<Arrived>(*one)) return 0;
+  if (std::holds_alternative<SiteTick>(*one)) return 2;
+  const bool reading = std::holds_alternative<HandReading>(*one) ||
+                       std::holds_alternative<StageReading>(*one) ||
+                       std::holds_alternative<ForceReading>(*one);
+  return reading || std::holds_alternative<LinkHeard>(*one) ? 3 : 1;
+}
+
+/// However a file tells them: as messages of their own, or within the tick.
 Sorted sorted(const std::vector<Record>& records) {
   Sorted list;
   list.reserve(records.size());
   for (const Record& record : records) list.push_back(&record);
-  const auto arrived = [](const Record* one) { return std::holds_alternative<Arrived>(*one); };
-  std::stable_partition(list.begin(), list.end(), arrived);
+  std::stable_sort(list.begin(), list.end(), [](const Record* a, const Record* b) {
+    return order_of(a) < order_of(b);
+  });
   return list;
 }
 

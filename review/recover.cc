@@ -5,6 +5,7 @@
 #include "common/core/printable.h"
 #include "common/record/mcap_writer.h"
 #include "common/record/wall_clock.h"
+#include "review/lack.h"
 
 namespace palp::review {
 namespace {
@@ -78,8 +79,9 @@ Result<Recovery> recover(const record::FileBytes& file, record::ByteSink& out) {
     std::visit(copy, *item);
   }
   const record::McapReadReport& report = reader.report();
-  copy.writer().add_metadata("palp.recovered",
-                             {{"chunks_damaged", std::to_string(report.chunks_damaged)},
+  copy.writer().add_metadata(kRecoveredRecord,
+                             {{"was_closed", report.closed ? "yes" : "no"},
+                              {"chunks_damaged", std::to_string(report.chunks_damaged)},
                               {"bytes_unread", std::to_string(report.bytes_unread)},
                               {"faults", std::to_string(report.fault_count)}});
   copy.writer().close();

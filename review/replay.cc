@@ -39,6 +39,14 @@ tl::unexpected<Error> torn(const LoggedTick& tick) {
                           " s, and a site is done again only from all of its ticks"));
 }
 
+tl::unexpected<Error> lost(std::uint64_t records, const LoggedTick& tick) {
+  return fail(std::to_string(records) +
+              number_text(" records were lost as the file was written, and its tick at ",
+                          seconds(tick.heard->at.time_since_epoch()),
+                          6,
+                          " s lies behind them: a site is done again only from all of its ticks"));
+}
+
 using Estimates = std::map<std::uint32_t, DepthEstimate>;
 
 Estimates estimates_of(const RunBytes& files) {
@@ -183,6 +191,9 @@ class PatientRun {
   [[nodiscard]] const std::optional<DepthEstimate>& estimate() const { return estimate_; }
   [[nodiscard]] const Estimates& logged() const { return estimates_; }
   [[nodiscard]] TimePoint began_at() const { return ticks_.began_at(); }
+  [[nodiscard]] const std::string& lack() const { return ticks_.lack(); }
+  /// As LoggedTicks::dropped_up_to_the_next_status().
+  std::uint64_t dropped() { return ticks_.dropped_up_to_the_next_status(); }
 
  private:
   const PatientParts& parts_;
@@ -212,6 +223,7 @@ Result<ReplayReport> replay_surgeon(const RunBytes& files,
   RecordComparison comparison{link::Role::Surgeon};
   std::optional<SurgeonAgain> site;
   while (const auto tick = ticks.next()) {
+    if (ticks.damaged() > 0) return torn(*tick);
     if (!tick->hand) return lacks("no reading of the hand", *tick);
     if (!site || tick->own_devices) {
       if (!tick->own_devices || !tick->own_devices->hand) return lacks("no device", *tick);
@@ -220,10 +232,12 @@ Result<ReplayReport> replay_surgeon(const RunBytes& files,
     const std::vector<Record>& again = site->step(*tick);
     ++report.ticks;
     report.records += again.size();
-    if (ticks.damaged() > 0) return torn(*tick);
     report.difference = comparison.compare(tick->records, again, ticks.began_at());
-    if (!report.difference.empty()) break;
+    if (report.difference.empty()) continue;
+    if (const auto records = ticks.dropped_up_to_the_next_status()) return lost(records, *tick);
+    break;
   }
+  report.lack = ticks.lack();
   return report;
 }
 
@@ -232,6 +246,7 @@ Result<ReplayReport> replay_patient(const RunBytes& files, const PatientParts& p
   ReplayReport report;
   RecordComparison comparison{link::Role::Patient};
   PatientRun run{files, parts};
+  std::size_t missing = 0;  // estimates
   while (true) {
     const auto tick = run.next();
     if (!tick) return tl::unexpected(tick.error());
@@ -239,14 +254,24 @@ Result<ReplayReport> replay_patient(const RunBytes& files, const PatientParts& p
     ++report.ticks;
     report.records += run.again().size();
     report.difference = comparison.compare((*tick)->records, run.again(), run.began_at());
-    if (!report.difference.empty()) break;
+    if (!report.difference.empty()) {
+      if (const auto records = run.dropped()) return lost(records, **tick);
+      break;
+    }
     if (!run.estimate()) continue;
-    ++report.estimates;
     const auto logged = run.logged().find(run.estimate()->number);
-    if (logged == run.logged().end()) return fail("an estimate that the file does not hold");
+    if (logged == run.logged().end()) {
+      ++missing;
+      continue;
+    }
+    ++report.estimates;
     report.difference = comparison.compare({logged->second}, {*run.estimate()}, run.began_at());
     if (!report.difference.empty()) break;
   }
+  report.lack = run.lack();
+  // A program that is killed has no time for its last one.
+  const bool whole = report.difference.empty() && report.lack.empty();
+  if (whole && missing > 0) return fail("an estimate that the file does not hold");
   return report;
 }
 
@@ -281,6 +306,7 @@ Result<WhatIf> what_if_patient(const RunBytes& files, const PatientParts& parts)
   if (both > 0) report.target_rms = std::sqrt(square / static_cast<double>(both));
   report.estimates.reserve(estimates.size());
   for (const auto& [number, one] : estimates) report.estimates.push_back(one);
+  report.lack = run.lack();
   return report;
 }
 

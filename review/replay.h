@@ -23,6 +23,7 @@ struct ReplayReport {
   /// The first, as "topic, time, field: what it was and became", the time since the run began;
   /// empty: every bit is the same.
   std::string difference;
+  std::string lack;  ///< of the files, as lack_of() has it, where all of them was done again
 };
 
 /// Does the ticks of a surgeon's files again: a new control and a new law are given what the files
@@ -61,6 +62,7 @@ struct WhatIf {
   std::uint64_t gate_acted{};   ///< ticks, of the files
   std::uint64_t gate_would{};   ///< ticks
   std::vector<OtherEstimate> estimates;
+  std::string lack;  ///< as a report's
 };
 [[nodiscard]] Result<WhatIf> what_if_patient(const RunBytes& files, const PatientParts& parts);
 

@@ -17,11 +17,14 @@
 namespace palp::review {
 namespace {
 
+constexpr double kSensorStaleMax = 60;  ///< [s], a file may say anything
+
 /// What a run's files say of themselves.
 struct RunFacts {
   link::Role site{};
-  std::string settings;  ///< of the first file
-  std::optional<double> travel_max;
+  std::string settings;                  ///< of the first file
+  std::optional<double> travel_max;      ///< [m]
+  std::optional<Duration> sensor_stale;  ///< nothing: as the settings have it
 };
 
 /// Of one file, without reading it to its end.
@@ -31,6 +34,7 @@ struct FileFacts {
   std::string run;
   std::string settings;
   std::string travel_max;
+  std::string sensor_stale;
 };
 
 Result<FileFacts> facts_of_file(const record::FileBytes& file) {
@@ -41,7 +45,8 @@ Result<FileFacts> facts_of_file(const record::FileBytes& file) {
                   .number = entry("file_number"),
                   .run = entry("run_began_utc"),
                   .settings = std::string{reader.attachment("config.textproto").value_or("")},
-                  .travel_max = entry(patient::kTravelMaxKey)};
+                  .travel_max = entry(patient::kTravelMaxKey),
+                  .sensor_stale = entry(patient::kSensorStaleKey)};
   if (facts.site != "surgeon" && facts.site != "patient") {
     return fail("the file is no site's session file");
   }
@@ -66,6 +71,9 @@ Result<RunFacts> facts_of_run(const RunBytes& files) {
     run.site = facts->site == "surgeon" ? link::Role::Surgeon : link::Role::Patient;
     run.settings = facts->settings;
     run.travel_max = config::parse_number(facts->travel_max);
+    if (const auto stale = config::parse_number(facts->sensor_stale)) {
+      run.sensor_stale = from_seconds(std::clamp(*stale * 1e-9, 0.0, kSensorStaleMax));
+    }
   }
   if (run.settings.empty()) return fail("the file holds no settings (config.textproto)");
   return run;
@@ -91,11 +99,13 @@ std::string said_of(const std::optional<DepthEstimate>& estimate) {
   return statement.says;
 }
 
+std::string lack_line(const std::string& lack) { return lack.empty() ? "" : "; the file " + lack; }
+
 std::string describe(const WhatIf& result, const ReplayAsk& ask) {
   std::string text = std::to_string(result.ticks) +
                      " ticks given to other parts; hand, stage and " +
                      "tissue did what the file says, so this is what would have been said, not " +
-                     "what would have happened\n";
+                     "what would have happened" + lack_line(result.lack) + '\n';
   if (!ask.coupling.empty()) {
     text += "target of the stage: " + number_text("", result.target_rms * 1e3, 3, " mm rms, ") +
             number_text("", result.target_max * 1e3, 3, " mm at most") +
@@ -118,7 +128,8 @@ ReplayAnswer answer_of(const ReplayReport& report) {
   answer.text = answer.same
                     ? std::to_string(report.ticks) + " ticks, " + std::to_string(report.records) +
                           " records and " + std::to_string(report.estimates) +
-                          " estimates done again: every bit is the same\n"
+                          " estimates done again: every bit is the same" + lack_line(report.lack) +
+                          '\n'
                     : "first difference: " + report.difference + '\n';
   return answer;
 }
@@ -148,6 +159,7 @@ Result<ReplayAnswer> patient_again(const RunBytes& files,
   if (!settings) return tl::unexpected(settings.error());
   PatientParts parts{settings->node, settings->coupling, settings->estimator};
   if (run.travel_max) parts.config.gate.travel_max = *run.travel_max;
+  if (run.sensor_stale) parts.config.sensor_stale = *run.sensor_stale;
   if (ask.another()) {
     const auto result = what_if_patient(files, parts);
     if (!result) return tl::unexpected(result.error());

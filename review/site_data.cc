@@ -9,6 +9,7 @@
 #include "common/record/session_encoder.h"
 #include "common/record/session_reader.h"
 #include "common/record/session_writer.h"
+#include "review/lack.h"
 #include "review/thinned.h"
 
 namespace palp::review {
@@ -138,7 +139,8 @@ Result<SiteData> load_site(const record::FileBytes& file,
     std::visit(collector, entry->record);
   }
   collector.finish();
-  data.report = reader.report();
+  static_cast<record::McapReadReport&>(data.report) = reader.report();
+  data.report.lack = lack_of(reader);
   if (data.report.messages == 0) {
     return fail(name + ": " +
                 (data.report.faults.empty() ? "there is no message of a session in it"

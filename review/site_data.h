@@ -41,6 +41,10 @@ struct PhaseChange {
 /// Kept of each list of a file that holds more: no session of a day does.
 inline constexpr std::size_t kListMax = 32768;
 
+struct FileReport : record::McapReadReport {
+  std::string lack;  ///< as lack_of() has it
+};
+
 /// What one session file says besides its ticks, which TickSource reads one by one: a file of hours
 /// takes no more memory than one of minutes.
 struct SiteData {
@@ -68,7 +72,7 @@ struct SiteData {
   std::optional<std::string> program_report;   ///< of the program, as JSON, where it was closed
   std::uint64_t records{};                     ///< decoded
   std::optional<std::string> records_dropped;  ///< from the summary
-  record::McapReadReport report;
+  FileReport report;
 
   [[nodiscard]] std::optional<std::string> entry(const std::string& key) const;
   /// nullopt: absent, or not a finite number.

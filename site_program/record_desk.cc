@@ -146,15 +146,23 @@ void RecordDesk::work(TimePoint now) {
 }
 
 void RecordDesk::drain() {
-  dropped_ = 0;
   for (const auto& queue : queues_) {
     const bool ticks = queue == queues_.front() && !prefix_.empty();
-    queue->drain([&](const Record& record) { ticks ? write_tick(record) : write(record); });
-    dropped_ += queue->dropped();
+    queue->drain([&](const Record& record) {
+      // Whoever reads the file knows of a gap from the first status behind it.
+      if (std::holds_alternative<LinkStatus>(record)) count_dropped();
+      ticks ? write_tick(record) : write(record);
+    });
   }
-  if (writer_) writer_->set_dropped(dropped_);
+  count_dropped();
   if (feed_) feed_->tell(writer_ && !writer_->failed());
   write_peer();
+}
+
+void RecordDesk::count_dropped() {
+  dropped_ = 0;
+  for (const auto& queue : queues_) dropped_ += queue->dropped();
+  if (writer_) writer_->set_dropped(dropped_);
 }
 
 /// The peer may be known before the first tick of its session is here.

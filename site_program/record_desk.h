@@ -74,6 +74,7 @@ class RecordDesk {
 
  private:
   void drain();
+  void count_dropped();
   void write(const Record& record);
   void write_tick(const Record& record);
   [[nodiscard]] std::string next_path() const;

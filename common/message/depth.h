@@ -59,16 +59,6 @@ struct DepthReport {
 
 namespace message {
 
-template <std::same_as<ContactSample> S>
-inline constexpr auto fields<S> = list({.log = "ContactReading"},
-                                       aside<&S::at>("at_ns"),
-                                       field<1, &S::position>("tip_m"),
-                                       field<2, &S::force>("force_n"),
-                                       field<3, &S::place, &Place::x>("x_m"),
-                                       field<4, &S::place, &Place::y>("y_m"),
-                                       field<5, &S::position_age>("tip_age_ns"),
-                                       field<6, &S::force_age>("force_age_ns"));
-
 template <std::same_as<DepthEstimate> S>
 inline constexpr auto fields<S> = list({.log = "DepthEstimate"},
                                        field<1, &S::number>("number"),

@@ -34,6 +34,7 @@ struct Names {
   std::string_view log{};          ///< in session_log.proto
   std::string_view log_patient{};  ///< there, where the patient's has another name
   std::string_view shared{};       ///< in shared.proto: the same bytes on the wire and in the log
+  bool one_site{};                 ///< only the site whose name stands in `log...` has it
 };
 
 /// The name of a field, of which the unit may differ between the sites.

@@ -4,16 +4,20 @@
 
 #include "common/message/record.h"
 
-/// What one tick was given, gathered into one message: five small ones a tick, each with its place
-/// in the file's index, take twice the room. Files only: a site records the parts.
+/// One tick in one message: six small ones a tick, each with its place in the file's index, take
+/// twice the room. Files only: a site records the parts.
 namespace palp {
+
+/// What a tick was given.
 
 struct SurgeonGiven {
   TimePoint at{};
   HandReading hand;
   LinkHeard heard;
-  bool sampled{};   ///< a sample arrived: `arrived`, and before it those of messages of their own
+  /// That arrived; of more than these two the others have messages of their own, which come before.
+  std::uint32_t samples{};
   Arrived arrived;  ///< the last one
+  Arrived earlier;  ///< the one before it
 };
 
 struct PatientGiven {
@@ -21,8 +25,24 @@ struct PatientGiven {
   StageReading stage;
   ForceReading force;
   LinkHeard heard;
-  bool sampled{};   ///< as the surgeon's
-  Arrived arrived;  ///< as the surgeon's
+  std::uint32_t samples{};  ///< as the surgeon's, as are the next
+  Arrived arrived;
+  Arrived earlier;
+};
+
+/// A tick with what it was given.
+struct SurgeonFileTick {
+  TimePoint at{};
+  SiteTick tick;
+  bool gathered{};  ///< `given` is here; else what there is of it has messages of its own
+  SurgeonGiven given;
+};
+
+struct PatientFileTick {
+  TimePoint at{};
+  SiteTick tick;
+  bool gathered{};  ///< as the surgeon's
+  PatientGiven given;
 };
 
 namespace message {
@@ -32,8 +52,9 @@ inline constexpr auto fields<S> = list({.log = "SurgeonGiven"},
                                        aside<&S::at>("at_ns"),
                                        field<1, &S::hand>("hand"),
                                        field<2, &S::heard>("heard"),
-                                       field<3, &S::sampled>("sampled"),
-                                       field<4, &S::arrived>("arrived"));
+                                       field<3, &S::samples>("samples"),
+                                       field<4, &S::arrived>("arrived", counted<&S::samples, 0>),
+                                       field<5, &S::earlier>("earlier", counted<&S::samples, 1>));
 
 template <std::same_as<PatientGiven> S>
 inline constexpr auto fields<S> = list({.log = "PatientGiven"},
@@ -41,8 +62,23 @@ inline constexpr auto fields<S> = list({.log = "PatientGiven"},
                                        field<1, &S::stage>("stage"),
                                        field<2, &S::force>("force"),
                                        field<3, &S::heard>("heard"),
-                                       field<4, &S::sampled>("sampled"),
-                                       field<5, &S::arrived>("arrived"));
+                                       field<4, &S::samples>("samples"),
+                                       field<5, &S::arrived>("arrived", counted<&S::samples, 0>),
+                                       field<6, &S::earlier>("earlier", counted<&S::samples, 1>));
+
+template <std::same_as<SurgeonFileTick> S>
+inline constexpr auto fields<S> = list({.log = "SurgeonTick", .one_site = true},
+                                       aside<&S::at>("at_ns"),
+                                       spread<0, &S::tick>(""),
+                                       field<19, &S::gathered>("gathered"),
+                                       field<20, &S::given>("given", counted<&S::gathered, 0>));
+
+template <std::same_as<PatientFileTick> S>
+inline constexpr auto fields<S> = list({.log_patient = "PatientTick", .one_site = true},
+                                       aside<&S::at>("at_ns"),
+                                       spread<0, &S::tick>(""),
+                                       field<19, &S::gathered>("gathered"),
+                                       field<20, &S::given>("given", counted<&S::gathered, 0>));
 
 }  // namespace message
 }  // namespace palp

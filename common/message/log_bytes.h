@@ -15,12 +15,12 @@ template <class... Messages>
 struct MessageList {};
 
 /// All of them: what has bytes and a schema, is decoded, and is held against the .proto.
-using LogMessages = MessageList<SiteTick,
+using LogMessages = MessageList<SurgeonFileTick,
+                                PatientFileTick,
                                 TickView,
                                 Arrived,
                                 LinkStatus,
                                 Event,
-                                ContactSample,
                                 DepthEstimate,
                                 DepthArrived,
                                 HandReading,

@@ -75,7 +75,6 @@ using Record = std::variant<SiteTick,
                             LinkStatus,
                             Note,
                             Transition,
-                            ContactSample,
                             DepthEstimate,
                             DepthArrived,
                             HandReading,
@@ -93,7 +92,6 @@ inline constexpr std::array<const char*, std::variant_size_v<Record>> kRecordNam
                                                                                    "link",
                                                                                    "note",
                                                                                    "transition",
-                                                                                   "contact",
                                                                                    "depth_estimate",
                                                                                    "depth_arrived",
                                                                                    "hand",
@@ -119,7 +117,7 @@ struct Event {
 };
 
 template <std::same_as<SiteTick> S>
-inline constexpr auto fields<S> = list({.log = "SurgeonTick", .log_patient = "PatientTick"},
+inline constexpr auto fields<S> = list({},
                                        aside<&S::at>("at_ns"),
                                        field<1, &S::state>("state"),
                                        field<2, &S::epoch>("epoch"),

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <variant>
 
@@ -10,7 +11,7 @@
 
 namespace palp::record {
 
-/// Holds what a tick was given until its link was heard: then it is one message. Thread: the
+/// Holds a tick and what it was given until its link was heard: then it is one message. Thread: the
 /// writer's.
 class GivenGatherer {
  public:
@@ -20,19 +21,21 @@ class GivenGatherer {
 
   /// What is held cannot be of one message with `record`: it has to be written by itself first.
   [[nodiscard]] bool stands_in_the_way_of(const Record& record) const;
+  /// A third sample: the first one has to be written by itself. @returns it.
+  std::optional<Record> crowded_out_by(const Record& record) noexcept;
   /// @returns false: `record` is none that is held.
   bool take(const Record& record) noexcept;
   /// The tick's link was heard: its message can be written.
   [[nodiscard]] bool whole() const noexcept { return part<LinkHeard>() != nullptr; }
-  [[nodiscard]] SurgeonGiven surgeon() const noexcept;
-  [[nodiscard]] PatientGiven patient() const noexcept;
+  [[nodiscard]] SurgeonFileTick surgeon() const noexcept;
+  [[nodiscard]] PatientFileTick patient() const noexcept;
 
   /// What is held, the oldest first.
   [[nodiscard]] std::span<const Record> held() const noexcept { return {held_.data(), size_}; }
   void clear() noexcept { size_ = 0; }
 
  private:
-  static constexpr std::size_t kPartsMax = 4;
+  static constexpr std::size_t kPartsMax = 6;
 
   /// nullptr: none is held.
   template <class Part>
@@ -43,8 +46,9 @@ class GivenGatherer {
     return nullptr;
   }
   [[nodiscard]] bool readings() const noexcept;
-  template <class Given>
-  void add_rest(Given& given) const noexcept;
+  [[nodiscard]] std::size_t samples() const noexcept;
+  template <class FileTick>
+  void add_rest(FileTick& made) const noexcept;
 
   link::Role site_;
   std::array<Record, kPartsMax> held_;

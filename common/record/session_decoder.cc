@@ -1,68 +1,52 @@
 #include "common/record/session_decoder.h"
 
+#include <algorithm>
+#include <array>
 #include <type_traits>
 
 #include "common/message/log_bytes.h"
 #include "common/message/log_schema.h"
+#include "common/record/said_twice.h"
 
 namespace palp::record {
 namespace {
 
 using message::Event;
 using message::EventKind;
-using Answer = SessionDecoder::Answer;
+using Parts = SessionDecoder::Parts;
 using Verdict = SessionDecoder::Verdict;
 
-template <class Message>
-bool read(std::span<const std::byte> payload, Message& message) noexcept {
-  return message::read_log(payload, message) && message::in_log_range(message);
-}
-
-/// A record whose message has its fields.
-template <class Message>
-Answer decode_record(std::span<const std::byte> payload, TimePoint at) noexcept {
-  Message record;
-  if (!read(payload, record)) return {.verdict = Verdict::Malformed, .record = {}};
-  if constexpr (requires { record.at; }) record.at = at;
-  return {.verdict = Verdict::Decoded, .record = record};
-}
-
-Answer decode_event(std::span<const std::byte> payload, TimePoint at) noexcept {
-  Event event;
-  bool good = message::read_log(payload, event);
-  if (event.kind == EventKind::Note) event.from = event.to = {};  // a note has none
-  good = good && message::in_log_range(event);
-  if (!good) return {.verdict = Verdict::Malformed, .record = {}};
-  if (event.kind == EventKind::Transition) {
-    return {
-        .verdict = Verdict::Decoded,
-        .record = Transition{.at = at, .from = event.from, .to = event.to, .reason = event.code}};
-  }
-  return {.verdict = Verdict::Decoded,
-          .record = Note{.at = at, .code = event.code, .detail = event.detail}};
-}
-
-Answer decode_view(std::span<const std::byte> payload) noexcept {
-  TickView view;
-  return {.verdict = message::read_log(payload, view) ? Verdict::View : Verdict::Malformed,
-          .record = {}};
+/// Adds a record at the instant of its message.
+template <class Part>
+void add(Part part, TimePoint at, Parts& parts) noexcept {
+  if constexpr (requires { part.at; }) part.at = at;
+  parts.add(part);
 }
 
 template <class Given>
-Answer decode_given(std::span<const std::byte> payload) noexcept {
-  Given given;
-  return {.verdict = read(payload, given) ? Verdict::Gathered : Verdict::Malformed, .record = {}};
+void add_given(const Given& given, const SiteTick* tick, TimePoint at, Parts& parts) noexcept {
+  if (given.samples > 1) add(given.earlier, at, parts);
+  if (given.samples > 0) add(given.arrived, at, parts);
+  if (tick != nullptr) add(*tick, at, parts);
+  if constexpr (requires { given.hand; }) {
+    add(given.hand, at, parts);
+  } else {
+    add(given.stage, at, parts);
+    add(given.force, at, parts);
+  }
+  add(given.heard, at, parts);
 }
 
-/// The record at the instant of its message.
-template <class Part>
-Record stamped(Part part, TimePoint at) noexcept {
-  part.at = at;
-  return part;
+void add_event(const Event& event, TimePoint at, Parts& parts) noexcept {
+  if (event.kind == EventKind::Transition) {
+    add(Transition{.at = at, .from = event.from, .to = event.to, .reason = event.code}, at, parts);
+  } else {
+    add(Note{.at = at, .code = event.code, .detail = event.detail}, at, parts);
+  }
 }
 
-/// In files before protocol 4: a contact sample whose tip had passed a filter.
-constexpr std::string_view kOldContact = "ContactSample";
+/// Contact samples: the ticks say them.
+constexpr std::array<std::string_view, 2> kOldNames{"ContactSample", "ContactReading"};
 
 /// Whether `name` is what either site calls this message.
 template <class Message>
@@ -71,69 +55,63 @@ bool is_named(std::string_view name) noexcept {
 }
 
 template <class Message>
-Answer decode_as(std::span<const std::byte> payload, TimePoint at) noexcept {
-  if constexpr (std::is_same_v<Message, Event>)
-    return decode_event(payload, at);
-  else if constexpr (std::is_same_v<Message, TickView>)
-    return decode_view(payload);
-  else if constexpr (requires(Message given) { given.sampled; })
-    return decode_given<Message>(payload);
-  else
-    return decode_record<Message>(payload, at);
+Verdict decode_as(std::span<const std::byte> payload, TimePoint at, Parts& parts) noexcept {
+  Message message;
+  bool good = message::read_log(payload, message);
+  if constexpr (std::is_same_v<Message, TickView>) return good ? Verdict::View : Verdict::Malformed;
+  if constexpr (std::is_same_v<Message, Event>) {
+    if (message.kind == EventKind::Note) message.from = message.to = {};  // a note has none
+  }
+  good = good && message::in_log_range(message);
+  if (!good) return Verdict::Malformed;
+  if constexpr (std::is_same_v<Message, Event>) {
+    add_event(message, at, parts);
+  } else if constexpr (requires { message.gathered; }) {
+    if (message.gathered) {
+      message.at = at;
+      put_back(message);
+      add_given(message.given, &message.tick, at, parts);
+    } else {
+      add(message.tick, at, parts);
+    }
+  } else if constexpr (requires { message.samples; }) {
+    add_given(message, nullptr, at, parts);
+  } else if constexpr (std::is_constructible_v<Record, Message>) {
+    add(message, at, parts);
+  }
+  return Verdict::Decoded;
 }
 
 /// As the message of the list that has this name.
 template <class... Messages>
-Answer decode_named(message::MessageList<Messages...> /*list*/,
-                    std::string_view name,
-                    std::span<const std::byte> payload,
-                    TimePoint at) noexcept {
-  Answer answer{.verdict = Verdict::Unknown, .record = {}};
+Verdict decode_named(message::MessageList<Messages...> /*list*/,
+                     std::string_view name,
+                     std::span<const std::byte> payload,
+                     TimePoint at,
+                     Parts& parts) noexcept {
+  Verdict verdict = Verdict::Unknown;
   const auto try_as = [&]<class Message>(std::type_identity<Message> /*message*/) {
     if (!is_named<Message>(name)) return false;
-    answer = decode_as<Message>(payload, at);
+    verdict = decode_as<Message>(payload, at, parts);
     return true;
   };
   (void)(try_as(std::type_identity<Messages>{}) || ...);
-  return answer;
+  return verdict;
 }
 
 }  // namespace
 
-Answer SessionDecoder::decode(std::string_view schema,
-                              std::span<const std::byte> payload,
-                              TimePoint at) noexcept {
-  std::string_view name = schema;
-  if (name.starts_with(message::kLogPackage)) {
-    name.remove_prefix(message::kLogPackage.size());
-    if (name.starts_with('.')) {
-      name.remove_prefix(1);
-      if (name == kOldContact) return {.verdict = Verdict::Old, .record = {}};
-      return decode_named(message::LogMessages{}, name, payload, at);
-    }
-  }
-  return {.verdict = Verdict::Unknown, .record = {}};
-}
-
-void SessionDecoder::scatter(std::string_view schema,
-                             std::span<const std::byte> payload,
-                             TimePoint at,
-                             Parts& parts) noexcept {
+Verdict SessionDecoder::decode(std::string_view schema,
+                               std::span<const std::byte> payload,
+                               TimePoint at,
+                               Parts& parts) noexcept {
   parts.clear();
-  if (schema.ends_with(".SurgeonGiven")) {
-    SurgeonGiven given;
-    if (!read(payload, given)) return;
-    if (given.sampled) parts.add(stamped(given.arrived, at));
-    parts.add(stamped(given.hand, at));
-    parts.add(stamped(given.heard, at));
-  } else {
-    PatientGiven given;
-    if (!read(payload, given)) return;
-    if (given.sampled) parts.add(stamped(given.arrived, at));
-    parts.add(stamped(given.stage, at));
-    parts.add(stamped(given.force, at));
-    parts.add(stamped(given.heard, at));
-  }
+  if (!schema.starts_with(message::kLogPackage)) return Verdict::Unknown;
+  std::string_view name = schema.substr(message::kLogPackage.size());
+  if (name.size() < 2 || name.front() != '.') return Verdict::Unknown;
+  name.remove_prefix(1);
+  if (std::ranges::find(kOldNames, name) != kOldNames.end()) return Verdict::Old;
+  return decode_named(message::LogMessages{}, name, payload, at, parts);
 }
 
 }  // namespace palp::record

@@ -36,16 +36,17 @@ std::string_view site_name(Role site) noexcept {
 }
 
 std::vector<TopicFormat> topics_of(Role site) {
-  std::vector<TopicFormat> topics{format<SiteTick>(Topic::Tick, site, "tick"),
+  const bool surgeon = site == Role::Surgeon;
+  std::vector<TopicFormat> topics{surgeon ? format<SurgeonFileTick>(Topic::Tick, site, "tick")
+                                          : format<PatientFileTick>(Topic::Tick, site, "tick"),
                                   format<TickView>(Topic::TickView, site, "tick_view"),
                                   format<Arrived>(Topic::Arrived, site, "arrived"),
                                   format<LinkStatus>(Topic::Link, site, "link"),
                                   format<Event>(Topic::Event, site, "event")};
-  if (site == Role::Surgeon) {
+  if (surgeon) {
     topics.push_back(format<DepthArrived>(Topic::Depth, site, "depth"));
     topics.push_back(format<HandReading>(Topic::Hand, site, "hand"));
   } else {
-    topics.push_back(format<ContactSample>(Topic::Contact, site, "contact"));
     topics.push_back(format<DepthEstimate>(Topic::Depth, site, "depth"));
     topics.push_back(format<StageReading>(Topic::Stage, site, "stage"));
     topics.push_back(format<ForceReading>(Topic::Force, site, "force"));
@@ -53,12 +54,7 @@ std::vector<TopicFormat> topics_of(Role site) {
   topics.push_back(format<LinkHeard>(Topic::Heard, site, "heard"));
   topics.push_back(format<UserAsked>(Topic::User, site, "user"));
   topics.push_back(format<DevicesTold>(Topic::Devices, site, "devices"));
-  if (site == Role::Surgeon) {
-    topics.push_back(format<PlantTruth>(Topic::Truth, site, "truth"));
-    topics.push_back(format<SurgeonGiven>(Topic::Given, site, "given"));
-  } else {
-    topics.push_back(format<PatientGiven>(Topic::Given, site, "given"));
-  }
+  if (surgeon) topics.push_back(format<PlantTruth>(Topic::Truth, site, "truth"));
   return topics;
 }
 
@@ -77,7 +73,11 @@ std::optional<Prepared> SessionEncoder::prepare(const Record& record,
     return here ? Answer{write(topic, one.at, one)} : std::nullopt;
   };
   return std::visit(
-      Overloaded{[&](const SiteTick& tick) -> Answer { return write(Topic::Tick, tick.at, tick); },
+      Overloaded{[&](const SiteTick& tick) -> Answer {
+                   if (surgeon)
+                     return prepare(SurgeonFileTick{.at = tick.at, .tick = tick, .given = {}});
+                   return prepare(PatientFileTick{.at = tick.at, .tick = tick, .given = {}});
+                 },
                  [&](const Arrived& arrived) -> Answer {
                    return write(Topic::Arrived, arrived.at, arrived);
                  },
@@ -105,7 +105,6 @@ std::optional<Prepared> SessionEncoder::prepare(const Record& record,
                    return write(Topic::Depth, estimate.stroke_ended_at, estimate);
                  },
                  [&](const DepthArrived& one) { return of_site(surgeon, Topic::Depth, one); },
-                 [&](const ContactSample& one) { return of_site(!surgeon, Topic::Contact, one); },
                  [&](const HandReading& one) { return of_site(surgeon, Topic::Hand, one); },
                  [&](const StageReading& one) { return of_site(!surgeon, Topic::Stage, one); },
                  [&](const ForceReading& one) { return of_site(!surgeon, Topic::Force, one); },
@@ -120,12 +119,12 @@ Prepared SessionEncoder::prepare(const TickView& view) noexcept {
   return write(Topic::TickView, view.newest.at, view);
 }
 
-Prepared SessionEncoder::prepare(const SurgeonGiven& given) noexcept {
-  return write(Topic::Given, given.at, given);
+Prepared SessionEncoder::prepare(const SurgeonFileTick& tick) noexcept {
+  return write(Topic::Tick, tick.at, tick);
 }
 
-Prepared SessionEncoder::prepare(const PatientGiven& given) noexcept {
-  return write(Topic::Given, given.at, given);
+Prepared SessionEncoder::prepare(const PatientFileTick& tick) noexcept {
+  return write(Topic::Tick, tick.at, tick);
 }
 
 void SessionEncoder::store(std::byte* place) const noexcept {

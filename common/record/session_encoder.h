@@ -21,7 +21,6 @@ enum class Topic : std::uint8_t {
   Arrived,
   Link,
   Event,
-  Contact,
   Depth,
   Hand,
   Stage,
@@ -29,10 +28,9 @@ enum class Topic : std::uint8_t {
   Heard,
   User,
   Devices,
-  Truth,
-  Given
+  Truth
 };
-inline constexpr std::size_t kTopicCount = 15;
+inline constexpr std::size_t kTopicCount = 13;
 
 struct TopicFormat {
   Topic topic{};
@@ -63,9 +61,9 @@ class SessionEncoder {
   /// LinkStatus.
   std::optional<Prepared> prepare(const Record& record, std::uint64_t records_dropped) noexcept;
   Prepared prepare(const TickView& view) noexcept;
-  /// What a tick of the site was given.
-  Prepared prepare(const SurgeonGiven& given) noexcept;
-  Prepared prepare(const PatientGiven& given) noexcept;
+  /// A tick of the site with what it was given.
+  Prepared prepare(const SurgeonFileTick& tick) noexcept;
+  Prepared prepare(const PatientFileTick& tick) noexcept;
   /// Writes the message prepared last; `place` has room for its size.
   void store(std::byte* place) const noexcept;
 

@@ -86,25 +86,23 @@ std::optional<SessionEntry> SessionReader::decode(const McapMessage& message) {
     ++unknown_;
     return std::nullopt;
   }
-  const auto answer = SessionDecoder::decode(
-      message.schema->name, message.payload, clock_.own(message.publish_time));
   using Verdict = SessionDecoder::Verdict;
-  if (answer.verdict == Verdict::Decoded) {
-    return SessionEntry{.site = surgeon ? link::Role::Surgeon : link::Role::Patient,
-                        .record = answer.record};
-  }
-  if (answer.verdict == Verdict::Gathered) {
-    SessionDecoder::scatter(
-        message.schema->name, message.payload, clock_.own(message.publish_time), parts_);
-    parts_of_ = surgeon ? link::Role::Surgeon : link::Role::Patient;
-    if (const auto part = parts_.take()) return SessionEntry{.site = parts_of_, .record = *part};
-  }
-  if (answer.verdict == Verdict::Unknown) {
+  const Verdict verdict = SessionDecoder::decode(
+      message.schema->name, message.payload, clock_.own(message.publish_time), parts_);
+  parts_of_ = surgeon ? link::Role::Surgeon : link::Role::Patient;
+  if (const auto part = parts_.take()) return SessionEntry{.site = parts_of_, .record = *part};
+  if (verdict == Verdict::Unknown) {
     ++unknown_;
-  } else if (answer.verdict == Verdict::Malformed && malformed_++ == 0) {
+  } else if (verdict == Verdict::Malformed && malformed_++ == 0) {
     first_malformed_ = std::string{topic} + " number " + std::to_string(message.sequence);
   }
   return std::nullopt;
+}
+
+std::uint64_t SessionReader::missing() const noexcept {
+  std::uint64_t sum = 0;
+  for (const auto& [name, topic] : topics_) sum += topic.skipped;
+  return sum;
 }
 
 std::optional<std::string> SessionReader::metadata(std::string_view record,

@@ -61,6 +61,8 @@ class SessionReader {
   [[nodiscard]] std::optional<std::string_view> attachment(std::string_view name) const;
   [[nodiscard]] std::uint64_t unknown() const noexcept { return unknown_; }
   [[nodiscard]] std::uint64_t malformed() const noexcept { return malformed_; }
+  /// Messages that the sequences of all topics lack.
+  [[nodiscard]] std::uint64_t missing() const noexcept;
   /// Topic and sequence of the first malformed message; empty: there is none.
   [[nodiscard]] const std::string& first_malformed() const noexcept { return first_malformed_; }
   /// Sessions in the order in which they began.

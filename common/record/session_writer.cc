@@ -3,6 +3,8 @@
 #include <numeric>
 #include <span>
 
+#include "common/record/said_twice.h"
+
 namespace palp::record {
 namespace {
 
@@ -34,7 +36,7 @@ SessionCounts& SessionCounts::operator+=(const SessionCounts& other) noexcept {
 SessionWriter::SessionWriter(ByteSink& sink, const SessionInfo& info, const McapOptions& options)
     : mcap_{sink, options},
       encoder_{info.site},
-      given_{info.site},
+      gatherer_{info.site},
       clock_{info.clock},
       sessions_{info.sessions_before} {
   McapMap metadata{{"site", std::string{site_name(info.site)}}};
@@ -57,30 +59,40 @@ SessionWriter::SessionWriter(ByteSink& sink, const SessionInfo& info, const Mcap
 SessionWriter::~SessionWriter() { close(); }
 
 bool SessionWriter::write(const Record& record) {
+  if (closed_) return false;
   if (const auto* tick = std::get_if<SiteTick>(&record)) {
     view(*tick);
   } else if (const auto* heard = std::get_if<LinkHeard>(&record)) {
     look_for_session(*heard);
   }
-  if (given_.stands_in_the_way_of(record)) release_given();
-  if (!given_.take(record)) return write_alone(record);
-  return !given_.whole() || write_given();
+  if (gatherer_.stands_in_the_way_of(record)) release_tick();
+  if (const auto first = gatherer_.crowded_out_by(record)) (void)write_alone(*first);
+  if (!gatherer_.take(record)) return write_alone(record);
+  return !gatherer_.whole() || write_tick();
 }
 
-bool SessionWriter::write_given() {
-  const bool surgeon = given_.site() == link::Role::Surgeon;
-  const bool written =
-      put(surgeon ? encoder_.prepare(given_.surgeon()) : encoder_.prepare(given_.patient()));
-  if (written) {
-    for (const Record& record : given_.held()) ++counts_.by_type[record.index()];
+template <class FileTick>
+bool SessionWriter::put_whole(FileTick tick) {
+  if (!leave_out(tick)) {
+    release_tick();
+    return true;
   }
-  given_.clear();
+  const bool written = put(encoder_.prepare(tick));
+  if (written) {
+    for (const Record& record : gatherer_.held()) ++counts_.by_type[record.index()];
+  }
+  gatherer_.clear();
   return written;
 }
 
-void SessionWriter::release_given() {
-  for (const Record& record : given_.held()) (void)write_alone(record);
-  given_.clear();
+bool SessionWriter::write_tick() {
+  const bool surgeon = gatherer_.site() == link::Role::Surgeon;
+  return surgeon ? put_whole(gatherer_.surgeon()) : put_whole(gatherer_.patient());
+}
+
+void SessionWriter::release_tick() {
+  for (const Record& record : gatherer_.held()) (void)write_alone(record);
+  gatherer_.clear();
 }
 
 bool SessionWriter::write_alone(const Record& record) {
@@ -150,7 +162,7 @@ void SessionWriter::close() {
     return;
   }
   closed_ = true;
-  release_given();
+  release_tick();
   if (view_.ticks > 0) {
     write_view();
   }

@@ -89,8 +89,10 @@ class SessionWriter {
 
  private:
   bool write_alone(const Record& record);
-  bool write_given();
-  void release_given();
+  bool write_tick();
+  template <class FileTick>
+  bool put_whole(FileTick tick);
+  void release_tick();
   bool put(const Prepared& prepared);
   void view(const SiteTick& tick);
   void write_view();
@@ -103,7 +105,7 @@ class SessionWriter {
     std::uint32_t sequence{};
   };
   std::array<Channel, kTopicCount> channels_{};
-  GivenGatherer given_;
+  GivenGatherer gatherer_;
   TickView view_;
   WallClock clock_;
   std::uint64_t session_id_{};  ///< the newest; 0: none yet

@@ -91,12 +91,11 @@ void records(int rounds) {
   DepthEstimate estimate;
   estimate.number = 1;
   estimate.depth = estimate.hash = 0.01;
-  const std::array<std::pair<const char*, Record>, 6> all{
+  const std::array<std::pair<const char*, Record>, 5> all{
       {{"tick", tick},
        {"arrived with a model", arrived},
        {"link status", status},
        {"note", Note{.at = {}, .code = 33, .detail = 1.5}},
-       {"contact", ContactSample{.at = {}, .position = 1e-3, .force = 0.2, .place = {}}},
        {"depth estimate", estimate}}};
   SessionEncoder encoder{link::Role::Patient};
   std::vector<std::byte> room(1024);

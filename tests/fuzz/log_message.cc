@@ -1,4 +1,5 @@
 // Input: a byte for the schema, then one message of a session file.
+#include <algorithm>
 #include <vector>
 
 #include "common/core/check.h"
@@ -19,18 +20,29 @@ Bytes encoded(SessionEncoder& encoder, const Record& record) {
   return bytes;
 }
 
-void message_laws(link::Role site, const std::string& schema, std::span<const std::byte> payload) {
+void message_laws(link::Role site,
+                  const std::vector<TopicFormat>& topics,
+                  const std::string& schema,
+                  std::span<const std::byte> payload) {
   const TimePoint at{std::chrono::milliseconds{42}};
-  const auto first = SessionDecoder::decode(schema, payload, at);
-  PALP_CHECK(first.verdict != Verdict::Unknown, "every topic's schema is known");
-  if (first.verdict != Verdict::Decoded) return;
-  // Bytes are compared, because a record may hold NaN.
+  SessionDecoder::Parts parts;
+  const Verdict verdict = SessionDecoder::decode(schema, payload, at, parts);
+  PALP_CHECK(verdict != Verdict::Unknown, "every topic's schema is known");
+  PALP_CHECK((verdict == Verdict::Decoded) == (parts.size() > 0), "what is decoded has records");
   SessionEncoder encoder{site};
-  const Bytes bytes = encoded(encoder, first.record);
-  const auto again = SessionDecoder::decode(schema, bytes, at);
-  PALP_CHECK(again.verdict == Verdict::Decoded && again.record.index() == first.record.index(),
-             "what was decoded can be written and read");
-  PALP_CHECK(encoded(encoder, again.record) == bytes, "what was decoded survives the file");
+  while (const auto record = parts.take()) {
+    // Bytes are compared, because a record may hold NaN.
+    const Bytes bytes = encoded(encoder, *record);
+    const auto topic = encoder.prepare(*record, 0)->topic;
+    const auto format = std::ranges::find(topics, topic, &TopicFormat::topic);
+    SessionDecoder::Parts again;
+    PALP_CHECK(SessionDecoder::decode(format->schema, bytes, at, again) == Verdict::Decoded &&
+                   again.size() == 1,
+               "what was decoded can be written and read");
+    const Record same = *again.take();
+    PALP_CHECK(same.index() == record->index(), "a record stays of its kind");
+    PALP_CHECK(encoded(encoder, same) == bytes, "what was decoded survives the file");
+  }
 }
 
 }  // namespace
@@ -43,6 +55,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const bool surgeon = *data % 2 == 0;
   const auto& topics = surgeon ? kSurgeon : kPatient;
   palp::record::message_laws(surgeon ? palp::link::Role::Surgeon : palp::link::Role::Patient,
+                             topics,
                              topics[*data / 2 % topics.size()].schema,
                              palp::fuzz::as_bytes(data, size).subspan(1));
   return 0;

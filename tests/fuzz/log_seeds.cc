@@ -50,7 +50,6 @@ std::vector<Record> records() {
           status,
           Note{.at = at, .code = 33, .detail = 1.5},
           Transition{.at = at, .from = SiteState::Parked, .to = SiteState::Clutched, .reason = 2},
-          ContactSample{.at = at, .position = 1e-3, .force = 0.2, .place = {}},
           estimate,
           depth,
           HandReading{.at = at, .position = 1e-3, .place = {}, .script_phase = 2},
@@ -60,6 +59,20 @@ std::vector<Record> records() {
           UserAsked{.at = at, .command = {.emergency_stop = true}},
           DevicesTold{.at = at, .facts = {HandFacts{}, StageFacts{}, ForceSensorFacts{}}},
           PlantTruth{.at = at, .phase_place = {}, .hand = 1e-3, .tip_place = {}}};
+}
+
+/// A tick with all that it was given.
+template <class FileTick>
+FileTick whole_tick() {
+  FileTick whole;
+  whole.tick.state = SiteState::Engaged;
+  whole.gathered = true;
+  whole.given.heard.state = LinkState::Live;
+  whole.given.samples = 2;
+  whole.given.earlier.incoming.number = 6;
+  whole.given.arrived.incoming.number = 7;
+  whole.given.arrived.incoming.sample.payload = TdpaPayload{.energy_in = 0.5};
+  return whole;
 }
 
 void messages(const fs::path& corpus) {
@@ -79,6 +92,12 @@ void messages(const fs::path& corpus) {
       const std::string name{site_name(site)};
       write(corpus / "log_message" / (name + "-" + std::to_string(record.index())), bytes);
     }
+    const auto whole = site == link::Role::Surgeon ? encoder.prepare(whole_tick<SurgeonFileTick>())
+                                                   : encoder.prepare(whole_tick<PatientFileTick>());
+    Bytes bytes(1 + whole.size);  // ticks are the first topic
+    bytes[0] = static_cast<std::byte>(site == link::Role::Patient ? 1 : 0);
+    encoder.store(bytes.data() + 1);
+    write(corpus / "log_message" / (std::string{site_name(site)} + "-whole"), bytes);
   }
 }
 

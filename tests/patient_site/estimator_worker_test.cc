@@ -42,7 +42,7 @@ struct Bench {
   }
 };
 
-TEST(EstimatorWorkerTest, PutsAndRecordsEachEstimateWithItsStroke) {
+TEST(EstimatorWorkerTest, PutsAndRecordsEachEstimate) {
   Bench bench;
   EXPECT_EQ(bench.depth.get().number, 0U);
   bench.press();
@@ -51,18 +51,9 @@ TEST(EstimatorWorkerTest, PutsAndRecordsEachEstimateWithItsStroke) {
   EXPECT_EQ(bench.depth.get().number, 1U);
   EXPECT_EQ(bench.depth.get().verdict, DepthVerdict::Found);
   EXPECT_EQ(bench.worker.strokes(), 1U);
-  ASSERT_GT(bench.recorder.records.size(), 100U);
-  EXPECT_EQ(bench.worker.records(), bench.recorder.records.size());
-  const auto* estimate = std::get_if<DepthEstimate>(&bench.recorder.records.back());
-  ASSERT_NE(estimate, nullptr);
-  TimePoint before{};
-  for (std::size_t i = 0; i + 1 < bench.recorder.records.size(); ++i) {
-    const auto* sample = std::get_if<ContactSample>(&bench.recorder.records[i]);
-    ASSERT_NE(sample, nullptr);
-    EXPECT_GT(sample->at, before);
-    before = sample->at;
-  }
-  EXPECT_EQ(before, estimate->stroke_ended_at);
+  ASSERT_EQ(bench.recorder.records.size(), 1U);
+  EXPECT_EQ(bench.worker.records(), 1U);
+  EXPECT_EQ(std::get<DepthEstimate>(bench.recorder.records[0]).number, 1U);
 }
 
 TEST(EstimatorWorkerTest, CountsWhatTheRecorderRefuses) {

@@ -52,7 +52,7 @@ TEST(InfoTest, NothingInAFileActsOnTheTerminal) {
   const auto recovery = recover(sink.bytes(), copy);
   ASSERT_TRUE(recovery);
   for (const std::string& text :
-       {describe(sink.bytes()), first_fault(sink.bytes()).value_or(""), describe(*recovery)}) {
+       {describe(sink.bytes()), checked(sink.bytes()).fault.value_or(""), describe(*recovery)}) {
     EXPECT_FALSE(text.empty());
     EXPECT_EQ(text, harmless(text));
     EXPECT_EQ(text.find("\nfault at"), std::string::npos) << "no line of its own: " << text;

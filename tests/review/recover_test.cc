@@ -22,7 +22,7 @@ TEST(RecoverTest, CutOffFileBecomesASoundOneWithAllItsMessages) {
   EXPECT_GT(recovery->messages, 3000u);
   EXPECT_EQ(recovery->messages, recovery->report.messages);
   EXPECT_TRUE(recovery->losses.empty());
-  EXPECT_EQ(first_fault(out.bytes()), std::nullopt);
+  EXPECT_EQ(checked(out.bytes()).fault, std::nullopt);
   EXPECT_NE(describe(*recovery).find("the file was not closed"), std::string::npos);
 
   const auto saved = load_site(out.bytes(), "recovered", link::Role::Surgeon);
@@ -54,7 +54,7 @@ TEST(RecoverTest, SoundFileLosesNothing) {
   record::MemorySink out;
   const auto recovery = recover(file, out);
   ASSERT_TRUE(recovery);
-  EXPECT_EQ(first_fault(out.bytes()), std::nullopt);
+  EXPECT_EQ(checked(out.bytes()).fault, std::nullopt);
   EXPECT_EQ(load_site(out.bytes(), "saved", link::Role::Patient)->tissue_csv, test::kTissueCsv);
 }
 
@@ -94,7 +94,7 @@ TEST(RecoverTest, CutAtAnyByteOfItsLastTwoChunksItKeepsEveryChunkBefore) {
       whole = recovery->messages;
     }
     ASSERT_EQ(recovery->messages, whole) << cut;
-    ASSERT_EQ(first_fault(out.bytes()), std::nullopt) << cut;
+    ASSERT_EQ(checked(out.bytes()).fault, std::nullopt) << cut;
   }
   EXPECT_EQ(whole, messages) << "of all chunks";
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "review/recover.h"
 #include "tests/review/lab_files.h"
 
 namespace palp::review {
@@ -44,6 +45,24 @@ TEST(ReplayCommandTest, AFileThatWasCutOffIsDoneAgainToItsEnd) {
   const auto answer = replay_command({bytes.first(bytes.size() / 2)}, {});
   ASSERT_TRUE(answer) << answer.error().text;
   EXPECT_TRUE(answer->same) << answer->text;
+  EXPECT_THAT(answer->text, HasSubstr("the file was not closed"));
+}
+
+TEST(ReplayCommandTest, ARecoveredFileSaysSoAndMissingTicksAreNoDifference) {
+  const auto recovered = [](const record::FileBytes& file) {
+    record::MemorySink out;
+    EXPECT_TRUE(recover(file, out));
+    return std::vector<std::byte>{out.bytes().begin(), out.bytes().end()};
+  };
+  const auto bytes = three_seconds().surgeon.bytes();
+  const auto cut = replay_command({recovered(bytes.first(bytes.size() / 2))}, {});
+  ASSERT_TRUE(cut) << cut.error().text;
+  EXPECT_THAT(cut->text, HasSubstr("same; the file was recovered"));
+  std::vector<std::byte> damaged{bytes.begin(), bytes.end()};
+  damaged[damaged.size() / 2] ^= std::byte{1};
+  const auto torn = replay_command({recovered(damaged)}, {});
+  ASSERT_FALSE(torn);
+  EXPECT_THAT(torn.error().text, HasSubstr("damaged before its tick"));
 }
 
 TEST(ReplayCommandTest, RefusesInASentence) {

@@ -28,7 +28,6 @@ void each_struct(auto&& visit) {
             LinkStatus,
             Note,
             Transition,
-            ContactSample,
             DepthEstimate,
             DepthArrived,
             HandReading,
@@ -45,6 +44,8 @@ void each_struct(auto&& visit) {
             PlantTruth,
             SurgeonGiven,
             PatientGiven,
+            SurgeonFileTick,
+            PatientFileTick,
             TickView,
             Event>(visit);
 }
@@ -55,5 +56,12 @@ void each_of(MessageList<Messages...> /*list*/, auto&& visit) {
   each_type<Messages...>(visit);
 }
 void each_log_message(auto&& visit) { each_of(LogMessages{}, visit); }
+
+/// Whether a site's file has this message.
+template <class Message>
+constexpr bool in_file_of(bool patient) {
+  constexpr Names kNames = fields<Message>.names;
+  return !kNames.one_site || kNames.log_patient.empty() != patient;
+}
 
 }  // namespace palp::message

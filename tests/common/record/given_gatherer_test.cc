@@ -17,6 +17,7 @@ TimePoint at_ms(int value) { return TimePoint{std::chrono::milliseconds{value}};
 Arrived sample(int ms, std::uint64_t number) {
   Arrived arrived{.at = at_ms(ms), .incoming = {}};
   arrived.incoming.number = number;
+  arrived.incoming.arrived_at = at_ms(ms) - 7ms;
   arrived.incoming.sample.position = 1e-3 * static_cast<double>(number);
   return arrived;
 }
@@ -58,15 +59,18 @@ TEST(GivenGathererTest, ATickOfThePatientsIsOneMessageWithAllOfItsParts) {
   force.force = 3;
   auto heard = at_tick<LinkHeard>(1);
   heard.gap = 7ms;
-  const std::vector<Record> records{sample(1, 5), at_tick<SiteTick>(1), stage, force, heard};
+  auto tick = at_tick<SiteTick>(1);
+  tick.command = 4e-3;
+  const std::vector<Record> records{sample(1, 5), tick, stage, force, heard};
   MemorySink sink;
   SessionWriter writer{sink, {.site = Role::Patient}};
   for (const Record& record : records) writer.write(record);
   writer.close();
-  EXPECT_EQ(writer.messages(), 3U) << "tick, view, given";
+  EXPECT_EQ(writer.messages(), 2U) << "tick, view";
   const auto found = through_a_file(Role::Patient, records);
-  EXPECT_EQ(kinds(found), (Names{"tick", "arrived", "stage", "force", "heard"}));
-  EXPECT_EQ(std::get<Arrived>(found[1]).incoming.number, 5U);
+  EXPECT_EQ(kinds(found), (Names{"arrived", "tick", "stage", "force", "heard"}));
+  EXPECT_EQ(std::get<Arrived>(found[0]).incoming.number, 5U);
+  EXPECT_EQ(std::get<SiteTick>(found[1]).command, 4e-3);
   EXPECT_EQ(std::get<StageReading>(found[2]).age, 2ms);
   EXPECT_EQ(std::get<ForceReading>(found[3]).force, 3);
   EXPECT_EQ(std::get<LinkHeard>(found[4]).gap, 7ms);
@@ -81,13 +85,19 @@ TEST(GivenGathererTest, ATickOfThePatientsIsOneMessageWithAllOfItsParts) {
   }
 }
 
-TEST(GivenGathererTest, OfSeveralSamplesTheLastIsGatheredAndTheirOrderStays) {
-  const auto found = through_a_file(
-      Role::Surgeon,
-      {sample(1, 5), sample(1, 6), sample(1, 7), at_tick<HandReading>(1), at_tick<LinkHeard>(1)});
-  ASSERT_EQ(kinds(found), (Names{"arrived", "arrived", "arrived", "hand", "heard"}));
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(std::get<Arrived>(found[i]).incoming.number, 5 + i);
+TEST(GivenGathererTest, OfManySamplesTheLastTwoAreGatheredAndTheirOrderStays) {
+  const auto found = through_a_file(Role::Surgeon,
+                                    {sample(1, 4),
+                                     sample(1, 5),
+                                     sample(1, 6),
+                                     sample(1, 7),
+                                     at_tick<SiteTick>(1),
+                                     at_tick<HandReading>(1),
+                                     at_tick<LinkHeard>(1)});
+  ASSERT_EQ(kinds(found),
+            (Names{"arrived", "arrived", "arrived", "arrived", "tick", "hand", "heard"}));
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(std::get<Arrived>(found[i]).incoming.number, 4 + i);
   }
 }
 
@@ -110,17 +120,20 @@ TEST(GivenGathererTest, PartsOfTwoTicksAreNeverOne) {
 TEST(GivenGathererTest, WhatTheEstimatorSaysMeanwhileDisturbsNoTick) {
   EXPECT_EQ(kinds(through_a_file(Role::Patient,
                                  {at_tick<StageReading>(2),
-                                  at_tick<ContactSample>(1),
                                   at_tick<ForceReading>(2),
                                   DepthEstimate{},
                                   at_tick<LinkHeard>(2)})),
-            (Names{"contact", "depth_estimate", "stage", "force", "heard"}));
+            (Names{"depth_estimate", "stage", "force", "heard"}));
 }
 
 TEST(GivenGathererTest, NothingOfTheOtherSiteIsHeld) {
   GivenGatherer gatherer{Role::Surgeon};
   EXPECT_FALSE(gatherer.take(StageReading{}));
   EXPECT_FALSE(gatherer.take(LinkHeard{})) << "a tick begins with its reading";
+  EXPECT_TRUE(gatherer.take(HandReading{}));
+  EXPECT_FALSE(gatherer.take(LinkHeard{})) << "of what was decided there is nothing yet";
+  gatherer.clear();
+  EXPECT_TRUE(gatherer.take(SiteTick{}));
   EXPECT_TRUE(gatherer.take(HandReading{}));
   EXPECT_TRUE(gatherer.stands_in_the_way_of(HandReading{}));
   EXPECT_TRUE(gatherer.take(LinkHeard{}));

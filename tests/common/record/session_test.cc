@@ -55,7 +55,7 @@ Record any_record(Role site) {
       return any(DevicesTold{});
     default:
       if (surgeon) return any(PlantTruth{});
-      return draw.below(2) == 0 ? any(ForceReading{}) : any(ContactSample{});
+      return any(ForceReading{});
   }
 }
 
@@ -68,7 +68,8 @@ std::vector<SessionEntry> read_all(SessionReader& reader) {
 }
 
 bool is_given(const Record& record) {
-  return std::holds_alternative<Arrived>(record) || std::holds_alternative<HandReading>(record) ||
+  return std::holds_alternative<SiteTick>(record) || std::holds_alternative<Arrived>(record) ||
+         std::holds_alternative<HandReading>(record) ||
          std::holds_alternative<StageReading>(record) ||
          std::holds_alternative<ForceReading>(record) || std::holds_alternative<LinkHeard>(record);
 }
@@ -246,7 +247,7 @@ TEST(SessionTest, DamagedChunkShowsAsAGapOfEachTopic) {
 TEST(SessionTest, RecordWithoutATopicAtThisSiteIsCountedNotWritten) {
   NullSink sink;
   SessionWriter surgeon{sink, {.site = Role::Surgeon}};
-  EXPECT_FALSE(surgeon.write(ContactSample{}));
+  EXPECT_FALSE(surgeon.write(ForceReading{}));
   EXPECT_FALSE(surgeon.write(DepthEstimate{}));
   EXPECT_EQ(surgeon.counts().misplaced, 2u);
   EXPECT_EQ(surgeon.messages(), 0u);
@@ -283,7 +284,8 @@ TEST(SessionTest, ValueOutsideItsEnumerationIsMalformedNotTrusted) {
   constexpr std::array kCutOff{std::byte{0x08}};
   using Verdict = SessionDecoder::Verdict;
   const auto verdict = [&](std::string_view schema, std::span<const std::byte> payload) {
-    return SessionDecoder::decode(schema, payload, at_ms(0)).verdict;
+    SessionDecoder::Parts parts;
+    return SessionDecoder::decode(schema, payload, at_ms(0), parts);
   };
   EXPECT_EQ(verdict("palp.session.PatientTick", kStateTwo), Verdict::Decoded);
   EXPECT_EQ(verdict("palp.session.PatientTick", kStateNine), Verdict::Malformed);
@@ -302,9 +304,10 @@ std::vector<std::byte> one_double(unsigned number, double value) {
 }
 
 TEST(SessionTest, TheLateralOfAnOldFileIsX) {
-  SessionDecoder decoder;
   const auto place = [&](std::string_view schema, unsigned number) {
-    const Record record = decoder.decode(schema, one_double(number, 0.02), at_ms(0)).record;
+    SessionDecoder::Parts parts;
+    (void)SessionDecoder::decode(schema, one_double(number, 0.02), at_ms(0), parts);
+    const Record record = parts.take().value();
     if (const auto* tick = std::get_if<SiteTick>(&record)) return tick->place;
     return std::get<DepthEstimate>(record).place;
   };
@@ -314,8 +317,12 @@ TEST(SessionTest, TheLateralOfAnOldFileIsX) {
 }
 
 TEST(SessionTest, AContactSampleOfAnOldFileIsPassedOver) {
-  const auto verdict = SessionDecoder::decode("palp.session.ContactSample", one_double(1, 0), {});
-  EXPECT_EQ(verdict.verdict, SessionDecoder::Verdict::Old);
+  for (const char* name : {"palp.session.ContactSample", "palp.session.ContactReading"}) {
+    SessionDecoder::Parts parts;
+    EXPECT_EQ(SessionDecoder::decode(name, one_double(1, 0), {}, parts),
+              SessionDecoder::Verdict::Old);
+    EXPECT_EQ(parts.size(), 0U);
+  }
 }
 
 RC_GTEST_PROP(SessionTest, AnyBytesAreDecodedOrRefusedNeverTrusted, ()) {
@@ -323,10 +330,11 @@ RC_GTEST_PROP(SessionTest, AnyBytesAreDecodedOrRefusedNeverTrusted, ()) {
   for (const Role site : {Role::Surgeon, Role::Patient}) {
     SessionEncoder encoder{site};
     for (const TopicFormat& format : topics_of(site)) {
-      const auto answer =
-          SessionDecoder::decode(format.schema, std::as_bytes(std::span{bytes}), at_ms(5));
-      if (answer.verdict == SessionDecoder::Verdict::Decoded) {
-        RC_ASSERT(encoder.prepare(answer.record, 0)->topic == format.topic);
+      SessionDecoder::Parts parts;
+      const auto verdict =
+          SessionDecoder::decode(format.schema, std::as_bytes(std::span{bytes}), at_ms(5), parts);
+      if (verdict == SessionDecoder::Verdict::Decoded && parts.size() == 1) {
+        RC_ASSERT(encoder.prepare(*parts.take(), 0)->topic == format.topic);
       }
     }
   }

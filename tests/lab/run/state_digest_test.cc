@@ -72,7 +72,6 @@ TEST(StateDigestTest, EachNumberOfEachRecordCounts) {
     expect_each_member_counts<LinkStatus>(seed);
     expect_each_member_counts<Note>(seed);
     expect_each_member_counts<Transition>(seed);
-    expect_each_member_counts<ContactSample>(seed);
     expect_each_member_counts<DepthEstimate>(seed);
     expect_each_member_counts<DepthArrived>(seed);
   }
