@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "common/core/random.h"
 #include "common/core/time.h"
 #include "common/io/net/endpoint.h"
 
@@ -49,11 +48,13 @@ class Detour {
     return now - arrived_at > kSilence ? Fate::Drop : Fate::Wait;
   }
   /// One that was taken; io has opened it.
-  void heard(const Endpoint& from, std::size_t size, TimePoint now) noexcept {
-    Place* place = place_of(from, now);
-    if (place == nullptr) return;
-    place->credit = std::min(place->credit + kShare * size, kCreditMax);
-    place->heard_at = now;
+  void heard(const Endpoint& from, std::size_t size) noexcept {
+    if (!(places_[0].to == from) && !(places_[1].to == from)) {
+      places_[1] = places_[0];
+      places_[0] = {.to = from};
+    }
+    Place& place = places_[places_[0].to == from ? 0 : 1];
+    place.credit = std::min(place.credit + kShare * size, kCreditMax);
   }
   /// Where a copy of `size` bytes may go, if it may: then it counts. `at`: below kPlaces.
   [[nodiscard]] const Endpoint* spend(std::size_t at, std::size_t size, TimePoint now) noexcept {
@@ -66,30 +67,11 @@ class Detour {
 
  private:
   static constexpr std::size_t kCreditMax = 4096;  ///< [bytes]; what is not used is soon forgotten
-  static constexpr std::uint64_t kChance = 4;      ///< one newcomer in so many takes a place
 
   struct Place {
     Endpoint to;
     std::size_t credit{};  ///< [bytes]
-    TimePoint heard_at{};
   };
-  /// That address's, or one that nobody uses. Where more come than there are places, lots decide:
-  /// who copies each telegram from many addresses must not take both from the sender.
-  [[nodiscard]] Place* place_of(const Endpoint& from, TimePoint now) noexcept {
-    for (Place& one : places_) {
-      if (one.to == from) return &one;
-    }
-    for (Place& one : places_) {
-      if (one.to.valid() && now - one.heard_at <= kSilence) continue;
-      one = {.to = from};
-      return &one;
-    }
-    const std::uint64_t lot = random_bits(0, 0, ++lots_);
-    if (lot % kChance != 0) return nullptr;
-    Place& one = places_[lot / kChance % kPlaces];
-    one = {.to = from};
-    return &one;
-  }
   [[nodiscard]] bool silent(TimePoint now) const noexcept {
     return straight_at_ && now - *straight_at_ >= kSilence;
   }
@@ -97,7 +79,6 @@ class Detour {
   Endpoint former_;
   std::optional<TimePoint> straight_at_;
   std::array<Place, kPlaces> places_;
-  std::uint64_t lots_{};  ///< drawn
 };
 
 }  // namespace palp::io

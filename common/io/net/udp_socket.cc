@@ -250,7 +250,7 @@ std::optional<link::Datagram> UdpSocket::take_detour(
                                .arrived_at = std::min(waiting->arrived_at, now)};
     if (fate == Detour::Fate::Take) {
       // Unless it was proven meanwhile.
-      if (!(waiting->from == peer_)) detour_.heard(waiting->from, waiting->size, now);
+      if (!(waiting->from == peer_)) detour_.heard(waiting->from, waiting->size);
       straight_ = false;
       std::ranges::copy(waiting->datagram(), buffer.begin());
     }

@@ -261,7 +261,7 @@ bool DtlsSession::hear_data(std::span<const std::byte> datagram,
     ++foreign_;
     return false;
   }
-  roaming_.note(header->number, from, datagram.size(), now);
+  roaming_.note(header->number, from, datagram.size(), straight(now), now);
   return true;
 }
 

@@ -24,10 +24,14 @@ constexpr Duration kAlive = milliseconds{100};
 constexpr Duration kAnswerLife = std::chrono::seconds{2};
 constexpr int kSurveys = 3;
 
-/// How long a mark is made anew for; it outlasts each round trip that a session lives with.
-constexpr Duration kSlot = std::chrono::seconds{4};
-
-std::int64_t slot_of(TimePoint now) { return now.time_since_epoch() / kSlot; }
+PathMessage::Nonce draw_nonce() {
+  const std::uint64_t bits = draw_entropy();
+  PathMessage::Nonce bytes{};
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    bytes[i] = static_cast<std::byte>(bits >> (8 * i) & 0xFFU);
+  }
+  return bytes;
+}
 
 }  // namespace
 
@@ -57,46 +61,15 @@ std::vector<std::byte> PathMessage::framed(std::uint64_t number) const {
 void Roaming::begin(const Endpoint& peer) {
   *this = Roaming{};
   peer_ = peer;
+  survey_nonce_ = draw_nonce();
   surveys_left_ = kSurveys;
 }
 
 const Roaming::Candidate* Roaming::find(const Endpoint& address) const {
-  const auto found = std::ranges::find(candidates_, address, &Candidate::address);
-  return found == candidates_.end() ? nullptr : &*found;
-}
-
-/// Whoever comes under ever new addresses takes the places of others, and others his: each telegram
-/// has the same chance. Only an address that answered keeps its place.
-Roaming::Candidate& Roaming::place_of(const Endpoint& address, TimePoint now) {
-  const auto known = std::ranges::find(candidates_, address, &Candidate::address);
-  if (known != candidates_.end() && now - known->heard_at <= kPause) return *known;
-  auto place = known;
-  if (place == candidates_.end()) {
-    place = std::ranges::find_if(candidates_, [now](const Candidate& one) {
-      return !one.address.valid() || now - one.heard_at > kPause;
-    });
+  for (const Place& place : places_) {
+    if (place.candidate && place.candidate->address == address) return &*place.candidate;
   }
-  if (place == candidates_.end()) {
-    const auto first = static_cast<std::size_t>(draw_entropy() % kCandidates);
-    for (std::size_t i = 0; i < kCandidates; ++i) {
-      place = candidates_.begin() + static_cast<std::ptrdiff_t>((first + i) % kCandidates);
-      if (!place->answered_at) break;
-    }
-  }
-  *place = Candidate{};
-  place->address = address;
-  return *place;
-}
-
-PathMessage::Nonce Roaming::mark(const Endpoint& address, std::int64_t slot) const {
-  const AddressCookie::Bytes cookie = cookie_.make(address, {}, TimePoint{slot * kSlot});
-  PathMessage::Nonce nonce{};
-  std::ranges::copy(std::span{cookie}.last(nonce.size()), nonce.begin());
-  return nonce;
-}
-
-PathQuestion Roaming::question_to(const Endpoint& address, TimePoint now) const {
-  return {{PathMessage::Kind::Question, mark(address, slot_of(now)), address.bytes()}, address};
+  return nullptr;
 }
 
 bool Roaming::is_newest(std::uint64_t number, const Straight& straight) const {
@@ -118,12 +91,24 @@ bool Roaming::counts(std::uint64_t number, const Endpoint& from, const Straight&
   return newest - number < kBehindMax && (known == nullptr || known->newest < number);
 }
 
-void Roaming::note(std::uint64_t number, const Endpoint& from, std::size_t size, TimePoint now) {
+void Roaming::note(std::uint64_t number,
+                   const Endpoint& from,
+                   std::size_t size,
+                   const Straight& straight,
+                   TimePoint now) {
+  const bool newest = is_newest(number, straight);
   newest_ = std::max(newest_.value_or(0), number);
-  Candidate& one = place_of(from, now);
-  one.newest = number;
-  one.received += size;
-  one.heard_at = now;
+  const auto known = std::ranges::find_if(
+      places_, [&](const Place& one) { return one.candidate && one.candidate->address == from; });
+  Place& place = known != places_.end() ? *known : places_[newest ? 0 : 1];
+  if (known == places_.end()) {
+    place.candidate.emplace();
+    place.candidate->address = from;
+    place.candidate->nonce = draw_nonce();
+  }
+  place.candidate->newest = number;
+  place.candidate->received += size;
+  place.candidate->heard_at = now;
 }
 
 bool Roaming::came_back(const Candidate& candidate, TimePoint now) const {
@@ -134,59 +119,54 @@ std::optional<PathQuestion> Roaming::survey(TimePoint now) {
   if (surveys_left_ == 0 || now < survey_at_) return std::nullopt;
   --surveys_left_;
   survey_at_ = now + kPause;
-  return question_to(peer_, now);
-}
-
-bool Roaming::may_ask(const Candidate& one, const Straight& straight, TimePoint now) const {
-  if (!one.address.valid() || now - one.heard_at > kPause) return false;
-  if (one.asked_at && now - *one.asked_at < kPause) return false;
-  // Where the present address delivers, nobody has to be asked anything.
-  if (now - straight.heard_at < Detour::kSilence && !came_back(one, now)) return false;
-  return one.sent + kQuestionSize <= kUnprovenShare * one.received;
+  return PathQuestion{{PathMessage::Kind::Question, survey_nonce_, peer_.bytes()}, peer_};
 }
 
 std::optional<PathQuestion> Roaming::ask(const Straight& straight, TimePoint now) {
   if (!peer_.valid()) return std::nullopt;
-  if (auto question = survey(now)) return question;
-  if (questions_paid_until_ > now + (kQuestionsAtOnce - 1) * kQuestionPause) return std::nullopt;
-  const auto open = [&](const Candidate& one) { return may_ask(one, straight, now); };
-  const auto count = static_cast<std::uint64_t>(std::ranges::count_if(candidates_, open));
-  if (count == 0) return std::nullopt;
-  auto one = std::ranges::find_if(candidates_, open);
-  for (std::uint64_t lot = draw_entropy() % count; lot > 0; --lot) {
-    one = std::find_if(std::next(one), candidates_.end(), open);
+  for (Place& place : places_) {
+    std::optional<Candidate>& one = place.candidate;
+    if (one && now - one->heard_at > kPause) one.reset();
+    if (!one || (place.asked_at && now - *place.asked_at < kPause)) continue;
+    // Where the present address delivers, nobody has to be asked anything.
+    if (now - straight.heard_at < Detour::kSilence && !came_back(*one, now)) continue;
+    if (one->sent + kQuestionSize > kUnprovenShare * one->received) continue;
+    place.asked_at = now;
+    one->sent += kQuestionSize;
+    return PathQuestion{{PathMessage::Kind::Question, one->nonce, one->address.bytes()},
+                        one->address};
   }
-  questions_paid_until_ = std::max(questions_paid_until_, now) + kQuestionPause;
-  one->asked_at = now;
-  one->sent += kQuestionSize;
-  return question_to(one->address, now);
+  return survey(now);
 }
 
 bool Roaming::answer(const PathMessage& message, const Endpoint& from, TimePoint now) {
   if (message.kind != PathMessage::Kind::Answer || message.asked != from.bytes()) return false;
-  const std::int64_t slot = slot_of(now);
-  if (message.nonce != mark(from, slot) && message.nonce != mark(from, slot - 1)) return false;
-  if (from == peer_) {
+  if (from == peer_ && message.nonce == survey_nonce_) {
     surveys_left_ = 0;
     return true;
   }
-  Candidate& one = place_of(from, now);
-  one.heard_at = one.answered_at.emplace(now);
-  return true;
+  for (Place& place : places_) {
+    std::optional<Candidate>& one = place.candidate;
+    if (!one || !(one->address == from) || one->nonce != message.nonce) continue;
+    one->answered_at = now;
+    return true;
+  }
+  return false;
 }
 
 std::optional<Endpoint> Roaming::move(const Straight& straight, TimePoint now) {
   if (moved_at_ && now - *moved_at_ < kPause) return std::nullopt;
   const bool silent = now - straight.heard_at >= kSilence;
-  for (const Candidate& one : candidates_) {
-    if (!one.answered_at || now - *one.answered_at > kAnswerLife) continue;
-    const bool back = came_back(one, now);
-    if (now - one.heard_at > kAlive || !(silent || back)) continue;
+  for (const Place& place : places_) {
+    const std::optional<Candidate>& one = place.candidate;
+    if (!one || !one->answered_at || now - *one->answered_at > kAnswerLife) continue;
+    const bool back = came_back(*one, now);
+    if (now - one->heard_at > kAlive || !(silent || back)) continue;
     // Whoever was followed in a gap has no claim to be followed back.
-    former_ = std::exchange(peer_, one.address);
+    former_ = std::exchange(peer_, one->address);
     if (back) former_ = {};
     moved_at_ = now;
-    candidates_ = {};
+    places_ = {};
     return peer_;
   }
   return std::nullopt;

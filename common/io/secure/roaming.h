@@ -10,7 +10,6 @@
 #include "common/core/time.h"
 #include "common/io/net/detour.h"
 #include "common/io/net/endpoint.h"
-#include "common/io/secure/address_cookie.h"
 
 namespace palp::io {
 
@@ -39,30 +38,24 @@ struct PathQuestion {
 /// An address that sent something authentic.
 struct RoamingCandidate {
   Endpoint address;
+  PathMessage::Nonce nonce{};
   std::uint64_t newest{};  ///< number of the telegrams from there
   std::size_t received{};  ///< [bytes] from there
   std::size_t sent{};      ///< [bytes] to there
   TimePoint heard_at{};
-  std::optional<TimePoint> asked_at;
   std::optional<TimePoint> answered_at;
 };
 
 /// The patient's: at which address the surgeon is. It moves to where telegrams come from that are
 /// newer than all, if whoever is there answers, and only when the present address has been silent
 /// for a while: somebody who copies telegrams and is faster than their sender cannot silence him.
-/// Nor can who copies them from many addresses: those that are asked are drawn by lot, and a
-/// question is a mark of the address, so its answer counts whatever came from elsewhere meanwhile.
-/// If an address that was left delivers after all, it is the peer's again. A value but for its
-/// secret. Thread: io.
+/// If an address that was left delivers after all, it is the peer's again. A value. Thread: io.
 class Roaming {
  public:
   /// Without a telegram over the present address, before the peer is taken to have left.
   static constexpr Duration kSilence = std::chrono::milliseconds{50};
-  /// Between two moves, and between two questions to one address.
+  /// Between two moves, between two questions to first comers, and to second ones.
   static constexpr Duration kPause = std::chrono::seconds{1};
-  /// Between two questions to any address in the long run; so many may come at once.
-  static constexpr Duration kQuestionPause = std::chrono::milliseconds{250};
-  static constexpr int kQuestionsAtOnce = 4;
 
   /// What io knows of the telegrams on rt.
   struct Straight {
@@ -83,7 +76,11 @@ class Roaming {
                             const Endpoint& from,
                             const Straight& straight) const;
   /// It did. `size`: [bytes]
-  void note(std::uint64_t number, const Endpoint& from, std::size_t size, TimePoint now);
+  void note(std::uint64_t number,
+            const Endpoint& from,
+            std::size_t size,
+            const Straight& straight,
+            TimePoint now);
   /// Often. nullopt: nothing to ask.
   [[nodiscard]] std::optional<PathQuestion> ask(const Straight& straight, TimePoint now);
   /// @returns false: nobody asked for that.
@@ -92,30 +89,29 @@ class Roaming {
   [[nodiscard]] std::optional<Endpoint> move(const Straight& straight, TimePoint now);
 
  private:
+  /// Of first comers, or of second ones.
   using Candidate = RoamingCandidate;
-  static constexpr std::size_t kCandidates = 8;
+  struct Place {
+    std::optional<Candidate> candidate;
+    std::optional<TimePoint> asked_at;  ///< whoever was here then
+  };
 
   [[nodiscard]] const Candidate* find(const Endpoint& address) const;
-  /// That address's, or one that is free, or the place of one drawn by lot.
-  [[nodiscard]] Candidate& place_of(const Endpoint& address, TimePoint now);
   [[nodiscard]] bool is_newest(std::uint64_t number, const Straight& straight) const;
   /// The address that was left is alive after all.
   [[nodiscard]] bool came_back(const Candidate& candidate, TimePoint now) const;
-  [[nodiscard]] bool may_ask(const Candidate& one, const Straight& straight, TimePoint now) const;
-  /// What a question to that address bears: good until the slot after the next one begins.
-  [[nodiscard]] PathMessage::Nonce mark(const Endpoint& address, std::int64_t slot) const;
-  [[nodiscard]] PathQuestion question_to(const Endpoint& address, TimePoint now) const;
-  /// To the first address of a session, from which the surgeon learns whether it is seen under its
-  /// own address.
   [[nodiscard]] std::optional<PathQuestion> survey(TimePoint now);
 
-  AddressCookie cookie_;
   Endpoint peer_;
   Endpoint former_;
   std::optional<TimePoint> moved_at_;
-  std::optional<std::uint64_t> newest_;            ///< number of the telegrams from elsewhere
-  std::array<Candidate, kCandidates> candidates_;  ///< an address of None: free
-  TimePoint questions_paid_until_{};               ///< of kQuestionPause each
+  std::optional<std::uint64_t> newest_;  ///< number of the telegrams from elsewhere
+  /// Who was the first with a telegram, and who came second: somebody may be faster than the
+  /// sender.
+  std::array<Place, 2> places_;
+  /// The question to the first address of a session, from which the surgeon learns whether it is
+  /// seen under its own address.
+  PathMessage::Nonce survey_nonce_{};
   int surveys_left_{};
   TimePoint survey_at_{};
 };

@@ -23,17 +23,7 @@ from client.programs import Address, Bench, Program
 
 DELAY_S = 0.025
 LEADS_MS = (0, 20, 1, 10, 2, 5)
-CROWD = 4  # ports
-MOVE_S = 6.0
 SCRIPT = ("move -3 0.5", "press 4 1 600")
-
-
-def _bound(host: str) -> socket.socket:
-    one = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    one.bind((host, 0))
-    one.setblocking(False)
-    one.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
-    return one
 
 
 class Observer:
@@ -43,8 +33,14 @@ class Observer:
         """`lead`: by how much a copy is sooner [s]; None: no copy of this one."""
         self.patient, self.lead = patient, lead
         self.surgeon: Address | None = None
-        self.front, self.back = _bound("127.0.0.1"), _bound("127.0.0.1")
-        self.thief = _bound("127.0.0.3")
+        self.front, self.back, self.thief = (
+            socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(3)
+        )
+        for one, host in ((self.front, "127.0.0.1"), (self.back, "127.0.0.1"),
+                          (self.thief, "127.0.0.3")):  # fmt: skip
+            one.bind((host, 0))
+            one.setblocking(False)
+            one.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
         self.seen: Counter[str] = Counter()
         self.asked_at: list[float] = []
         self._order = itertools.count()
@@ -75,16 +71,13 @@ class Observer:
         else:
             self.seen["telegrams to the thief"] += 1
 
-    def _ears(self) -> dict[socket.socket, Callable]:
-        return {
+    def run(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
+        end = time.monotonic() + seconds
+        sockets = {
             self.front: self._from_surgeon,
             self.back: lambda d, _, now: self._from_patient(d, now),
             self.thief: lambda d, _, now: self._at_thief(d, now),
         }
-
-    def run(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
-        end = time.monotonic() + seconds
-        sockets = self._ears()
         while (now := time.monotonic()) < end and not until():
             while self._waiting and self._waiting[0][0] <= now:
                 _, _, by, datagram, to = heapq.heappop(self._waiting)
@@ -107,38 +100,6 @@ class Observer:
         return max(
             (sum(0 <= b - a < 0.999 for b in self.asked_at) for a in self.asked_at), default=0
         )
-
-
-class Crowd(Observer):
-    """Copies from many ports, half of them sooner than the original and half later; the surgeon
-    stands behind a translator, whose address changes."""
-
-    def __init__(self, patient: Address) -> None:
-        super().__init__(patient, lambda t: None)
-        self.thieves = [_bound("127.0.0.3") for _ in range(CROWD)]
-        self.backs = [self.back] + [_bound(f"127.0.0.{4 + i}") for i in range(8)]
-        self.moves = 0
-
-    def _from_surgeon(self, datagram: bytes, source: Address, now: float) -> None:
-        super()._from_surgeon(datagram, source, now)
-        if not self.robs or wire.kind_of(datagram) is None:
-            return
-        for i, thief in enumerate(self.thieves):
-            ahead = (2 + i) * 1e-3 * (1 if i % 2 == 0 else -1)
-            self._later(now + DELAY_S - ahead, thief, datagram, self.patient)
-
-    def _ears(self) -> dict[socket.socket, Callable]:
-        thieves = {one: lambda d, _, now: self._at_thief(d, now) for one in self.thieves}
-        return {**super()._ears(), **thieves}
-
-    def _at_thief(self, datagram: bytes, now: float) -> None:
-        """They cannot send in the patient's name."""
-        self.seen["questions"] += wire.kind_of(datagram) == wire.PATH
-
-    def move(self) -> Address:
-        self.moves += 1
-        self.back = self.backs[self.moves % len(self.backs)]
-        return self.back.getsockname()
 
 
 def _holds(*programs: Program) -> int:
@@ -179,32 +140,7 @@ def flapping(bench: Bench) -> Verdict:
     return _steal(bench, lambda t: 0.02 if t % 0.006 < 0.003 else None)
 
 
-def crowd(bench: Bench) -> Verdict:
-    """Whom the patient asks is drawn by lot, so it finds the surgeon among the copies."""
-    patient = bench.patient()
-    observer = Crowd(patient.address())
-    surgeon = bench.surgeon(observer.front.getsockname(), "--master", bench.script(*SCRIPT))
-    observer.run(20, lambda: "-> ENGAGED" in surgeon.log)
-    observer.robs = True
-    took = []
-    for _ in range(max(2, round(bench.seconds / MOVE_S))):
-        observer.run(1)
-        began = time.monotonic()
-        here = "address is now {}:{}".format(*observer.move())
-        before = patient.count(here)
-        observer.run(MOVE_S, lambda: patient.count(here) > before)
-        took.append(time.monotonic() - began)
-    ended = surgeon.count("session is over") + surgeon.count("no session")
-    return Verdict(
-        f"{CROWD} ports copy, the surgeon's address changes {observer.moves} times, is followed "
-        f"after {sorted(took)[len(took) // 2]:.1f} s (at most {max(took):.1f}), "
-        f"{observer.seen['questions']} questions to the thieves, {ended} sessions lost",
-        max(took) < MOVE_S and ended == 0,
-    )
-
-
 ATTACKS = [
-    Attack("thief-crowd", "copies from 4 ports while the surgeon's address changes", crowd, 12, 60),
     Attack("thief", "copies 0 to 20 ms sooner, and the question handed over", thief, 12, 60),
     Attack("thief-flapping", "the same, every other 3 ms", flapping, 12, 60),
 ]

@@ -125,7 +125,7 @@ struct Site {
       const Detour::Fate fate = wire.detour.fate(one.from, one.arrived_at, now);
       if (fate == Detour::Fate::Wait) return;
       if (fate == Detour::Fate::Drop) continue;
-      if (!(one.from == hears)) wire.detour.heard(one.from, one.datagram().size(), now);
+      if (!(one.from == hears)) wire.detour.heard(one.from, one.datagram().size());
       const auto bytes = one.datagram();
       wire.in.push_back({.bytes = {bytes.begin(), bytes.end()}, .straight = false});
     }
