@@ -2,8 +2,9 @@
 
 It can: stop either process for 1 ms to 5 s, in any phase, as a suspended machine or swap would.
 Must hold: no kick, and no energy from the law but its bound; nobody dies; the session goes on. What
-the held force does while its process stands still no law can take back: it counts as debt, which
-the hand pays before the law may give again (docs/safety.md).
+a hand that moves meanwhile does to the stiffest spring of a law is no kick. What the held force
+does while its process stands still no law can take back: it counts as debt, which the hand pays
+before the law may give again (docs/safety.md).
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from client.session_file import messages
 
 ENERGY_MAX_MJ = 1.05  # of mmt, with a margin of a tick
 FORCE_STEP_MAX_N = 0.5  # in 10 ms
+STIFFEST_N_PER_M = 650.0  # the spring of the laws' tanks
 LONGEST, SHORTEST = 5.0, 0.001  # [s]
 LATE_NS = 1_500_000
 DRAWS_A_SECOND = 0.7  # pauses, and the time between them
@@ -53,10 +55,16 @@ class Account:
         self.given_max = max(self.given_max, self.given)
 
 
+def unexplained(change: float, way: float) -> float:
+    """[N] of a change of force, beyond what the way does: in where it grows, out where it falls."""
+    along = max(0.0, way if change > 0 else -way)
+    return max(0.0, abs(change) - STIFFEST_N_PER_M * along)
+
+
 def account_of(path: Path) -> Account:
     account = Account()
     before = None
-    recent: list[tuple[int, float]] = []
+    recent: list[tuple[int, float, float]] = []
     for at, tick in messages(path, "surgeon/tick"):
         position, force = tick["position_m"], tick["force_n"]
         account.engaged += tick["state"] == ENGAGED
@@ -65,8 +73,9 @@ def account_of(path: Path) -> Account:
             account.late += late
             account.add(-force * (position - before[1]), late)
         before = at, position
-        recent = [(t, f) for t, f in recent if at - t <= 10_000_000] + [(at, force)]
-        account.step_max = max(account.step_max, max(abs(force - f) for _, f in recent))
+        recent = [one for one in recent if at - one[0] <= 10_000_000] + [(at, force, position)]
+        steps = (unexplained(force - f, position - p) for _, f, p in recent)
+        account.step_max = max(account.step_max, max(steps))
     return account
 
 
