@@ -9,7 +9,6 @@ namespace {
 
 using site_program::words;
 
-constexpr const char* kNobody = "nobody answered: the check was left";
 constexpr Duration kReadyPatience = std::chrono::seconds{90};  // a drive may home
 constexpr double kSpeed = 10e-3;                               // [m/s]
 constexpr double kWay = 2e-3;                                  // [m]
@@ -145,9 +144,9 @@ AxisCheck::Flaw AxisCheck::move_by_a_ruler() {
                   seconds(*begun) * 1e3,
                   plan_.lag * 1e3));
   const auto side = talk_.one_of("Which way did it go: out of the tissue or in?", {"out", "in"});
-  if (!side) return kNobody;
+  if (!side) return site_program::kNobodyAnswered;
   const auto way = talk_.number("By how many mm, by the ruler?", 0.05, 100);
-  if (!way) return kNobody;
+  if (!way) return site_program::kNobodyAnswered;
   if (auto flaw = begin()) return flaw;
   if (auto flaw = go(from)) return flaw;
   DeviceInstallation& found = plan_.installation;

@@ -7,13 +7,12 @@ namespace {
 
 using site_program::words;
 
-constexpr const char* kNobody = "nobody answered: the check was left";
 constexpr Duration kTarePatience = std::chrono::seconds{10};
 constexpr Duration kSettle = std::chrono::seconds{1};
 constexpr Duration kLook = std::chrono::seconds{2};
-constexpr double kForceMin = 0.2;     // [N], less is no calibration
-constexpr double kRest = 0.05;        // [-], of the weight, that may stay
-constexpr double kSameScale = 0.005;  // [-]
+constexpr double kForceMin = 0.2;      // [N], less is no calibration
+constexpr double kRest = 0.05;         // [-], of the weight, that may stay
+constexpr double kSameWeight = 0.005;  // [-]
 
 struct Mean {
   double force{};
@@ -60,7 +59,8 @@ std::optional<std::string> mean_over(const std::function<SensorFeeling()>& step,
 Result<SensorFound> check_sensor(const std::function<SensorFeeling()>& step,
                                  const Clock& clock,
                                  site_program::Dialogue& talk) {
-  if (!talk.wait_for_enter("Zero. Let nothing touch the sensor.")) return fail(kNobody);
+  if (!talk.wait_for_enter("Zero. Let nothing touch the sensor."))
+    return fail(site_program::kNobodyAnswered);
   SensorFeeling one;
   for (const TimePoint began = clock.now(); !one.ready && clock.now() - began < kTarePatience;) {
     one = step();
@@ -79,18 +79,18 @@ Result<SensorFound> check_sensor(const std::function<SensorFeeling()>& step,
       "many newtons (100 g are 0.981 N)?",
       kForceMin,
       1000);
-  if (!weight) return fail(kNobody);
+  if (!weight) return fail(site_program::kNobodyAnswered);
   Mean loaded;
   if (auto flaw = mean_over(step, clock, loaded)) return fail(*flaw);
   const double felt = loaded.force - quiet.force;
   if (std::abs(felt) < 10 * found.noise) return fail("it did not feel the weight");
   found.scale = *weight / felt;
-  if (std::abs(found.scale - 1) < kSameScale) found.scale = 1;
+  if (std::abs(found.scale - 1) < kSameWeight) found.scale = 1;
   talk.say(words("  it read %.3f N: %s, its unit times %.4f",
                  felt,
                  felt > 0 ? "compression is positive" : "the other way round",
                  std::abs(found.scale)));
-  if (!talk.wait_for_enter("Take the weight away.")) return fail(kNobody);
+  if (!talk.wait_for_enter("Take the weight away.")) return fail(site_program::kNobodyAnswered);
   Mean after;
   if (auto flaw = mean_over(step, clock, after)) return fail(*flaw);
   const double left = std::abs((after.force - quiet.force) * found.scale);

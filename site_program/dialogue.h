@@ -7,6 +7,9 @@
 
 namespace palp::site_program {
 
+/// How a check ends that got no answer.
+inline constexpr const char* kNobodyAnswered = "nobody answered: the check was left";
+
 /// Questions to a person, and the answers, a line each. An answer that is none is asked for again,
 /// three times in all. The end of the input answers nothing. Thread: main. Blocks.
 class Dialogue {

@@ -10,7 +10,6 @@ namespace {
 using site_program::words;
 using std::chrono::milliseconds;
 
-constexpr const char* kNobody = "nobody answered: the check was left";
 constexpr Duration kCheckStep = milliseconds{1};
 constexpr Duration kReadyPatience = std::chrono::seconds{5};
 constexpr Duration kShort = milliseconds{300};
@@ -105,7 +104,7 @@ MasterCheck::Flaw MasterCheck::watch(Duration span, Seen& seen) {
 }
 
 MasterCheck::Flaw MasterCheck::look_at_rest() {
-  if (!talk_.wait_for_enter("Rest. Let go of it.")) return kNobody;
+  if (!talk_.wait_for_enter("Rest. Let go of it.")) return site_program::kNobodyAnswered;
   Seen seen;
   if (auto flaw = watch(std::chrono::seconds{1}, seen)) return flaw;
   noise_ = seen.spread;
@@ -116,13 +115,13 @@ MasterCheck::Flaw MasterCheck::look_at_rest() {
 
 MasterCheck::Flaw MasterCheck::measure_scale() {
   if (!talk_.wait_for_enter("Scale. Put it in the middle of its way, and a ruler beside it.")) {
-    return kNobody;
+    return site_program::kNobodyAnswered;
   }
   Seen before;
   if (auto flaw = watch(kShort, before)) return flaw;
   const auto way = talk_.number(
       "Move it as into the tissue, 10 mm or more, and hold it. By how many mm?", 1, 500);
-  if (!way) return kNobody;
+  if (!way) return site_program::kNobodyAnswered;
   Seen after;
   if (auto flaw = watch(kShort, after)) return flaw;
   const double moved = after.place - before.place;
@@ -142,7 +141,8 @@ MasterCheck::Flaw MasterCheck::measure_scale() {
 }
 
 MasterCheck::Flaw MasterCheck::set_zero() {
-  if (!talk_.wait_for_enter("Zero. Hold it where the tissue's surface shall be.")) return kNobody;
+  if (!talk_.wait_for_enter("Zero. Hold it where the tissue's surface shall be."))
+    return site_program::kNobodyAnswered;
   Seen seen;
   if (auto flaw = watch(kShort, seen)) return flaw;
   MasterInstallation& built_in = plan_.installation;
@@ -154,9 +154,11 @@ MasterCheck::Flaw MasterCheck::set_zero() {
 MasterCheck::Flaw MasterCheck::find_limits() {
   Seen out;
   Seen in;
-  if (!talk_.wait_for_enter("Limits. Pull it out to its stop and hold it.")) return kNobody;
+  if (!talk_.wait_for_enter("Limits. Pull it out to its stop and hold it."))
+    return site_program::kNobodyAnswered;
   if (auto flaw = watch(kShort, out)) return flaw;
-  if (!talk_.wait_for_enter("Push it in to its stop and hold it.")) return kNobody;
+  if (!talk_.wait_for_enter("Push it in to its stop and hold it."))
+    return site_program::kNobodyAnswered;
   if (auto flaw = watch(kShort, in)) return flaw;
   if (in.place - out.place < 4 * kMargin) return "its way is no way: in is not beyond out";
   plan_.installation.travel_min = out.place - kMargin;
@@ -228,7 +230,7 @@ MasterCheck::Flaw MasterCheck::weigh() {
   }
   device_->stop();
   const auto shown = talk_.number("How many newtons did it show (100 g are 0.981 N)?", 0.01, 50);
-  if (!shown) return kNobody;
+  if (!shown) return site_program::kNobodyAnswered;
   const double factor = *shown / force;
   if (std::abs(factor - 1) > kSameScale) plan_.installation.force_unit *= factor;
   talk_.say(words("  %.6g mN per count", plan_.installation.force_unit * 1e3));

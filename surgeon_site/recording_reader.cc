@@ -17,7 +17,7 @@ namespace {
 
 constexpr Duration kPointEvery = std::chrono::milliseconds{10};
 constexpr Duration kRecordingMax = std::chrono::hours{4};
-constexpr double kReachMax = 0.2;        ///< [m], of a hand that can be meant
+constexpr double kMeantMax = 0.2;        ///< [m], of a hand that can be meant
 constexpr double kForceMax = 100;        ///< [N]
 constexpr double kInTissue = 0.75e-3;    ///< [m], past the surface
 constexpr double kStrokeDepth = 1.5e-3;  ///< [m], least of a tap
@@ -42,7 +42,7 @@ class HandMeans {
     const Duration at = elapsed(*began_at_, tick.at);
     const double position = tick.position - surface_;
     const bool sound = at >= Duration{0} && at <= kRecordingMax && at >= newest_ &&
-                       std::abs(position) <= kReachMax && std::abs(tick.force) <= kForceMax &&
+                       std::abs(position) <= kMeantMax && std::abs(tick.force) <= kForceMax &&
                        is_finite(tick.place);
     if (!sound) return false;
     newest_ = at;
@@ -147,7 +147,7 @@ double surface_of(const record::SessionReader& reader) {
   double value{};
   if (!text) return 0;
   const auto [stop, error] = std::from_chars(text->data(), text->data() + text->size(), value);
-  const bool sound = error == std::errc{} && std::abs(value) <= kReachMax * 1e3;
+  const bool sound = error == std::errc{} && std::abs(value) <= kMeantMax * 1e3;
   return sound ? value * 1e-3 : 0;
 }
 
