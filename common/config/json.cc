@@ -163,9 +163,9 @@ const Json& Json::operator[](std::string_view name) const {
 }
 
 const Json& Json::at_or_null(std::string_view name) const noexcept {
-  static const Json kNull;
+  static const Json none;
   const Json* const found = find(name);
-  return found != nullptr ? *found : kNull;
+  return found != nullptr ? *found : none;
 }
 
 void Json::update(const Json& other) {

@@ -65,7 +65,7 @@ Prepared SessionEncoder::write(Topic topic, TimePoint at, const Message& message
 }
 
 std::optional<Prepared> SessionEncoder::prepare(const Record& record,
-                                                std::uint64_t records_dropped) noexcept {
+                                                std::uint64_t records_dropped) {
   using Answer = std::optional<Prepared>;
   const bool surgeon = site_ == Role::Surgeon;
   // What the other site alone says is left out.

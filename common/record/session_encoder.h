@@ -59,7 +59,7 @@ class SessionEncoder {
 
   /// nullopt: this site's file has no topic for such a record. `records_dropped` rides on
   /// LinkStatus.
-  std::optional<Prepared> prepare(const Record& record, std::uint64_t records_dropped) noexcept;
+  std::optional<Prepared> prepare(const Record& record, std::uint64_t records_dropped);
   Prepared prepare(const TickView& view) noexcept;
   /// A tick of the site with what it was given.
   Prepared prepare(const SurgeonFileTick& tick) noexcept;
