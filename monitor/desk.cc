@@ -20,7 +20,13 @@ constexpr std::size_t kKeptMax = 200;
 constexpr std::size_t kSubscriptionsMax = 64;
 constexpr std::string_view kPointerTopic = "monitor/pointer";
 
-enum ServiceId : std::uint32_t { kMark = 1, kStop, kReset, kEnd, kTake, kGive };
+// Numbers of services.
+constexpr std::uint32_t kMark = 1;
+constexpr std::uint32_t kStop = 2;
+constexpr std::uint32_t kReset = 3;
+constexpr std::uint32_t kEnd = 4;
+constexpr std::uint32_t kTake = 5;
+constexpr std::uint32_t kGive = 6;
 
 std::uint32_t channel_id(Topic topic) noexcept { return static_cast<std::uint32_t>(topic) + 1; }
 
