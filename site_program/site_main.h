@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -47,12 +48,13 @@ ExitStatus run_session(tl::expected<Plan, ExitStatus> plan, SiteReport& report) 
   report.coupling = plan->settings.coupling.name;
   const settings::RecordSettings& files = plan->settings.record;
   report.session_file = files.files.empty() ? files.file : files.files + "*.mcap";
-  io::Terminal terminal;
+  std::optional<io::Terminal> terminal{std::in_place};
   if (plan->settings.protection.insecure) {
     io::warn("datagrams are neither encrypted nor authenticated: they stay on this machine");
   }
   Program program{std::move(*plan)};
-  report.exit_status = program.run(terminal);
+  report.exit_status = program.run(*terminal);
+  terminal.reset();  // what ends from here on ends by itself
   program.stop(report);
   return with_recording(report.exit_status, report.records);
 }

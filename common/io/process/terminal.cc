@@ -34,6 +34,16 @@ sigset_t stop_signals() noexcept {
   return set;
 }
 
+void heed_no_signal(int /*signal*/) {}
+
+/// From now on `heed` takes a signal once; a further one has its usual effect.
+void heed_once(int signal, void (*heed)(int)) noexcept {
+  struct sigaction action {};
+  action.sa_handler = heed;
+  action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
+  (void)sigaction(signal, &action, nullptr);
+}
+
 }  // namespace
 
 Terminal::Terminal() {
@@ -75,10 +85,13 @@ void Terminal::restore() noexcept {
     tcsetattr(STDIN_FILENO, TCSANOW, &before_);
     keys_ = false;
   }
-  // Also where they were ignored, as a shell does for its background jobs.
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
   const sigset_t set = stop_signals();
+  // Also where they were ignored, as a shell does for its background jobs. Who asks a program to
+  // end that is ending by itself shall not cost its report.
+  const auto next = cause_ ? SIG_DFL : heed_no_signal;
+  heed_once(SIGINT, next);
+  heed_once(SIGTERM, next);
+  if (sigismember(&set, SIGHUP) == 1) heed_once(SIGHUP, next);
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }
 

@@ -13,16 +13,16 @@ namespace palp::io {
 
 enum class StopCause : std::uint8_t { Key, Signal };
 
-/// The person at the terminal: r asks for a reset, m marks a moment, t
-/// asks for a tare; any other key, ^C, SIGTERM or
-/// the terminal's own end asks the program to stop; a second signal ends it hard. That nobody reads
-/// its output any more does not end it. Make it first in main, before any thread: threads inherit
-/// that the signals wait. Keys are read one by one and without echo while standard input is a
-/// terminal and the program in its foreground. One to a process. Thread: main.
+/// The person at the terminal: r asks for a reset, m marks a moment, t asks for a tare; any other
+/// key, ^C, SIGTERM or the terminal's own end asks the program to stop; a second signal ends it
+/// hard. That nobody reads its output any more does not end it. Make it first in main, before any
+/// thread: threads inherit that the signals wait. Keys are read one by one and without echo while
+/// standard input is a terminal and the program in its foreground. One to a process. Thread: main.
 class Terminal {
  public:
   Terminal();
-  /// Puts the terminal back; the signals have their usual effect again.
+  /// Puts the terminal back. A program that was asked to stop is ended by the next signal; one that
+  /// ends by itself by the second, the first is too late to ask anything.
   ~Terminal();
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;

@@ -94,6 +94,35 @@ TEST(TerminalDeathTest, OutputThatNobodyReadsEndsNoProgram) {
   EXPECT_EXIT(write_to_a_pipe_without_reader(), testing::ExitedWithCode(0), "");
 }
 
+TEST(TerminalDeathTest, OneSignalDoesNotCostTheReportOfWhatEndsByItself) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        {
+          const Terminal terminal;
+          kill(getpid(), SIGINT);
+        }
+        _exit(0);
+      },
+      testing::ExitedWithCode(0),
+      "");
+}
+
+TEST(TerminalDeathTest, AFurtherSignalEndsAlsoWhatEndsByItself) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        {
+          const Terminal terminal;
+          kill(getpid(), SIGTERM);
+        }
+        kill(getpid(), SIGTERM);
+        _exit(0);
+      },
+      testing::KilledBySignal(SIGTERM),
+      "");
+}
+
 TEST(TerminalDeathTest, SecondSignalEndsTheProgram) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
