@@ -195,6 +195,17 @@ void demand_none(const path& file, const char* what) {
   }
 }
 
+/// A list that another authority signed makes a site refuse all of its peers.
+void demand_no_old_list(const CertificatesConfig& config) {
+  for (const char* place : {"authority", "surgeon", "patient"}) {
+    const path file = path{config.folder} / place / "revoked.pem";
+    if (!std::filesystem::exists(file)) continue;
+    throw std::runtime_error{file.string() + " is of an authority that is not here any more: put " +
+                             (path{config.folder} / "authority").string() +
+                             " back, or make certificates in a new folder"};
+  }
+}
+
 /// What is thrown here, as a sentence.
 template <class Work>
 Result<std::string> told(Work work) {
@@ -238,6 +249,11 @@ std::string revoke(const CertificatesConfig& config, const std::string& certific
   if (revoked == nullptr) throw std::runtime_error{certificate + " holds no certificate"};
   const bool ours = X509_verify(revoked.get(), authority.key.get()) == 1;
   ERR_clear_error();
+  if (X509_cmp(revoked.get(), authority.certificate.get()) == 0) {
+    throw std::runtime_error{certificate +
+                             " is the authority's own, which no list of its own can "
+                             "revoke; make new certificates in another folder"};
+  }
   if (!ours) {
     throw std::runtime_error{certificate + " was not made by the authority in " +
                              (folder / "authority").string()};
@@ -273,6 +289,7 @@ Result<std::string> make_certificates(const CertificatesConfig& config) {
     }
     const path folder = path{config.folder} / "authority";
     const bool there = std::filesystem::exists(folder / "key.pem");
+    if (!there) demand_no_old_list(config);
     const Holder authority = there ? read_holder(folder) : new_authority(config, folder);
     make_site(config, authority, link::Role::Surgeon);
     make_site(config, authority, link::Role::Patient);

@@ -45,6 +45,27 @@ TEST(CertificatesTest, AnotherAuthoritysCertificateCannotBeRevoked) {
   EXPECT_FALSE(std::filesystem::exists(keys.site(Role::Patient) / "revoked.pem"));
 }
 
+TEST(CertificatesTest, AnAuthorityCannotRevokeItself) {
+  const KeysFolder keys{"itself"};
+  const auto refused = revoke_certificate(keys.config(), keys.path() / "authority/certificate.pem");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().text, HasSubstr("is the authority's own"));
+  EXPECT_FALSE(std::filesystem::exists(keys.site(Role::Patient) / "revoked.pem"));
+}
+
+TEST(CertificatesTest, ANewAuthorityDoesNotBeginBesideTheListOfAnother) {
+  const KeysFolder keys{"begun"};
+  const auto certificate = keys.site(Role::Surgeon) / "certificate.pem";
+  ASSERT_TRUE(revoke_certificate(keys.config(), certificate));
+  std::filesystem::rename(keys.path() / "authority", keys.path() / "stick");
+  const auto refused = make_certificates(keys.config());
+  ASSERT_FALSE(refused) << "each site would refuse the other: the list is not their authority's";
+  EXPECT_THAT(refused.error().text, HasSubstr("revoked.pem is of an authority that is not here"));
+  EXPECT_FALSE(std::filesystem::exists(keys.path() / "authority"));
+  std::filesystem::rename(keys.path() / "stick", keys.path() / "authority");
+  EXPECT_TRUE(make_certificates(keys.config()));
+}
+
 TEST(CertificatesTest, NewFoldersOfSitesKnowWhatWasRevoked) {
   const KeysFolder keys{"folders"};
   ASSERT_TRUE(revoke_certificate(keys.config(), keys.site(Role::Surgeon) / "certificate.pem"));
