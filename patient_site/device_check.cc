@@ -13,6 +13,19 @@
 #include "patient_site/settings_devices.h"
 
 namespace palp::patient {
+namespace {
+
+template <class Reading>
+SensorFeeling feeling_of(const Reading& reading, bool ready) {
+  return {.ready = ready,
+          .trouble = {},
+          .number = reading.number,
+          .force = reading.force,
+          .zero = reading.zero,
+          .saturated = reading.saturated};
+}
+
+}  // namespace
 
 const DevicePlan* DeviceCheck::plan_named(const std::string& name) const {
   const std::optional<DevicePlan>* const plan = name == "normal" ? &plans_.normal
@@ -54,14 +67,9 @@ Result<void> DeviceCheck::check_force(DevicePlan& plan, io::RegisterPort& port) 
   const auto step = [&] {
     clock_.pass(plan.profile.period);
     const DeviceReading reading = device.cycle(clock_, {});
-    SensorFeeling one;
-    one.ready = reading.state == DeviceState::Ready;
-    if (reading.state == DeviceState::Fault) one.trouble = describe_reason(reading, plan.profile);
-    one.number = reading.number;
-    one.force = reading.force;
-    one.zero = reading.zero;
-    one.saturated = reading.saturated;
-    return one;
+    SensorFeeling felt = feeling_of(reading, reading.state == DeviceState::Ready);
+    if (reading.state == DeviceState::Fault) felt.trouble = describe_reason(reading, plan.profile);
+    return felt;
   };
   const auto found = check_sensor(step, clock_, talk_);
   device.stop();
@@ -91,14 +99,9 @@ Result<std::string> DeviceCheck::check_card(const std::string& file) {
   const auto step = [&] {
     clock_.pass(std::chrono::milliseconds{1});
     const CardReading reading = card.cycle(clock_, {});
-    SensorFeeling one;
-    one.ready = reading.state == CardState::Ready;
-    if (reading.state == CardState::Fault) one.trouble = reading.why;
-    one.number = reading.number;
-    one.force = reading.force;
-    one.zero = reading.zero;
-    one.saturated = reading.saturated;
-    return one;
+    SensorFeeling felt = feeling_of(reading, reading.state == CardState::Ready);
+    if (reading.state == CardState::Fault) felt.trouble = reading.why;
+    return felt;
   };
   const auto found = check_sensor(step, clock_, talk_);
   card.stop();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/check.h"
 #include "common/core/lapse.h"
 
 namespace palp::surgeon {
@@ -21,7 +22,11 @@ struct ForceGrowthConfig {
 /// rt. A value.
 class ForceGrowth {
  public:
-  explicit ForceGrowth(const ForceGrowthConfig& config) noexcept : config_{config} {}
+  explicit ForceGrowth(const ForceGrowthConfig& config) : config_{config} {
+    PALP_CHECK(config.slew > 0 && config.at_once >= 0 && config.stiffness >= 0 &&
+                   config.damping >= 0 && config.memory > 0,
+               "a force may grow");
+  }
 
   /// Once a tick. `way`: of the hand since the last one [m], positive into the tissue. Of a late
   /// tick only one period's share explains what is done now.
