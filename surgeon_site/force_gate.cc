@@ -13,11 +13,6 @@ constexpr bool may_carry_force(SiteState state) noexcept {
   return state == SiteState::Engaged || state == SiteState::Hold || state == SiteState::Retract;
 }
 
-/// `force`, but no larger than `target` asks for, and 0 where that has the other sign.
-constexpr double nearer_to_zero(double force, double target) noexcept {
-  return target >= 0 ? std::clamp(force, 0.0, target) : std::clamp(force, target, 0.0);
-}
-
 }  // namespace
 
 ForceGate::ForceGate(const ForceGateConfig& config) noexcept
@@ -42,7 +37,7 @@ void ForceGate::heat_up(Duration passed) noexcept {
 
 ForceAnswer ForceGate::pass(const ForceRequest& asked, const Lapse& lapse) noexcept {
   heat_up(lapse.passed());
-  growth_.move(finite_or(asked.way, 0), lapse);
+  growth_.move(finite_or(asked.way, 0), finite_or(asked.velocity, 0), lapse);
 
   const bool finite = std::isfinite(asked.force);
   const double wanted = finite ? asked.force : 0;
@@ -53,7 +48,7 @@ ForceAnswer ForceGate::pass(const ForceRequest& asked, const Lapse& lapse) noexc
     force_ = 0;
   } else if (open) {
     // Holding a force up that the law lets go of would give the hand energy behind the law's back.
-    force_ = growth_.grow(nearer_to_zero(force_, target), target);
+    force_ = growth_.follow(force_, target);
   } else {
     growth_.forget();
     const double payable = std::min(force_, finite_or(asked.fade_max, force_));

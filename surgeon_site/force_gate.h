@@ -19,8 +19,9 @@ struct ForceGateConfig {
 };
 
 struct ForceRequest {
-  double force{};  ///< [N], as the law asks; anything, also NaN
-  double way{};    ///< [m], of the hand since the last tick, positive into the tissue
+  double force{};     ///< [N], as the law asks; anything, also NaN
+  double way{};       ///< [m], of the hand since the last tick, positive into the tissue
+  double velocity{};  ///< [m/s], of the hand
   SiteState state{};
   bool pedal_held{};
   bool cut{};  ///< emergency stop or a faulted device: zero at once

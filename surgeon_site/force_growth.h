@@ -17,9 +17,10 @@ struct ForceGrowthConfig {
 };
 
 /// How a force on the hand may grow: as the hand's own motion through the stiffest tissue explains,
-/// and by a slew beside. So no lie, no news and no pause is a kick, whatever law believes it. A
-/// force that falls is not held up: that would give the hand energy which nobody pays for. Thread:
-/// rt. A value.
+/// and by a slew beside. So no lie, no news and no pause is a kick, whatever law believes it. What
+/// is explained is the net motion: a hand that goes to and fro, or an encoder that cannot decide
+/// between two counts, explains no more than its swing. A force that falls is not held up: that
+/// would give the hand energy which nobody pays for. Thread: rt. A value.
 class ForceGrowth {
  public:
   explicit ForceGrowth(const ForceGrowthConfig& config) : config_{config} {
@@ -28,39 +29,46 @@ class ForceGrowth {
                "a force may grow");
   }
 
-  /// Once a tick. `way`: of the hand since the last one [m], positive into the tissue. Of a late
-  /// tick only one period's share explains what is done now.
-  void move(double way, const Lapse& lapse) noexcept {
-    const double span = seconds(lapse.period);
-    const double speed = way / seconds(lapse.passed());
-    const double faster = speed - speed_;
-    speed_ = speed;
+  /// Once a tick. `way`: of the hand since the last one [m], positive into the tissue; `velocity`
+  /// [m/s]: as its device says, which smooths it. Of a late tick only one period's share of the way
+  /// explains what is done now.
+  void move(double way, double velocity, const Lapse& lapse) noexcept {
+    const double share = seconds(lapse.period) / seconds(lapse.passed());
     const double kept = std::max(0.0, 1 - seconds(lapse.passed()) / config_.memory);
-    const double pushed = config_.stiffness * speed * span;
-    in_ = kept * in_ + std::max(0.0, pushed) + config_.damping * std::max(0.0, faster);
-    out_ = kept * out_ + std::max(0.0, -pushed) + config_.damping * std::max(0.0, -faster);
-    spare_ = std::min(config_.at_once, spare_ + config_.slew * span);
+    const double news = config_.stiffness * way * share + config_.damping * (velocity - velocity_);
+    explained_ = std::clamp(kept * explained_ + news, -kMost, kMost);
+    velocity_ = velocity;
+    spare_ = std::min(config_.at_once, spare_ + config_.slew * seconds(lapse.period));
   }
   /// What moved while the gate was closed explains nothing.
-  void forget() noexcept { in_ = out_ = 0; }
-  /// From `force` towards `target` [N], which has the same sign and is no smaller.
-  [[nodiscard]] double grow(double force, double target) noexcept {
-    double& explained = target >= 0 ? in_ : out_;
-    const double wanted = std::abs(target) - std::abs(force);
-    const double by_motion = std::min(wanted, explained);
+  void forget() noexcept { explained_ = 0; }
+  /// From `force` towards `target` [N]; it falls at once.
+  [[nodiscard]] double follow(double force, double target) noexcept {
+    const double side = target >= 0 ? 1 : -1;
+    const double kept = std::min(std::max(0.0, side * force), std::abs(target));
+    take_back(force, std::abs(force) - kept);
+    const double wanted = std::abs(target) - kept;
+    const double by_motion = std::min(wanted, std::max(0.0, side * explained_));
     const double beside = std::min(wanted - by_motion, spare_);
-    explained -= by_motion;
+    explained_ -= side * by_motion;
     spare_ -= beside;
-    if (by_motion + beside >= wanted) return target;
-    return std::copysign(std::abs(force) + by_motion + beside, target);
+    return by_motion + beside >= wanted ? target : side * (kept + by_motion + beside);
   }
 
  private:
+  static constexpr double kMost = 10;  ///< [N], more than a device's peak
+
+  /// A force that falls as the hand goes out may come again as the hand comes back.
+  void take_back(double force, double fall) noexcept {
+    if (force > 0 && explained_ < 0) explained_ = std::min(0.0, explained_ + fall);
+    if (force < 0 && explained_ > 0) explained_ = std::max(0.0, explained_ - fall);
+  }
+
   ForceGrowthConfig config_;
-  double speed_{};  ///< [m/s], of the last tick
-  double in_{};     ///< [N], by which a force that pushes the hand out may grow
-  double out_{};    ///< [N], the same of one that pulls it in
-  double spare_{};  ///< [N]
+  double velocity_{};   ///< [m/s], of the last tick
+  double explained_{};  ///< [N], by which a force that pushes the hand out may grow; below 0: one
+                        ///< that pulls it in
+  double spare_{};      ///< [N]
 };
 
 }  // namespace palp::surgeon

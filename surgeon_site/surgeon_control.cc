@@ -151,6 +151,7 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
   const bool cut = hand_.faulted || hand_.emergency_stop || in.user.emergency_stop;
   answer_ = gate_.pass({.force = wanted.force,
                         .way = decision.engaged_now ? 0 : given.position - now_.position,
+                        .velocity = given.velocity,
                         .state = now_.state,
                         .pedal_held = hand_.pedal_held,
                         .cut = cut,

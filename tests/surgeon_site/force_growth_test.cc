@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "surgeon_site/encoder.h"
 
 namespace palp::surgeon {
 namespace {
@@ -14,8 +18,8 @@ using std::chrono_literals::operator""ms;
 double grown(ForceGrowth& growth, double speed, int ticks, double target = 100) {
   double force = 0;
   for (int i = 0; i < ticks; ++i) {
-    growth.move(1e-3 * speed, 1ms);
-    force = growth.grow(force, target);
+    growth.move(1e-3 * speed, speed, 1ms);
+    force = growth.follow(force, target);
   }
   return force;
 }
@@ -40,21 +44,67 @@ TEST(ForceGrowthTest, AWayOutExplainsOnlyAForceThatPullsTheHandIn) {
 
 TEST(ForceGrowthTest, AMotionExplainsNothingForLong) {
   ForceGrowth growth{{}};
-  growth.move(10e-3, 1ms);
-  for (int i = 0; i < 200; ++i) growth.move(0, 1ms);
-  EXPECT_LE(growth.grow(0, 100), 0.06);
+  growth.move(10e-3, 0, 1ms);
+  for (int i = 0; i < 200; ++i) growth.move(0, 0, 1ms);
+  EXPECT_LE(growth.follow(0, 100), 0.06);
 }
 
 TEST(ForceGrowthTest, OfALateTickOnePeriodsShareExplains) {
   ForceGrowth growth{{.damping = 0}};
-  growth.move(100e-3, {1ms, 100});
-  EXPECT_NEAR(growth.grow(0, 100), 1500 * 1e-3 + 0.04, 1e-9);
+  growth.move(100e-3, 1, {1ms, 100});
+  EXPECT_NEAR(growth.follow(0, 100), 1500 * 1e-3 + 0.04, 1e-9);
 }
 
 TEST(ForceGrowthTest, ASmallTargetIsReachedExactly) {
   ForceGrowth growth{{}};
-  growth.move(0, 1ms);
-  EXPECT_EQ(growth.grow(0, 0.03), 0.03);
+  growth.move(0, 0, 1ms);
+  EXPECT_EQ(growth.follow(0, 0.03), 0.03);
+}
+
+TEST(ForceGrowthTest, AForceThatFallsOrTurnsIsNotHeldUp) {
+  ForceGrowth growth{{}};
+  EXPECT_EQ(growth.follow(2, 0.5), 0.5);
+  EXPECT_EQ(growth.follow(2, -1), 0);
+  EXPECT_EQ(growth.follow(-2, -0.5), -0.5);
+}
+
+TEST(ForceGrowthTest, ASpringUnderAQuickHandIsLeftAlone) {
+  ForceGrowth growth{{.slew = 1e-9, .at_once = 0}};
+  double force = 0;
+  double before = 0;
+  for (int i = 0; i <= 500; ++i) {
+    const double position = 1e-3 * (1 - std::cos(0.15 * i));  // [m], 24 Hz
+    growth.move(position - before, 0, 1ms);
+    before = position;
+    force = growth.follow(force, 1400 * position);
+    ASSERT_NEAR(force, 1400 * position, 0.15 * 1400 * 2e-3) << i;
+  }
+}
+
+/// A hand at rest where an encoder cannot decide between two counts, and a peer that lies.
+RC_GTEST_PROP(ForceGrowthTest, AnEncoderThatCannotDecideExplainsNoMoreThanItsStep, ()) {
+  const double step = *rc::gen::element(5e-6, 30e-6, 100e-6);  // [m]
+  const ForceGrowthConfig config;
+  ForceGrowth growth{config};
+  Encoder encoder{step, 60, 0};
+  double force = 0;
+  double slowest = 0;
+  double fastest = 0;
+  std::deque<double> last(10, 0.0);
+  for (int i = 0; i < 300; ++i) {
+    const double before = encoder.position();
+    encoder.sample(*rc::gen::element(0.0, step), 1ms);
+    slowest = std::min(slowest, encoder.velocity());
+    fastest = std::max(fastest, encoder.velocity());
+    growth.move(encoder.position() - before, encoder.velocity(), 1ms);
+    force = growth.follow(force, *rc::gen::element(0.0, 1.0, 100.0));
+    const double swing = config.stiffness * step + config.damping * (fastest - slowest);
+    // What leaks away in the memory comes again.
+    const double again = swing * 10e-3 / config.memory;
+    RC_ASSERT(force - *std::ranges::min_element(last) <= 0.45 + swing + again + 1e-9);
+    last.pop_front();
+    last.push_back(force);
+  }
 }
 
 }  // namespace
