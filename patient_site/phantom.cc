@@ -15,6 +15,7 @@
 #include "common/core/check.h"
 #include "common/core/conventions.h"
 #include "depth/depth_database.h"
+#include "patient_site/drawn_tissue.h"
 #include "patient_site/phantom_tables.h"
 
 namespace palp::patient {
@@ -246,6 +247,16 @@ Result<Phantom> file_phantom(std::string_view spec, std::string_view path) {
                  .survey = several ? std::move(*curves) : std::vector<PlacedCurve>{}};
 }
 
+Result<Phantom> random_phantom(std::string_view spec, std::string_view seed_text) {
+  std::uint64_t seed = 0;
+  const char* end = seed_text.data() + seed_text.size();
+  const auto [stop, error] = std::from_chars(seed_text.data(), end, seed);
+  if (error != std::errc{} || stop != end) {
+    return fail("phantom '" + std::string{spec} + "': the seed must be a whole number");
+  }
+  return drawn_tissue(seed);
+}
+
 void append_rows(std::string& text, const Place& place, const ForceTable& table) {
   std::array<char, 96> line{};
   for (const ForceRow& row : table.rows()) {
@@ -328,12 +339,14 @@ Result<Phantom> make_phantom(std::string_view spec) {
     if (named) return law_phantom(spec, law);
   }
   if (spec.starts_with("ball ") || spec.starts_with("cylinder ")) return database_phantom(spec);
+  constexpr std::string_view kRandom = "random:";
+  if (spec.starts_with(kRandom)) return random_phantom(spec, spec.substr(kRandom.size()));
   constexpr std::string_view kFile = "file:";
   if (spec.starts_with(kFile)) return file_phantom(spec, spec.substr(kFile.size()));
   return fail("unknown phantom '" + std::string{spec} +
               "'; there are paper-5mm, paper-10mm, paper-15mm, paper-20mm, paper-25mm, none, "
               "closed-form[:DEPTH_MM], exponential[:DEPTH_MM], relaxing[:DEPTH_MM], "
-              "draining[:DEPTH_MM], layered[:DEPTH_MM], file:PATH.csv and "
+              "draining[:DEPTH_MM], layered[:DEPTH_MM], random:SEED, file:PATH.csv and "
               "\"ball depth=12 radius=8 ratio=200 at=20,0\" (or cylinder)");
 }
 

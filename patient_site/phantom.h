@@ -73,10 +73,10 @@ struct Phantom {
 
 /// `paper-5mm|paper-10mm|paper-15mm|paper-20mm|paper-25mm|none`, `closed-form[:DEPTH_MM]`,
 /// `exponential[:DEPTH_MM]`, `relaxing[:DEPTH_MM]`, `draining[:DEPTH_MM]`, `layered[:DEPTH_MM]`
-/// (analytic laws for checks, not tissues), `file:PATH.csv` (see load_tissue_curves: one curve is
-/// that above an inclusion, at B unless it says where, in the paper's plain block), or from the
-/// depth database `ball depth=12 radius=8 ratio=200 at=20,0` (also `cylinder`; lengths and place in
-/// mm). Everything else gives a sentence.
+/// (analytic laws for checks, not tissues), `random:SEED` (see drawn_tissue), `file:PATH.csv` (see
+/// load_tissue_curves: one curve is that above an inclusion, at B unless it says where, in the
+/// paper's plain block), or from the depth database `ball depth=12 radius=8 ratio=200 at=20,0`
+/// (also `cylinder`; lengths and place in mm). Everything else gives a sentence.
 [[nodiscard]] Result<Phantom> make_phantom(std::string_view spec);
 
 /// All tables as CSV text, columns `x_mm,y_mm,d_mm,F_N`, the plain block at A: what a session file
