@@ -11,7 +11,7 @@
 #include "judge/truth_judge.h"
 #include "review/phase_finder.h"
 #include "review/tick_source.h"
-#include "surgeon_site/script_reader.h"
+#include "surgeon_site/script_source.h"
 #include "surgeon_site/settings.h"
 
 namespace palp::review {

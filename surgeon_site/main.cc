@@ -32,7 +32,7 @@
 #include "surgeon_site/devices_command.h"
 #include "surgeon_site/display.h"
 #include "surgeon_site/pointer_hand.h"
-#include "surgeon_site/script_reader.h"
+#include "surgeon_site/script_source.h"
 #include "surgeon_site/settings.h"
 #include "surgeon_site/settings_devices.h"
 #include "surgeon_site/simulated_hand.h"

@@ -9,10 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/core/byte_order_mark.h"
 #include "common/core/conventions.h"
-#include "common/core/whole_file.h"
-#include "surgeon_site/recording_reader.h"
 
 namespace palp::surgeon {
 namespace {
@@ -313,14 +310,6 @@ Result<ReplayRow> read_row(const std::vector<std::string_view>& cells, std::size
   return ReplayRow{values[0], metres(values[1]), {metres(values[2]), metres(values[3])}};
 }
 
-/// The text of a script or a recorded hand.
-Result<std::string> read_file(const std::string& path) {
-  constexpr std::size_t kSizeMax = 256U << 20U;  // [bytes]: hours of motion at 1 kHz
-  const Result<std::string> text = read_whole_file(path, kSizeMax);
-  if (!text) return tl::unexpected<Error>(text.error());
-  return std::string{without_byte_order_mark(*text)};
-}
-
 }  // namespace
 
 Result<GestureScript> parse_script(std::string_view text, double hand_stiffness) {
@@ -368,33 +357,6 @@ Result<GestureScript> parse_replay(std::string_view text) {
   }
   if (points.size() < 2) return fail("a recording needs two rows or more");
   return GestureScript{std::move(points)};
-}
-
-Result<GestureScript> load_script(const std::string& source, const ScriptSetting& setting) {
-  constexpr std::string_view kScript = "script:";
-  constexpr std::string_view kReplay = "replay:";
-  constexpr std::string_view kRecording = "recording:";
-  if (source == "script:standard") return standard_script(setting);
-  if (source == "script:demo") return demo_script(setting);
-  if (source == "script:breath") return breath_script(setting);
-  if (source == "script:long") return long_script(setting);
-  if (source.starts_with(kRecording)) {
-    return load_recording(source.substr(kRecording.size()), setting.hand_stiffness);
-  }
-  const bool replay = source.rfind(kReplay, 0) == 0;
-  if (!replay && source.rfind(kScript, 0) != 0) {
-    return fail(
-        "unknown master " + quoted(source) +
-        ", expected script:standard, script:demo, script:breath, script:long, "
-        "script:FILE, replay:FILE or recording:FILE, or a device: openffboard, paddle, spacemouse");
-  }
-  const std::string path = source.substr(replay ? kReplay.size() : kScript.size());
-  const Result<std::string> text = read_file(path);
-  if (!text) return fail(replay ? "replay" : "script", text.error());
-  Result<GestureScript> script =
-      replay ? parse_replay(*text) : parse_script(*text, setting.hand_stiffness);
-  if (!script) return fail(path, script.error());
-  return script;
 }
 
 }  // namespace palp::surgeon

@@ -7,7 +7,7 @@
 #include "surgeon_site/gesture_script.h"
 #include "surgeon_site/script_builder.h"
 
-/// Scripts from text. Not for rt: allocates; load_script reads files.
+/// Scripts from text. Not for rt: allocates.
 namespace palp::surgeon {
 
 /// One phase per line, `#` starts a comment, lengths in millimetres, times in seconds:
@@ -29,10 +29,5 @@ namespace palp::surgeon {
 /// there was a plane `t_s,position_mm,lateral_mm`; times strictly rising, positions relative to the
 /// surface. The first row is script time 0.
 [[nodiscard]] Result<GestureScript> parse_replay(std::string_view text);
-
-/// `script:standard`, `script:demo`, `script:FILE`, `replay:FILE` or `recording:FILE`; a sentence
-/// if there is none.
-[[nodiscard]] Result<GestureScript> load_script(const std::string& source,
-                                                const ScriptSetting& setting);
 
 }  // namespace palp::surgeon

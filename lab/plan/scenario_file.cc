@@ -9,7 +9,7 @@
 #include "netem/syntax/impairment_text.h"
 #include "patient_site/settings.h"
 #include "proto/config.pb.h"
-#include "surgeon_site/script_reader.h"
+#include "surgeon_site/script_source.h"
 #include "surgeon_site/settings.h"
 
 namespace palp::lab {

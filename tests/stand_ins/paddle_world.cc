@@ -7,7 +7,7 @@
 
 #include "common/io/realtime/steady_clock.h"
 #include "surgeon_site/devices/firmware/paddle/paddle_report.h"
-#include "surgeon_site/script_reader.h"
+#include "surgeon_site/script_source.h"
 #include "surgeon_site/simulated_hand.h"
 #include "tests/common/io/device/fake_hidapi.h"
 

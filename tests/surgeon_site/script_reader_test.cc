@@ -1,11 +1,9 @@
 #include "surgeon_site/script_reader.h"
 
-#include <fstream>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 namespace palp::surgeon {
 namespace {
@@ -181,23 +179,6 @@ TEST(ScriptReaderTest, ReplayRefusalsNameLineAndValue) {
   EXPECT_THAT(replay_refusal("t_s,position_mm\n0,0,0\n1,0\n"), HasSubstr("expected 2 columns"));
   EXPECT_THAT(replay_refusal("t_s,position_mm\n0,\n1,0\n"), HasSubstr("''"));
   EXPECT_THAT(replay_refusal("t_s,position_mm\n0,0\n1e9,0\n"), HasSubstr("4 hours"));
-}
-
-TEST(ScriptReaderTest, LoadsByNameAndByFile) {
-  const ScriptSetting setting{.hand_stiffness = kStiffness};
-  EXPECT_EQ(load_script("script:standard", setting)->length(), 33700ms);
-  EXPECT_TRUE(load_script("script:demo", setting));
-  const std::string path =
-      ::testing::TempDir() + "palp_script_reader_test_" + std::to_string(::getpid()) + ".txt";
-  std::ofstream{path} << "hold 1\nhold x\n";
-  EXPECT_THAT(load_script("script:" + path, setting).error().text,
-              AllOf(HasSubstr(path), HasSubstr("line 2")));
-  std::ofstream{path} << "t_s,position_mm\n0,-10\n2,-10\n";
-  EXPECT_EQ(load_script("replay:" + path, setting)->length(), 2s);
-  EXPECT_THAT(load_script("script:/nowhere/x", setting).error().text,
-              HasSubstr("cannot read /nowhere/x"));
-  EXPECT_THAT(load_script("script:/", setting).error().text, HasSubstr("cannot"));
-  EXPECT_THAT(load_script("robot", setting).error().text, HasSubstr("unknown master 'robot'"));
 }
 
 }  // namespace

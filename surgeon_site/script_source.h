@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "common/core/result.h"
+#include "surgeon_site/gesture_script.h"
+#include "surgeon_site/script_builder.h"
+
+namespace palp::surgeon {
+
+/// `script:standard`, `script:demo`, `script:breath`, `script:long`, `script:random:SEED` (see
+/// drawn_script), `script:FILE`, `replay:FILE` or `recording:FILE`; a sentence if there is none.
+/// Not for rt: reads files.
+[[nodiscard]] Result<GestureScript> load_script(const std::string& source,
+                                                const ScriptSetting& setting);
+
+}  // namespace palp::surgeon
