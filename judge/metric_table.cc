@@ -2,11 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace palp::judge {
 namespace {
 
 using M = RunMetrics;
+
+/// [N], beyond 1.5 times what a finger would press, or 0.5 N more.
+double excess_force(const M& m) {
+  const double allowed = std::max(1.5 * m.contact.force_direct, m.contact.force_direct + 0.5);
+  return std::isnan(allowed) ? allowed : std::max(0.0, m.contact.force_max - allowed);
+}
 
 constexpr std::array kTable{
     Metric{"tap_a_error", [](const M& m) { return m.tap_error[0]; }},
@@ -23,6 +30,8 @@ constexpr std::array kTable{
     Metric{"stat_ratio_error", [](const M& m) { return m.static_ratio_error; }},
     Metric{"learning_a_s", [](const M& m) { return m.learning[0]; }},
     Metric{"learning_b_s", [](const M& m) { return m.learning[1]; }},
+    Metric{"first_press_share_a", [](const M& m) { return m.contact.first_press_share[0]; }},
+    Metric{"first_press_share_b", [](const M& m) { return m.contact.first_press_share[1]; }},
     Metric{"force_rms_n", [](const M& m) { return m.force_rms; }},
     Metric{"drag_rms_n", [](const M& m) { return m.drag_rms; }},
     Metric{"drag_peak_n", [](const M& m) { return m.drag_peak; }},
@@ -37,7 +46,11 @@ constexpr std::array kTable{
     Metric{"force_unexplained_10ms_n", [](const M& m) { return m.whole.force_unexplained; }},
     Metric{"energy_given_mj", [](const M& m) { return m.whole.energy_given * 1e3; }},
     Metric{"force_peak_n", [](const M& m) { return m.force_peak; }},
-    Metric{"contact_force_max_n", [](const M& m) { return m.contact_force_max; }},
+    Metric{"contact_force_max_n", [](const M& m) { return m.contact.force_max; }},
+    Metric{"contact_force_direct_n", [](const M& m) { return m.contact.force_direct; }},
+    Metric{"contact_force_excess_n", excess_force},
+    Metric{"hand_swing_mm", [](const M& m) { return m.contact.hand_swing * 1e3; }},
+    Metric{"tip_swing_mm", [](const M& m) { return m.contact.tip_swing * 1e3; }},
     Metric{"phantom_force_n", [](const M& m) { return m.phantom_force; }},
     Metric{"stage_speed_max_m_per_s", [](const M& m) { return m.stage_speed_max; }},
 };

@@ -76,6 +76,17 @@ struct WholeRunMetrics {
                                ///< stood still
 };
 
+/// Of any gesture, at both ends.
+struct ContactMetrics {
+  double hand_swing{};  ///< [m], of a limit cycle; see SwingFinder
+  double tip_swing{};   ///< [m], likewise
+  double force_max{};   ///< [N], of the tip
+  /// [N], most that the same hand would press with a finger; whoever made the ticks knows.
+  double force_direct{kUndefined};
+  /// [-], felt over true force 2.5 s after the first contact of a site, where the hand stayed.
+  double first_press_share[2]{kUndefined, kUndefined};
+};
+
 /// Errors are rendered/true - 1 [-]; NaN: undefined.
 struct RunMetrics {
   bool unstable{};
@@ -102,8 +113,8 @@ struct RunMetrics {
   /// felt - true, so that a hand that leaves or enters the tissue makes no step by itself.
   double force_step_event{};
   WholeRunMetrics whole;
-  double force_peak{};                 ///< [N]
-  double contact_force_max{};          ///< [N]
+  double force_peak{};  ///< [N]
+  ContactMetrics contact;
   double phantom_force{kUndefined};    ///< [N], |F_h| in the air in and after a blackout
   double stage_speed_max{kUndefined};  ///< [m/s], in and after a blackout
   std::vector<TapMetrics> taps;

@@ -10,6 +10,7 @@ namespace palp::judge {
 namespace {
 
 constexpr double kUnstableSwing = 1.0 * kMillimetre;    ///< [m], in the second half of a hold
+constexpr double kUnstableCycle = 0.5 * kMillimetre;    ///< [m], of a limit cycle, anywhere
 constexpr double kUnstableCapTime = 0.2;                ///< [s], at the force cap in total
 constexpr double kUnstablePosition = 60 * kMillimetre;  ///< [m]
 constexpr double kUnstableSpeed = 3.0;                  ///< [m/s]
@@ -56,8 +57,6 @@ void PhaseAccount::begin(const RunTick& tick) {
   tag_ = tick.phase;
   began_at_ = tick.at;
   hand_max_ = -INFINITY;
-  low_ = INFINITY;
-  high_ = -INFINITY;
   sums_ = {0, 0, 0};
 }
 
@@ -75,8 +74,8 @@ void PhaseAccount::look(const RunTick& tick) {
   const PhaseTag& phase = tick.phase;
   add(stiffness_, tick);
   if (phase.elapsed >= 0.5 * phase.duration) {
-    low_ = std::min(low_, tick.hand + tick.surface);
-    high_ = std::max(high_, tick.hand + tick.surface);
+    hand_.look(tick.hand + tick.surface);
+    surface_.look(tick.surface);
   }
   if (phase.elapsed >= 0.6 * phase.duration) {
     sums_.position += tick.hand;
@@ -156,6 +155,15 @@ void RunJudge::end_phase() {
 }
 
 void RunJudge::look_at_stability(const RunTick& tick) {
+  // A sine in the air may be meant to be quick, and what moves while the session is broken off is
+  // no loop.
+  if (!tick.counted || tick.phase.kind == PhaseKind::FreeAir) {
+    hand_swing_.restart();
+    tip_swing_.restart();
+  } else {
+    hand_swing_.look(tick.at, tick.hand);
+    tip_swing_.look(tick.at, tick.tip);
+  }
   if (!tick.counted) return;
   if (std::abs(tick.hand_force) >= config_.force_cap * (1 - 1e-9)) at_cap_ += config_.period;
   if (!(std::abs(tick.hand) <= kUnstablePosition) ||
@@ -168,6 +176,9 @@ void RunJudge::look_at_stability(const RunTick& tick) {
 void RunJudge::look_at_learning(const RunTick& tick, Site site) {
   Learning& learning = learning_[static_cast<std::size_t>(site)];
   const bool here = tick.phase.site == site && tick.phase.kind != PhaseKind::FreeAir;
+  if (here && tick.counted) {
+    first_press_[static_cast<std::size_t>(site)].look(tick.at, tick.hand_force, tick.force_true);
+  }
   if (!here || !tick.counted || !std::isnan(learning.took)) return;
   if (std::isnan(learning.began_at) && tick.contact_force >= kContactForce) {
     learning.began_at = tick.at;
@@ -191,7 +202,7 @@ void RunJudge::look_at_blackout(const RunTick& tick) {
 
 void RunJudge::look_at_forces(const RunTick& tick) {
   metrics_.force_peak = std::max(metrics_.force_peak, std::abs(tick.hand_force));
-  metrics_.contact_force_max = std::max(metrics_.contact_force_max, tick.contact_force);
+  metrics_.contact.force_max = std::max(metrics_.contact.force_max, tick.contact_force);
   Forces& slot = before_[ticks_ % kStepTicks];
   // Across a break of the session there is no step.
   if (ticks_ >= kStepTicks && tick.at - slot.at < (kStepTicks + 0.5) * config_.period) {
@@ -220,6 +231,11 @@ RunMetrics RunJudge::metrics() const {
 void RunJudge::sum_up() {
   if (ticks_ == 0) return;
   call_unstable(metrics_, swings_, "the hand swings by 1 mm or more in a hold");
+  metrics_.contact.hand_swing = hand_swing_.largest();
+  metrics_.contact.tip_swing = tip_swing_.largest();
+  call_unstable(
+      metrics_, metrics_.contact.hand_swing >= kUnstableCycle, "the hand swings by itself");
+  call_unstable(metrics_, metrics_.contact.tip_swing >= kUnstableCycle, "the tip swings by itself");
   call_unstable(metrics_, ran_away_, "the hand ran away");
   call_unstable(
       metrics_, at_cap_ >= kUnstableCapTime, "the force stayed at the device's limit for 0.2 s");
@@ -238,6 +254,8 @@ void RunJudge::sum_up() {
   metrics_.energy_operator = std::max(0.0, -energy_operator_min_);
   metrics_.energy_net = std::max(0.0, -energy_net_min_);
   metrics_.force_rms = std::sqrt(tap_square_ / tap_count_);
+  metrics_.contact.first_press_share[0] = first_press_[0].share();
+  metrics_.contact.first_press_share[1] = first_press_[1].share();
   metrics_.learning[0] = learning_[0].took;
   metrics_.learning[1] = learning_[1].took;
   // Asked for, and nothing of it was seen.

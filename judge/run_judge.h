@@ -3,7 +3,10 @@
 #include <array>
 #include <cstddef>
 
+#include "judge/first_press.h"
 #include "judge/metrics.h"
+#include "judge/reversal.h"
+#include "judge/swing_finder.h"
 
 namespace palp::judge {
 
@@ -26,16 +29,17 @@ class PhaseAccount {
   [[nodiscard]] HoldMeans hold() const noexcept;
   /// Mean distance of tip and hand in the last 20 % [m].
   [[nodiscard]] double drift() const noexcept { return apart_ / apart_count_; }
-  /// max - min of x_m in the second half [m].
-  [[nodiscard]] double swing() const noexcept { return high_ < low_ ? 0 : high_ - low_; }
+  /// Of x_m to and fro in the second half [m], less that of a surface that breathes: a soft hand
+  /// on stiff tissue is carried along.
+  [[nodiscard]] double swing() const noexcept { return hand_.size() - surface_.size(); }
 
  private:
   PhaseTag tag_;
   double began_at_{};  ///< [s]
   double ended_at_{};  ///< [s]
   double hand_max_{};  ///< [m]
-  double low_{};       ///< [m]
-  double high_{};      ///< [m]
+  Reversal hand_;
+  Reversal surface_;
   FeltStiffness stiffness_;
   HoldMeans sums_;
   double hold_count_{};   ///< [ticks]
@@ -84,6 +88,8 @@ class RunJudge {
   std::array<FeltStiffness, 2> pooled_;  ///< of taps 2 and later
   std::array<std::array<PhaseAccount::HoldMeans, 2>, 2> holds_;
   bool swings_{};
+  SwingFinder hand_swing_;
+  SwingFinder tip_swing_;
   bool ran_away_{};
   double at_cap_{};      ///< [s]
   double tap_square_{};  ///< [N^2]
@@ -93,6 +99,7 @@ class RunJudge {
   double air_peak_{};    ///< [N]
   std::array<Forces, kStepTicks> before_;
   std::array<Learning, 2> learning_;
+  std::array<FirstPress, 2> first_press_;
   double energy_operator_min_{};  ///< [J], of the newest tick
   double energy_net_min_{};       ///< [J]
 };

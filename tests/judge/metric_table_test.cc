@@ -1,5 +1,6 @@
 #include "judge/metric_table.h"
 
+#include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -20,6 +21,20 @@ TEST(MetricTableTest, ValuesHaveTheUnitOfTheirName) {
   RunMetrics metrics;
   metrics.drift = 2e-3;
   EXPECT_DOUBLE_EQ(metric_table()[*metric_index("drift_mm")].value(metrics), 2);
+}
+
+TEST(MetricTableTest, ExcessIsBeyondHalfAgainOfAFingersForceAndHalfANewton) {
+  RunMetrics metrics;
+  const auto excess = [&](double direct, double pressed) {
+    metrics.contact.force_direct = direct;
+    metrics.contact.force_max = pressed;
+    return metric_table()[*metric_index("contact_force_excess_n")].value(metrics);
+  };
+  EXPECT_EQ(excess(0.2, 0.7), 0);
+  EXPECT_NEAR(excess(0.2, 0.8), 0.1, 1e-12);
+  EXPECT_EQ(excess(2, 3), 0);
+  EXPECT_DOUBLE_EQ(excess(2, 3.5), 0.5);
+  EXPECT_TRUE(std::isnan(excess(kUndefined, 3)));
 }
 
 }  // namespace

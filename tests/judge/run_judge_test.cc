@@ -45,6 +45,45 @@ TEST(RunJudgeTest, ABlackoutMayBeToldAsItBegins) {
   EXPECT_EQ(judge.metrics().stage_speed_max, 2);
 }
 
+/// 2 s of one phase: hand and tip [m] over time [s].
+RunMetrics judged(PhaseKind kind, double (*hand)(double), double (*tip)(double)) {
+  RunJudge judge{{}};
+  for (int i = 0; i < 2000; ++i) {
+    RunTick tick = tick_at(i, kind, 1);
+    tick.phase.elapsed = 1e-3 * i;
+    tick.phase.duration = 2;
+    tick.hand = hand(1e-3 * i);
+    tick.tip = tip(1e-3 * i);
+    judge.look(tick);
+  }
+  return judge.metrics();
+}
+
+double at_rest(double /*t*/) { return 2e-3; }
+double hammering(double t) { return 2e-3 + 0.4e-3 * std::sin(85 * t); }  // 13.5 Hz
+double creeping(double t) { return 2e-3 + 1.5e-3 * t; }
+
+TEST(RunJudgeTest, ATipThatHammersUnderAQuietHandIsUnstable) {
+  const RunMetrics metrics = judged(PhaseKind::PressHold, at_rest, hammering);
+  EXPECT_TRUE(metrics.unstable);
+  EXPECT_STREQ(metrics.unstable_reason, "the tip swings by itself");
+  EXPECT_NEAR(metrics.contact.tip_swing, 0.8e-3, 0.02e-3);
+}
+
+TEST(RunJudgeTest, AHandThatSwingsWhileItMovesIsUnstable) {
+  const RunMetrics metrics = judged(PhaseKind::Other, hammering, at_rest);
+  EXPECT_TRUE(metrics.unstable);
+  EXPECT_STREQ(metrics.unstable_reason, "the hand swings by itself");
+}
+
+TEST(RunJudgeTest, ASineThatAPersonMeansIsStable) {
+  EXPECT_FALSE(judged(PhaseKind::FreeAir, hammering, hammering).unstable);
+}
+
+TEST(RunJudgeTest, AHandThatSinksAsItsTissueRelaxesIsStable) {
+  EXPECT_FALSE(judged(PhaseKind::PressHold, creeping, creeping).unstable);
+}
+
 TEST(RunJudgeTest, NoTickNoVerdict) {
   const RunMetrics none = RunJudge{{}}.metrics();
   EXPECT_FALSE(none.unstable);
