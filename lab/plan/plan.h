@@ -46,6 +46,7 @@ struct Plan {
   std::uint64_t count{};  ///< of cases, before a shard was taken out
   bool lying{};           ///< the patient's site sends random models
   std::string made_by;    ///< program and machine that run it; no part of what it is
+  bool direct_touch{};    ///< each case is held against what its hand would press with a finger
   bool blackout{};        ///< a blackout of 2 s lies in the middle of A's deep press
 };
 
@@ -65,8 +66,8 @@ struct PlanAsk {
 };
 
 /// table, net, mc, mc-hard, mc-noise, mc-adv, grips, inc, blackout, breath, long, faults, pauses,
-/// device-faults, devices. Random sets draw case i from (seed, i) alone, so that the first 100 of
-/// 1000 are the first 100 of 100.
+/// device-faults, wild, devices. Random sets draw case i from (seed, i) alone, so that the first
+/// 100 of 1000 are the first 100 of 100.
 [[nodiscard]] Result<Plan> make_set(const std::string& name, const PlanAsk& ask);
 [[nodiscard]] std::vector<NamedChoice> described_sets();
 

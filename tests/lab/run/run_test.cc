@@ -108,7 +108,7 @@ TEST(RunTest, ABlackoutIsSurvivedAndThePedalEngagesAgain) {
   const RunResult result = simulate(scenario("blackout"));
   EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Completed);
   EXPECT_LE(result.metrics.force_step_10ms, 0.5);
-  EXPECT_LE(result.metrics.contact_force_max, 3.3);
+  EXPECT_LE(result.metrics.contact.force_max, 3.3);
 }
 
 TEST(RunTest, APatientSiteThatLiesGetsTheHandNoMoreThanTheTankHeldAtFirst) {
@@ -181,7 +181,7 @@ TEST(RunTest, AProcessThatStandsStillKicksNobodyWhenItGoesOn) {
       EXPECT_LE(result.metrics.whole.force_kick, 0.1);
       EXPECT_LE(result.metrics.whole.force_drop, 0.2);
       EXPECT_LE(result.metrics.whole.energy_given, pausing.coupling.mmt.tank_start + kHeldSlack);
-      EXPECT_LE(result.metrics.contact_force_max, 3.3);
+      EXPECT_LE(result.metrics.contact.force_max, 3.3);
     }
   }
 }
@@ -258,7 +258,7 @@ TEST(RunTest, ADeviceThatFailsInATapStopsTheSitesAndHarmsNobody) {
     failing.fault.at_script_time = std::chrono::milliseconds{7850};
     const RunResult result = simulate(failing);
     EXPECT_LE(result.metrics.energy_operator, failing.coupling.mmt.tank_start + kSlack);
-    EXPECT_LE(result.metrics.contact_force_max, 3.3);
+    EXPECT_LE(result.metrics.contact.force_max, 3.3);
     // What is wrong by a newton is no device that fails, as far as a site can tell.
     if (kind == FaultKind::SensorOffset) continue;
     EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Stopped);

@@ -1,0 +1,39 @@
+#include "lab/run/direct_touch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "patient_site/phantom.h"
+#include "surgeon_site/hand_plant.h"
+
+namespace palp::lab {
+
+double direct_touch_force(const Scenario& scenario) {
+  constexpr Duration kStep = std::chrono::milliseconds{1};
+  const patient::SimulatedPhantomConfig& tissue = scenario.tissue;
+  const auto field = patient::make_field(scenario.phantom, tissue.viscous_factor);
+  patient::RelaxingForce relaxing{scenario.phantom.relaxation};
+  const surgeon::GestureScript& script = scenario.script;
+  surgeon::HandPlant hand{scenario.hand.plant, script.at({}).position};
+  double force = 0;
+  double most = 0;
+  double depth = -1;  // [m]
+  for (Duration at{}; at < script.length(); at += kStep) {
+    const surgeon::Intent begin = script.at(at);
+    const surgeon::Intent end = script.at(at + kStep);
+    hand.advance({begin.position, begin.velocity}, {end.position, end.velocity}, force, kStep);
+    const double phase = 2 * std::numbers::pi * tissue.breathing_frequency * seconds(at + kStep);
+    const double surface = tissue.breathing_amplitude * std::sin(phase);
+    const double before = depth;
+    depth = hand.position() - surface;
+    const double rate = (depth - before) / seconds(kStep);
+    const double elastic = relaxing.step(field->elastic_force(end.place, depth), seconds(kStep));
+    force = std::max(0.0, elastic * field->growth(before > 0 ? rate : 0));
+    most = std::max(most, force);
+  }
+  return most;
+}
+
+}  // namespace palp::lab

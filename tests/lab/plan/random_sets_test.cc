@@ -1,0 +1,53 @@
+#include "lab/plan/random_sets.h"
+
+#include <gtest/gtest.h>
+
+#include "lab/run/direct_touch.h"
+
+namespace palp::lab {
+namespace {
+
+using Fill = void (*)(Plan&, const PlanAsk&);
+
+Plan filled(Fill fill, std::uint64_t count, std::uint64_t seed = 4) {
+  Plan plan;
+  fill(plan, {.count = count, .seed = seed});
+  return plan;
+}
+
+bool equal(const Case& a, const Case& b) {
+  if (a.seed != b.seed || a.labels != b.labels || a.settings.size() != b.settings.size()) {
+    return false;
+  }
+  for (std::size_t i = 0; i < a.settings.size(); ++i) {
+    if (a.settings[i].path != b.settings[i].path) return false;
+    if (a.settings[i].value != b.settings[i].value) return false;
+  }
+  return true;
+}
+
+TEST(RandomSetsTest, ACaseIsThatOfItsSeedAndIndexWhateverTheCount) {
+  for (const Fill fill : {fill_faults, fill_device_faults, fill_pauses, fill_devices, fill_wild}) {
+    const Plan few = filled(fill, 5);
+    const Plan many = filled(fill, 30);
+    const Plan others = filled(fill, 5, 5);
+    ASSERT_EQ(few.cases.size(), 5U);
+    for (std::size_t i = 0; i < 5; ++i) {
+      EXPECT_TRUE(equal(few.cases[i], many.cases[i]));
+      EXPECT_FALSE(equal(few.cases[i], others.cases[i]));
+    }
+  }
+}
+
+TEST(RandomSetsTest, EveryWildCaseCanBeMadeAndHasAFingerToBeHeldAgainst) {
+  Plan plan = filled(fill_wild, 20);
+  EXPECT_TRUE(plan.direct_touch);
+  for (const Case& one : plan.cases) {
+    const auto scenario = make_case(plan, one);
+    ASSERT_TRUE(scenario) << scenario.error().text;
+    EXPECT_GT(direct_touch_force(*scenario), 0);
+  }
+}
+
+}  // namespace
+}  // namespace palp::lab

@@ -1,0 +1,47 @@
+#include "lab/run/direct_touch.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "lab/plan/scenario_file.h"
+
+/// Goal: what a hand would press with its own finger is known without device, link or stage.
+namespace palp::lab {
+namespace {
+
+double touched(const std::vector<std::string>& settings) {
+  config::Document document = load_scenario("standard").value();
+  for (const std::string& setting : settings) EXPECT_TRUE(document.set(setting)) << setting;
+  return direct_touch_force(make_scenario("touch", document).value());
+}
+
+const std::string kPlain = "patient.simulated_phantom.phantom=closed-form:100";
+
+TEST(DirectTouchTest, AHandReachesTheDepthItAimsAtInPlainTissue) {
+  const double aimed = 0.480;  // [N], 1897 N/m^1.5, 4 mm deep
+  EXPECT_NEAR(touched({kPlain}), aimed, 0.12 * aimed) << "deepest in a tap, with its momentum";
+}
+
+TEST(DirectTouchTest, AStifferGripPressesStifferTissueHarder) {
+  const std::string stiff = "patient.simulated_phantom.phantom=random:3";
+  EXPECT_GT(touched({stiff, "surgeon.hand.grip=firm"}),
+            touched({stiff, "surgeon.hand.grip=light"}));
+}
+
+TEST(DirectTouchTest, NeitherLinkNorStageNorLawIsInIt) {
+  const double plain = touched({kPlain});
+  EXPECT_EQ(plain, touched({kPlain, "up.delay_ms=400"}));
+  EXPECT_EQ(plain, touched({kPlain, "patient.simulated_phantom.servo_hz=10"}));
+}
+
+TEST(DirectTouchTest, WhereTheSurfaceComesUpThePressIsHarder) {
+  EXPECT_GT(touched({kPlain,
+                     "patient.simulated_phantom.breathing_mm=1",
+                     "patient.simulated_phantom.breathing_hz=0.3"}),
+            1.1 * touched({kPlain}));
+}
+
+}  // namespace
+}  // namespace palp::lab
