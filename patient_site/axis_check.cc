@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "patient_site/force_check.h"
+
 namespace palp::patient {
 namespace {
 
@@ -53,7 +55,7 @@ AxisCheck::Flaw AxisCheck::not_ready() const {
 AxisCheck::Flaw AxisCheck::begin() {
   if (device_) device_->stop();
   port_.close();
-  DeviceInstallation slow = plan_.installation;
+  DeviceInstallation slow = with_any_zero(plan_.installation);
   slow.speed_max = std::min(slow.speed_max, kSpeed);
   device_ = std::make_unique<RegisterDevice>(plan_.profile, slow, port_);
   now_ = {};

@@ -26,7 +26,6 @@ class DeviceCheck {
   [[nodiscard]] const DevicePlan* plan_named(const std::string& name) const;
   [[nodiscard]] Result<std::string> check_card(const std::string& file);
   [[nodiscard]] Result<std::string> check_modbus(const std::string& name, const std::string& file);
-  [[nodiscard]] Result<void> check_force(DevicePlan& plan, io::RegisterPort& port);
 
   const DevicePlans& plans_;
   const io::SteadyClock& clock_;

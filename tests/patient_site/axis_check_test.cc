@@ -118,5 +118,18 @@ TEST_F(AxisCheckTest, OneThatSwingsAboutDoesNotArrive) {
   EXPECT_TRUE(!found && found.error().text.starts_with("it stands at")) << out_.str();
 }
 
+TEST(AxisThatFeelsTest, ItsUnloadedForceIsNoTouchForTheCheck) {
+  DriveModel drive{"orca"};
+  drive.force = 3;
+  DevicePlan plan;
+  plan.profile = drive.profile();
+  plan.installation = DriveModel::installation();
+  std::istringstream in{"no\n"};
+  std::ostringstream out;
+  site_program::Dialogue talk{in, out};
+  AxisCheck check{plan, drive.port, drive.clock, [&](Duration span) { drive.pass(span); }, talk};
+  EXPECT_EQ(check.run().error().text, "it was not moved: without that it is not calibrated");
+}
+
 }  // namespace
 }  // namespace palp::patient
