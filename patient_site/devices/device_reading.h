@@ -50,10 +50,11 @@ struct DeviceReading {
   bool at_limit{};
 };
 
-/// What a person asks of a device; each counts up.
+/// What is asked of a device: by a person, each counts up, and by the site.
 struct DeviceAsks {
   std::uint32_t restarts{};  ///< out of a fault, from the beginning
   std::uint32_t tares{};     ///< a new tare
+  bool may_touch{};          ///< the tip may: no tare, and none goes on
 };
 
 /// What an axis shall do, and until when.

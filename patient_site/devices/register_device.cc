@@ -44,7 +44,10 @@ RegisterDevice::RegisterDevice(DeviceProfile profile,
 DeviceReading RegisterDevice::cycle(const Clock& clock, const DeviceCommand& command) {
   const TimePoint now = clock.now();
   const DeviceAsks before = std::exchange(asks_, command.asks);
-  if (before.tares != asks_.tares && now_.state == DeviceState::Ready) load_.begin_tare_again();
+  load_.heed({.asked = before.tares != asks_.tares,
+              .ready = now_.state == DeviceState::Ready,
+              .may_touch = asks_.may_touch});
+  now_.tare = load_.news();
   if (before.restarts != asks_.restarts && now_.state == DeviceState::Fault) {
     if (now_.reason == DeviceReason::Touched) load_.begin_tare();
     enter_start(now);

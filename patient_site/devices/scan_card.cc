@@ -57,7 +57,10 @@ io::HidAddress ScanCard::address(const CardModel& model, int interface_number) {
 CardReading ScanCard::cycle(const Clock& clock, const DeviceAsks& asks) {
   const TimePoint began = clock.now();
   const DeviceAsks before = std::exchange(asks_, asks);
-  if (before.tares != asks.tares && now_.state == CardState::Ready) load_.begin_tare_again();
+  load_.heed({.asked = before.tares != asks.tares,
+              .ready = now_.state == CardState::Ready,
+              .may_touch = asks.may_touch});
+  now_.tare = load_.news();
   if (before.restarts != asks.restarts && now_.state == CardState::Fault) {
     load_.begin_tare();
     load_.resume();

@@ -262,6 +262,39 @@ TEST(RegisterDeviceTest, ATareThatIsAskedForKeepsTheOldOneWhereSomethingTouches)
   EXPECT_NEAR(cell.reading.force, 1, 1e-9);
 }
 
+TEST(RegisterDeviceTest, ATareThatTheTipOrAGapOvertakesIsGivenUp) {
+  Axis cell{"tlb4"};
+  ASSERT_EQ(cell.cycles(40).state, DeviceState::Ready) << cell.why();
+  ++cell.command.asks.tares;
+  cell.cycles(5);
+  cell.command.asks.may_touch = true;
+  cell.port.words[8] = 30;  // 0.3 N, a light touch
+  cell.cycles(40);
+  EXPECT_EQ(cell.reading.tare.refused, 1U);
+  EXPECT_EQ(cell.reading.tare.why, "the tip may touch something");
+  cell.command.asks.may_touch = false;
+  cell.port.words[8] = 0;
+  ++cell.command.asks.tares;
+  cell.cycles(5);
+  cell.port.fault = PortFault::Lost;
+  ASSERT_EQ(cell.cycles(1).state, DeviceState::Absent);
+  cell.port.fault = PortFault::None;
+  cell.port.words[8] = 30;
+  ASSERT_EQ(cell.cycles(200).state, DeviceState::Ready);
+  EXPECT_EQ(cell.reading.tare.refused, 2U);
+  EXPECT_EQ(cell.reading.tare.taken, 0U);
+  EXPECT_NEAR(cell.reading.force, 0.3, 1e-9) << "it came back pressed";
+}
+
+TEST(RegisterDeviceTest, ATareOfADeviceThatIsNotReadyIsRefused) {
+  Axis cell{"tlb4"};
+  cell.port.openable = false;
+  ++cell.command.asks.tares;
+  EXPECT_EQ(cell.cycles(1).tare.refused, 1U);
+  EXPECT_EQ(cell.reading.tare.why, "the sensor is not ready");
+  EXPECT_EQ(cell.cycles(5).tare.refused, 1U) << "once";
+}
+
 TEST(DeviceFlawTest, NamesWhatIsNotRead) {
   DeviceProfile profile = find_profile("iai").value();
   EXPECT_FALSE(flaw_of(profile, {}));
