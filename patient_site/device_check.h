@@ -19,7 +19,7 @@ class DeviceCheck {
 
   /// Whether the file has a device of that name: normal, x, y, cell, card.
   [[nodiscard]] bool known(const std::string& name) const;
-  /// The text of the file with what was found; an error: what is wrong with the device.
+  /// The settings of the file with what was found; an error: what is wrong with the device.
   [[nodiscard]] Result<std::string> run(const std::string& name, const std::string& file);
 
  private:

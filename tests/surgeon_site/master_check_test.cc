@@ -136,6 +136,7 @@ TEST(MasterCheckTest, FindsWhatIsTheWrongWayRound) {
   EXPECT_NEAR(found->installation.zero, -0.01, 1e-6) << "as it reads there, in its new unit";
   const auto text = calibrated_text("master { pedal_button: 3 }", "hand", *found);
   ASSERT_TRUE(text) << text.error().text;
+  EXPECT_TRUE(text->starts_with("# Written by a program, from hand. Comments")) << *text;
   const auto again = make_master_plan(*master_named("paddle"), *text, "written");
   ASSERT_TRUE(again) << again.error().text;
   EXPECT_EQ(again->pedal_button, 3);
