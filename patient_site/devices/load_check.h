@@ -58,11 +58,6 @@ class LoadCheck {
     const Verdict verdict = tare(force, now);
     return again_ ? judge_again(verdict) : verdict;
   }
-  /// A new tare with the next readings: after a refusal, where the user wants it.
-  void begin_tare() noexcept {
-    tared_ = again_ = false;
-    count_ = 0;
-  }
   /// Once a cycle. A tare that is asked for is taken beside the readings, which keep the old one
   /// until then; one that may not be, or no longer, is refused.
   void heed(const TareAsk& ask) noexcept {

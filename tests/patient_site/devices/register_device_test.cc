@@ -167,6 +167,46 @@ TEST(RegisterDeviceTest, AnEmergencyStopIsAFaultUntilRestarted) {
   EXPECT_EQ(axis.cycles(30).state, DeviceState::Ready) << axis.why();
 }
 
+TEST(RegisterDeviceTest, ALineThatWasLostFreesItOfNoFault) {
+  Axis axis;
+  axis.cycles(20);
+  axis.port.words[0x9005] = 0xB010;
+  ASSERT_EQ(axis.cycles(1).state, DeviceState::Fault);
+  axis.port.fault = PortFault::Lost;
+  ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
+  axis.port.fault = PortFault::None;
+  axis.port.words[0x9005] = 0x3010;
+  axis.port.coils.clear();
+  ASSERT_EQ(axis.cycles(100).state, DeviceState::Fault);
+  EXPECT_EQ(axis.why(), "the device reports: emergency stop");
+  EXPECT_FALSE(axis.port.coils.contains(0x403)) << "its servo is not switched on";
+  ++axis.command.asks.restarts;
+  EXPECT_EQ(axis.cycles(30).state, DeviceState::Ready) << axis.why();
+}
+
+TEST(RegisterDeviceTest, WhatComesBackByItselfDoesNotHomeByItself) {
+  DeviceInstallation built_in = Axis::installation();
+  built_in.may_home = true;
+  Axis axis{"iai", built_in};
+  ASSERT_EQ(axis.cycles(20).state, DeviceState::Ready);
+  ++axis.command.asks.restarts;  // meant for the site
+  axis.port.fault = PortFault::Lost;
+  ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
+  axis.port.fault = PortFault::None;
+  axis.port.words[0x9005] = 0x3000;  // its power was lost, and its home with it
+  ASSERT_EQ(axis.cycles(100).state, DeviceState::Fault);
+  EXPECT_EQ(axis.why(), "it must move, which begins with a reset: home");
+  EXPECT_FALSE(axis.port.coils.contains(0x40B));
+  ++axis.command.asks.restarts;
+  axis.cycles(20);
+  EXPECT_TRUE(axis.port.coils[0x40B]);
+  axis.port.fault = PortFault::Lost;  // on its way home
+  ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
+  axis.port.fault = PortFault::None;
+  axis.port.words[0x9005] = 0x3010;
+  EXPECT_EQ(axis.cycles(100).state, DeviceState::Ready) << axis.why();
+}
+
 TEST(RegisterDeviceTest, HomesOnlyWhereItMay) {
   Axis axis;
   axis.port.words[0x9005] = 0x3000;
