@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "patient_site/force_check.h"
+
 namespace palp::patient {
 namespace {
 
@@ -14,8 +16,10 @@ constexpr double kSpeed = 10e-3;                               // [m/s]
 constexpr double kWay = 2e-3;                                  // [m]
 constexpr double kThere = 0.1e-3;                              // [m], near enough
 constexpr double kMargin = 1e-3;                               // [m], before a stop
-constexpr double kSameScale = 0.05;  // [-], of 2 mm; a ruler tells no more
-constexpr double kStopWay = 1.5e-3;  // [m], at that speed
+constexpr double kSameScale = 0.05;                          // [-], of 2 mm; a ruler tells no more
+constexpr double kStopWay = 1.5e-3;                          // [m], at that speed
+constexpr double kStill = 1e-6;                              // [m], of a position without noise
+constexpr Duration kMovePatience = std::chrono::seconds{3};  // until a motion begins or ends
 
 }  // namespace
 
@@ -51,7 +55,7 @@ AxisCheck::Flaw AxisCheck::not_ready() const {
 AxisCheck::Flaw AxisCheck::begin() {
   if (device_) device_->stop();
   port_.close();
-  DeviceInstallation slow = plan_.installation;
+  DeviceInstallation slow = with_any_zero(plan_.installation);
   slow.speed_max = std::min(slow.speed_max, kSpeed);
   device_ = std::make_unique<RegisterDevice>(plan_.profile, slow, port_);
   now_ = {};
@@ -72,17 +76,18 @@ const DeviceReading& AxisCheck::step(bool commanded, double target) {
   return now_ = device_->cycle(clock_, command);
 }
 
-/// Until it is there, or has stood still for a second on the way.
+/// Until it is there, or has come no nearer for a second: it stands, or it swings about.
 AxisCheck::Flaw AxisCheck::go(double target) {
-  double before = now_.position;
-  TimePoint moved_at = clock_.now();
+  double nearest = std::abs(now_.position - target);
+  TimePoint nearer_at = clock_.now();
   while (std::abs(now_.position - target) > kThere) {
     step(true, target);
     if (auto flaw = not_ready()) return flaw;
-    if (std::abs(now_.position - before) > kThere) {
-      before = now_.position;
-      moved_at = clock_.now();
-    } else if (clock_.now() - moved_at > std::chrono::seconds{1}) {
+    const double left = std::abs(now_.position - target);
+    if (left < nearest - kThere) {
+      nearest = left;
+      nearer_at = clock_.now();
+    } else if (clock_.now() - nearer_at > std::chrono::seconds{1}) {
       return words("it stands at %.2f mm, and was sent to %.2f", now_.position * 1e3, target * 1e3);
     }
   }
@@ -105,11 +110,12 @@ AxisCheck::Flaw AxisCheck::look_at_rest() {
     most = std::max(most, now_.position);
     if (auto flaw = not_ready()) return flaw;
   }
+  noise_ = most - least;
   talk_.say(
       words("  stands at %.3f mm, quiet within %.3f mm; an answer takes %.1f ms at most, %llu "
             "of %d failed",
             now_.position * 1e3,
-            (most - least) * 1e3,
+            noise_ * 1e3,
             seconds(longest) * 1e3,
             static_cast<unsigned long long>(now_.failures - failures),
             kCount));
@@ -133,7 +139,7 @@ AxisCheck::Flaw AxisCheck::move_by_a_ruler() {
     const double way = from - now_.position;
     if (!begun && way > kThere) begun = clock_.now() - began;
     if (way > kWay / 2) half = clock_.now() - began;
-    if (clock_.now() - began > std::chrono::seconds{3}) return "it does not move";
+    if (clock_.now() - began > kMovePatience) return "it does not move";
   }
   if (auto flaw = go(from - kWay)) return flaw;
   const DeviceInstallation& built_in = plan_.installation;
@@ -167,18 +173,23 @@ AxisCheck::Flaw AxisCheck::move_by_a_ruler() {
 AxisCheck::Flaw AxisCheck::leave_it_alone() {
   if (auto flaw = begin()) return flaw;
   const double from = now_.position;
+  TimePoint end = clock_.now() + kMovePatience;
   while (from - now_.position < kWay / 4) {
+    if (clock_.now() > end) return "it does not move";
     step(true, from - 2 * kWay);
     if (auto flaw = not_ready()) return flaw;
   }
   const double left = now_.position;
-  for (double before = left + 1; std::abs(before - now_.position) > 1e-6;) {
+  double before = left + 1;
+  end = clock_.now() + kMovePatience;
+  while (std::abs(before - now_.position) > std::max(kStill, noise_)) {
+    if (clock_.now() > end) return "it does not come to rest although nobody commands it";
     before = now_.position;
     for (int i = 0; i < 10; ++i) step(false, 0);
+    if (auto flaw = not_ready()) return flaw;
+    if (left - now_.position > kStopWay) return "it goes on although nobody commands it";
   }
-  const double further = left - now_.position;
-  talk_.say(words("  left alone it stopped after %.2f mm", further * 1e3));
-  if (further > kStopWay) return "it goes on although nobody commands it";
+  talk_.say(words("  left alone it stopped after %.2f mm", (left - now_.position) * 1e3));
   return go(from);
 }
 

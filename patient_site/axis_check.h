@@ -47,6 +47,7 @@ class AxisCheck {
   site_program::Dialogue& talk_;
   std::unique_ptr<RegisterDevice> device_;
   DeviceReading now_;
+  double noise_{};  ///< [m], at rest, from the least to the most
 };
 
 }  // namespace palp::patient

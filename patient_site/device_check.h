@@ -19,14 +19,13 @@ class DeviceCheck {
 
   /// Whether the file has a device of that name: normal, x, y, cell, card.
   [[nodiscard]] bool known(const std::string& name) const;
-  /// The text of the file with what was found; an error: what is wrong with the device.
+  /// The settings of the file with what was found; an error: what is wrong with the device.
   [[nodiscard]] Result<std::string> run(const std::string& name, const std::string& file);
 
  private:
   [[nodiscard]] const DevicePlan* plan_named(const std::string& name) const;
   [[nodiscard]] Result<std::string> check_card(const std::string& file);
   [[nodiscard]] Result<std::string> check_modbus(const std::string& name, const std::string& file);
-  [[nodiscard]] Result<void> check_force(DevicePlan& plan, io::RegisterPort& port);
 
   const DevicePlans& plans_;
   const io::SteadyClock& clock_;

@@ -20,6 +20,9 @@ class ForceSensor {
   /// What it is: the same for as long as it lives. Thread: any.
   [[nodiscard]] virtual ForceSensorFacts sensor_facts() const noexcept = 0;
   virtual std::optional<ForceSample> sample(TimePoint now) noexcept = 0;  ///< nullopt: none new
+  /// Once a tick: whether the tip may touch something from here on. A sensor whose zero is being
+  /// taken keeps its old one then.
+  virtual void expect_touch(bool /*may_touch*/) noexcept {}
 };
 
 }  // namespace palp::patient

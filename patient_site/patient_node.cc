@@ -1,5 +1,7 @@
 #include "patient_site/patient_node.h"
 
+#include "patient_site/tare_rule.h"
+
 namespace palp::patient {
 
 PatientNode::PatientNode(const PatientConfig& config, Parts parts)
@@ -29,6 +31,7 @@ void PatientNode::act(const PatientOutputs& out, TimePoint now) noexcept {
   } else {
     parts_.stage.move_to(out.target);
   }
+  parts_.sensor.expect_touch(why_no_tare(control_.status()).has_value());
   parts_.link.send(out.to_peer, now);
 }
 

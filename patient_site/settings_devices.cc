@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include <google/protobuf/text_format.h>
-
 #include "common/config/settings_text.h"
 #include "common/core/whole_file.h"
 #include "common/settings/units.h"
@@ -305,8 +303,7 @@ Result<std::string> changed_text(std::string_view text,
     return tl::unexpected{merged.error()};
   }
   change(message);
-  std::string changed;
-  google::protobuf::TextFormat::PrintToString(message, &changed);
+  std::string changed = config::changed_settings_text(message, name);
   if (const auto plans = make_device_plans(changed, name); !plans) {
     return tl::unexpected{plans.error()};
   }

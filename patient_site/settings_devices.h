@@ -13,7 +13,8 @@ namespace palp::patient {
 [[nodiscard]] Result<DevicePlans> make_device_plans(std::string_view text, const std::string& name);
 [[nodiscard]] Result<DevicePlans> read_device_plans(const std::string& path);
 
-/// The file's `text` with what a check found of one of its devices, "normal", "x", "y" or "cell".
+/// The settings of the file's `text` with what a check found of one of its devices, "normal", "x",
+/// "y" or "cell", and without the file's comments, as its first line says.
 [[nodiscard]] Result<std::string> calibrated_text(std::string_view text,
                                                   const std::string& name,
                                                   std::string_view place,

@@ -7,7 +7,8 @@
 
 namespace palp::patient {
 
-/// Why a force sensor may not be tared now; nullopt: it may. The sensor itself cannot tell a light
+/// Why a force sensor may not be tared now; nullopt: it may. Asked when a person wants a tare, and
+/// at each tick, which ends one that is under way. The sensor itself cannot tell a light
 /// touch from a zero that drifted: the place of the tip can.
 [[nodiscard]] inline std::optional<std::string_view> why_no_tare(
     const PatientStatus& status) noexcept {

@@ -48,7 +48,7 @@ ExitStatus DevicesCommand::test() const {
   }
   const auto text = file_.empty() ? Result<std::string>{""} : read_whole_file(file_);
   if (!text) return site_program::exit_status_of(text.error());
-  const std::string name = file_.empty() ? "devices test" : file_;
+  const std::string name = file_.empty() ? "no file" : file_;
   const auto plan = make_master_plan(*master, *text, name);
   if (!plan) return site_program::exit_status_of(plan.error());
   if (const auto writes = config::can_write_file(write_); !writes) {

@@ -52,13 +52,16 @@ Result<MasterPlan> MasterCheck::run() {
   return plan_;
 }
 
-/// Anew, so that nothing of what it said while a person read counts.
+/// Anew, so that nothing of what it said while a person read counts. Limits that were found hold
+/// from then on: a motor pushes nobody beyond them.
 MasterCheck::Flaw MasterCheck::begin() {
   if (device_) device_->stop();
   port_.close();
   MasterInstallation wide = plan_.installation;
-  wide.travel_min = -kAnyTravel;
-  wide.travel_max = kAnyTravel;
+  if (!limits_found_) {
+    wide.travel_min = -kAnyTravel;
+    wide.travel_max = kAnyTravel;
+  }
   device_ = std::make_unique<MasterDevice>(make_protocol(plan_), wide, port_);
   const TimePoint end = clock_.now() + kReadyPatience;
   MasterReading reading;
@@ -163,6 +166,7 @@ MasterCheck::Flaw MasterCheck::find_limits() {
   if (in.place - out.place < 4 * kMargin) return "its way is no way: in is not beyond out";
   plan_.installation.travel_min = out.place - kMargin;
   plan_.installation.travel_max = in.place + kMargin;
+  limits_found_ = true;
   talk_.say(words("  from %.1f to %.1f mm", out.place * 1e3, in.place * 1e3));
   return std::nullopt;
 }

@@ -52,7 +52,8 @@ class MasterCheck {
   std::function<void(Duration)> pass_;
   site_program::Dialogue& talk_;
   std::unique_ptr<MasterDevice> device_;
-  double noise_{};  ///< [m], at rest, from the least to the most
+  double noise_{};       ///< [m], at rest, from the least to the most
+  bool limits_found_{};  ///< by this check
 };
 
 }  // namespace palp::surgeon

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <google/protobuf/text_format.h>
-
 #include "common/config/settings_text.h"
 #include "common/core/whole_file.h"
 #include "common/settings/units.h"
@@ -121,8 +119,7 @@ Result<std::string> calibrated_text(std::string_view text,
     master.set_travel_max_mm(rounded(built_in.travel_max * 1e3));
     master.set_lag_ms(rounded(found.facts.lag * 1e3));
   }
-  std::string changed;
-  google::protobuf::TextFormat::PrintToString(message, &changed);
+  std::string changed = config::changed_settings_text(message, name);
   if (const auto plan = make_master_plan(*found.product, changed, name); !plan) {
     return tl::unexpected{plan.error()};
   }

@@ -16,7 +16,8 @@ namespace palp::surgeon {
 [[nodiscard]] Result<MasterPlan> read_master_plan(const KnownMaster& master,
                                                   const std::string& path);
 
-/// The file's `text` with what a check found of its master.
+/// The settings of the file's `text` with what a check found of its master, and without the file's
+/// comments, as its first line says.
 [[nodiscard]] Result<std::string> calibrated_text(std::string_view text,
                                                   const std::string& name,
                                                   const MasterPlan& found);

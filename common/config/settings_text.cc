@@ -230,6 +230,13 @@ void fill_defaults(Message& settings) {
   }
 }
 
+std::string changed_settings_text(const Message& settings, std::string_view from) {
+  std::string text;
+  TextFormat::PrintToString(settings, &text);
+  return "# Written by a program, from " + harmless_line(from) +
+         ". Comments of that file were not kept.\n" + text;
+}
+
 std::string settings_text(const Message& settings) {
   std::string text;
   TextFormat::PrintToString(*effective_copy(settings), &text);

@@ -33,6 +33,12 @@ void fill_defaults(google::protobuf::Message& settings);
 /// The effective settings, every default written out; merge_text() reads it back.
 [[nodiscard]] std::string settings_text(const google::protobuf::Message& settings);
 
+/// For a file that a program makes of a person's, `from`, whose fields `settings` holds: only what
+/// was given stands in it, below a line that says what it was made of and that its comments, which
+/// the parser drops, are not there.
+[[nodiscard]] std::string changed_settings_text(const google::protobuf::Message& settings,
+                                                std::string_view from);
+
 /// A hash of the effective settings: equal on every machine, whether a default is written out or
 /// absent; any other value or name of a field changes it. Not for secrets (FNV-1a).
 [[nodiscard]] std::uint64_t settings_hash(const google::protobuf::Message& settings);

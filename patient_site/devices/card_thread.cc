@@ -31,7 +31,7 @@ CardThread::~CardThread() {
 }
 
 void CardThread::cycle() {
-  const CardReading reading = card_.cycle(clock_, asks_.get());
+  const CardReading reading = card_.cycle(clock_, requests_.newest());
   to_rt_.put(reading);
   to_main_.put(reading);
 }

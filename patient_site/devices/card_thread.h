@@ -8,6 +8,7 @@
 #include "common/core/mailbox.h"
 #include "common/io/realtime/periodic_thread.h"
 #include "common/io/realtime/steady_clock.h"
+#include "patient_site/devices/device_requests.h"
 #include "patient_site/devices/scan_card.h"
 #include "patient_site/force_sensor.h"
 
@@ -28,16 +29,8 @@ class CardThread {
   [[nodiscard]] const CardReading& reading() noexcept { return to_rt_.get(); }
   /// Thread: main.
   [[nodiscard]] const CardReading& status() noexcept { return to_main_.get(); }
-  /// Thread: main. Out of a fault, if it is in one: with a new tare.
-  void restart() noexcept {
-    ++asked_.restarts;
-    asks_.put(asked_);
-  }
-  /// Thread: main. A new tare, while it is ready; its news is in the reading.
-  void tare() noexcept {
-    ++asked_.tares;
-    asks_.put(asked_);
-  }
+  /// Threads: main and rt, each its own.
+  [[nodiscard]] DeviceRequests& requests() noexcept { return requests_; }
 
  private:
   void cycle();
@@ -47,9 +40,8 @@ class CardThread {
   io::SteadyClock clock_;
   Mailbox<CardReading> to_rt_;    ///< writer: device; reader: rt
   Mailbox<CardReading> to_main_;  ///< writer: device; reader: main
-  Mailbox<DeviceAsks> asks_;      ///< writer: main; reader: device
-  DeviceAsks asked_;              ///< main's
-  io::PeriodicThread thread_;     ///< last: it uses all of the above
+  DeviceRequests requests_;
+  io::PeriodicThread thread_;  ///< last: it uses all of the above
 };
 
 /// A card's channel as the site's force sensor. Thread: rt; `card` outlives it.
@@ -61,6 +53,7 @@ class CardForce final : public ForceSensor {
   [[nodiscard]] ForceSensorFacts sensor_facts() const noexcept override { return facts_; }
   /// Nothing while the card is not ready: its last reading grows old.
   std::optional<ForceSample> sample(TimePoint now) noexcept override;
+  void expect_touch(bool may_touch) noexcept override { card_.requests().expect_touch(may_touch); }
 
  private:
   CardThread& card_;

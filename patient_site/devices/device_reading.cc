@@ -34,6 +34,9 @@ std::string describe_reason(const DeviceReading& reading, const DeviceProfile& p
     case DeviceReason::MayNotMove:
       return "it must move, which may_home does not permit: " +
              (index < profile.start.size() ? profile.start[index].means : std::string{"?"});
+    case DeviceReason::MovesWhenAsked:
+      return "it must move, which begins with a reset: " +
+             (index < profile.start.size() ? profile.start[index].means : std::string{"?"});
     case DeviceReason::NoLife:
       return "it answers, but its sign of life stands still";
     case DeviceReason::NotFinite:

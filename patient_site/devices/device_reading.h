@@ -19,11 +19,12 @@ enum class DeviceState : std::uint8_t {
 
 enum class DeviceReason : std::uint8_t {
   None,
-  Port,         ///< detail: io::PortFault
-  NotHealthy,   ///< detail: index of the condition
-  StartFailed,  ///< detail: index of the step
-  MayNotMove,   ///< detail: index of the step that the installation forbids
-  NoLife,       ///< answers, and its life word stands still
+  Port,            ///< detail: io::PortFault
+  NotHealthy,      ///< detail: index of the condition
+  StartFailed,     ///< detail: index of the step
+  MayNotMove,      ///< detail: index of the step that the installation forbids
+  MovesWhenAsked,  ///< detail: index of the step; it came back by itself
+  NoLife,          ///< answers, and its life word stands still
   NotFinite,
   Stuck,
   Jumped,      ///< a position that no motion leads to
@@ -50,10 +51,11 @@ struct DeviceReading {
   bool at_limit{};
 };
 
-/// What a person asks of a device; each counts up.
+/// What is asked of a device: by a person, each counts up, and by the site.
 struct DeviceAsks {
   std::uint32_t restarts{};  ///< out of a fault, from the beginning
   std::uint32_t tares{};     ///< a new tare
+  bool may_touch{};          ///< the tip may: no tare, and none goes on
 };
 
 /// What an axis shall do, and until when.

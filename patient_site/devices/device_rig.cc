@@ -33,7 +33,7 @@ std::optional<DeviceNews> tare_news(const std::string& who,
                                     const TareNews& before,
                                     const TareNews& now) {
   if (now.refused != before.refused) {
-    return DeviceNews{who + ": the tare was refused, something touches the sensor", false};
+    return DeviceNews{who + ": the tare was refused, " + std::string{now.why}, false};
   }
   if (now.taken == before.taken) return std::nullopt;
   std::array<char, 64> moved{};
@@ -67,8 +67,11 @@ DeviceRig::DeviceRig(const DevicePlans& plans, int priority) {
     card_name_ = card_model(plans.card->installation.kind).name;
     card_ = make_card(*plans.card, priority);
     force_ = std::make_unique<CardForce>(*card_, facts.sensor);
+    feeling_ = &card_->requests();
   } else {
-    force_ = std::make_unique<RegisterForce>(cell != nullptr ? *cell : *normal, facts.sensor);
+    DeviceThread& feels = cell != nullptr ? *cell : *normal;
+    force_ = std::make_unique<RegisterForce>(feels, facts.sensor);
+    feeling_ = &feels.requests();
   }
 }
 
@@ -130,15 +133,10 @@ std::vector<DeviceNews> DeviceRig::news() {
 }
 
 void DeviceRig::restart() noexcept {
-  for (const auto& device : threads_) device->restart();
-  if (card_) card_->restart();
+  for (const auto& device : threads_) device->requests().restart();
+  if (card_) card_->requests().restart();
 }
 
-void DeviceRig::tare() noexcept {
-  if (card_) return card_->tare();
-  for (const auto& device : threads_) {
-    if (device->profile().force) device->tare();
-  }
-}
+void DeviceRig::tare() noexcept { feeling_->tare(); }
 
 }  // namespace palp::patient

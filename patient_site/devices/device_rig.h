@@ -33,8 +33,8 @@ class DeviceRig {
   [[nodiscard]] std::vector<DeviceNews> news();
   /// Out of their faults, from the beginning of their start.
   void restart() noexcept;
-  /// A new tare of what feels the force; news() says what became of it. It is refused where
-  /// something touches; that the tip is clear of the tissue, the caller sees to.
+  /// A new tare of what feels the force; news() says what became of it. It is refused, and ends,
+  /// where something touches, the sensor is not ready, or the site expects a touch.
   void tare() noexcept;
 
   [[nodiscard]] Stage& stage() noexcept { return *stage_; }
@@ -59,6 +59,7 @@ class DeviceRig {
   TareNews card_tare_;         ///< as told last
   std::string_view card_why_;  ///< as told last
   std::unique_ptr<ForceSensor> force_;
+  DeviceRequests* feeling_{};  ///< of what feels the force
 };
 
 }  // namespace palp::patient

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "common/core/time.h"
 #include "patient_site/devices/device_profile.h"
@@ -12,8 +13,16 @@ namespace palp::patient {
 /// What became of tares that were asked for.
 struct TareNews {
   std::uint32_t taken{};    ///< so many, the first not counted
-  std::uint32_t refused{};  ///< something touched, or the reading was not quiet
+  std::uint32_t refused{};  ///< or given up
   double moved{};           ///< [N], the zero by the last of them: its drift
+  std::string_view why;     ///< of the last refusal; lives for ever
+};
+
+/// Whether a person asks for a tare in this cycle, and what speaks against it.
+struct TareAsk {
+  bool asked{};
+  bool ready{};      ///< the sensor
+  bool may_touch{};  ///< the tip, something
 };
 
 /// What a force sensor's readings are worth: takes the tare in quiet air, refuses it where
@@ -49,20 +58,21 @@ class LoadCheck {
     const Verdict verdict = tare(force, now);
     return again_ ? judge_again(verdict) : verdict;
   }
-  /// A new tare with the next readings: after a refusal, where the user wants it.
-  void begin_tare() noexcept {
-    tared_ = again_ = false;
-    count_ = 0;
+  /// Once a cycle. A tare that is asked for is taken beside the readings, which keep the old one
+  /// until then; one that may not be, or no longer, is refused.
+  void heed(const TareAsk& ask) noexcept {
+    if (ask.ready && !ask.may_touch) {
+      if (ask.asked) begin_tare_again();
+    } else if (ask.asked || again_) {
+      refuse(ask.ready ? "the tip may touch something" : "the sensor is not ready");
+    }
   }
-  /// A new tare beside the readings, which keep the old one until it is taken.
-  void begin_tare_again() noexcept {
-    again_ = tared_;
-    count_ = 0;
-  }
-  /// After a gap: sameness before it proves nothing.
+  /// After a gap: sameness before it proves nothing, and no tare reaches over it.
   void resume() noexcept {
     begun_ = false;
+    count_ = 0;
     saturated_since_.reset();
+    if (again_) refuse("the sensor is not ready");
   }
 
   [[nodiscard]] bool tared() const noexcept { return tared_; }
@@ -73,6 +83,7 @@ class LoadCheck {
  private:
   static constexpr double kFull = 0.99;  // [-], of the range
   static constexpr std::uint32_t kLeast = 8;
+  static constexpr std::string_view kTouches = "something touches the sensor";
 
   [[nodiscard]] Verdict tare(double force, TimePoint now) noexcept {
     if (count_ == 0) {
@@ -94,14 +105,25 @@ class LoadCheck {
     tared_ = true;
     return Verdict::Good;
   }
-  [[nodiscard]] Verdict judge_again(Verdict verdict) noexcept {
-    if (verdict == Verdict::Taring) return Verdict::Good;
+  void begin_tare_again() noexcept {
+    again_ = tared_;
+    count_ = 0;
+  }
+  void refuse(std::string_view why) noexcept {
     again_ = false;
-    ++(verdict == Verdict::Good ? news_.taken : news_.refused);
+    ++news_.refused;
+    news_.why = why;
+  }
+  [[nodiscard]] Verdict judge_again(Verdict verdict) noexcept {
+    if (verdict == Verdict::Touched) refuse(kTouches);
+    if (verdict == Verdict::Good) {
+      again_ = false;
+      ++news_.taken;
+    }
     return Verdict::Good;
   }
   [[nodiscard]] Verdict saturated(TimePoint now) noexcept {
-    if (again_) (void)judge_again(Verdict::Touched);
+    if (again_) refuse(kTouches);
     if (!saturated_since_) saturated_since_ = now;
     return !tared_ && now - *saturated_since_ > config_.tare_time ? Verdict::Overloaded
                                                                   : Verdict::Saturated;

@@ -44,9 +44,12 @@ RegisterDevice::RegisterDevice(DeviceProfile profile,
 DeviceReading RegisterDevice::cycle(const Clock& clock, const DeviceCommand& command) {
   const TimePoint now = clock.now();
   const DeviceAsks before = std::exchange(asks_, command.asks);
-  if (before.tares != asks_.tares && now_.state == DeviceState::Ready) load_.begin_tare_again();
+  load_.heed({.asked = before.tares != asks_.tares,
+              .ready = now_.state == DeviceState::Ready,
+              .may_touch = asks_.may_touch});
+  now_.tare = load_.news();
   if (before.restarts != asks_.restarts && now_.state == DeviceState::Fault) {
-    if (now_.reason == DeviceReason::Touched) load_.begin_tare();
+    by_person_ = {};
     enter_start(now);
   }
   if (now_.state == DeviceState::Absent) reach(now);
@@ -78,6 +81,8 @@ void RegisterDevice::reach(TimePoint now) {
   heard_at_ = now;
   failed_in_a_row_ = 0;
   enter_start(now);
+  // No line frees it of its fault.
+  if (by_person_.held != DeviceReason::None) fail(by_person_.held, by_person_.held_detail);
 }
 
 void RegisterDevice::enter_start(TimePoint now) noexcept {
@@ -236,6 +241,7 @@ void RegisterDevice::proceed(TimePoint now) {
     if (!step_sent_ && step.unless && meets(*step.unless)) return next_step(now);
     if (!step_sent_) {
       if (step.moves && !installation_.may_home) return fail(DeviceReason::MayNotMove, index);
+      if (step.moves && !by_person_.started) return fail(DeviceReason::MovesWhenAsked, index);
       const PortFault fault = send(step.write);
       if (fault == PortFault::Refused) return fail(DeviceReason::StartFailed, index);
       note_transfer(fault, now);
@@ -255,6 +261,7 @@ void RegisterDevice::proceed(TimePoint now) {
   if (profile_.force && !load_.tared()) return;
   now_.state = DeviceState::Ready;
   ++now_.starts;
+  by_person_.started = false;
   begin_motion(now);
 }
 
@@ -343,8 +350,8 @@ void RegisterDevice::send_move(TimePoint now) {
 void RegisterDevice::fail(DeviceReason reason, std::uint32_t detail) {
   if (now_.state == DeviceState::Fault) return;
   now_.state = DeviceState::Fault;
-  now_.reason = reason;
-  now_.detail = detail;
+  now_.reason = by_person_.held = reason;
+  now_.detail = by_person_.held_detail = detail;
   now_.velocity = 0;
   if (profile_.stop) (void)send(*profile_.stop);
 }

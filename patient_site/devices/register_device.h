@@ -36,6 +36,12 @@ class RegisterDevice {
   [[nodiscard]] const DeviceProfile& profile() const noexcept { return profile_; }
 
  private:
+  /// What a line that comes back by itself has no say in.
+  struct ByPerson {
+    bool started{true};           ///< this start; so it may home
+    DeviceReason held{};          ///< the fault that is not reset yet
+    std::uint32_t held_detail{};  ///< by `held`
+  };
   void reach(TimePoint now);
   void enter_start(TimePoint now) noexcept;
   [[nodiscard]] bool poll(const Clock& clock);
@@ -73,7 +79,8 @@ class RegisterDevice {
   std::size_t step_{};  ///< of the start
   bool step_sent_{};
   TimePoint step_began_{};
-  DeviceAsks asks_;        ///< as heard last
+  DeviceAsks asks_;  ///< as heard last
+  ByPerson by_person_;
   bool position_known_{};  ///< since the start
   AxisMotion motion_;      ///< commanded
   AxisMotion delivered_;   ///< the last of them that arrived

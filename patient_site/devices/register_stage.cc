@@ -36,7 +36,7 @@ DeviceThread::~DeviceThread() {
 
 void DeviceThread::cycle() {
   DeviceCommand command = command_.get();
-  command.asks = asks_.get();
+  command.asks = requests_.newest();
   const DeviceReading reading = device_.cycle(clock_, command);
   to_rt_.put(reading);
   to_main_.put(reading);

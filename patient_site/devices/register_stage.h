@@ -13,6 +13,7 @@
 #include "common/io/device/register_port.h"
 #include "common/io/realtime/periodic_thread.h"
 #include "common/io/realtime/steady_clock.h"
+#include "patient_site/devices/device_requests.h"
 #include "patient_site/devices/register_device.h"
 #include "patient_site/force_sensor.h"
 #include "patient_site/stage.h"
@@ -38,16 +39,8 @@ class DeviceThread {
   void command(const DeviceCommand& command) noexcept { command_.put(command); }
   /// Thread: main.
   [[nodiscard]] const DeviceReading& status() noexcept { return to_main_.get(); }
-  /// Thread: main. Out of a fault, if it is in one, to the beginning of its start.
-  void restart() noexcept {
-    ++asked_.restarts;
-    asks_.put(asked_);
-  }
-  /// Thread: main. A new tare, while it is ready; its news is in the reading.
-  void tare() noexcept {
-    ++asked_.tares;
-    asks_.put(asked_);
-  }
+  /// Threads: main and rt, each its own.
+  [[nodiscard]] DeviceRequests& requests() noexcept { return requests_; }
   /// Thread: any.
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const DeviceProfile& profile() const noexcept { return device_.profile(); }
@@ -62,9 +55,8 @@ class DeviceThread {
   Mailbox<DeviceReading> to_rt_;    ///< writer: device; reader: rt
   Mailbox<DeviceReading> to_main_;  ///< writer: device; reader: main
   Mailbox<DeviceCommand> command_;  ///< writer: rt; reader: device
-  Mailbox<DeviceAsks> asks_;        ///< writer: main; reader: device
-  DeviceAsks asked_;                ///< main's
-  io::PeriodicThread thread_;       ///< last: it uses all of the above
+  DeviceRequests requests_;
+  io::PeriodicThread thread_;  ///< last: it uses all of the above
 };
 
 /// A stage of one axis along the normal, or of three, of any makers. Thread: rt; `axes` outlive it.
@@ -95,6 +87,7 @@ class RegisterForce final : public ForceSensor {
   [[nodiscard]] ForceSensorFacts sensor_facts() const noexcept override { return facts_; }
   /// Nothing while the cell is not ready: its last reading grows old.
   std::optional<ForceSample> sample(TimePoint now) noexcept override;
+  void expect_touch(bool may_touch) noexcept override { cell_.requests().expect_touch(may_touch); }
 
  private:
   DeviceThread& cell_;

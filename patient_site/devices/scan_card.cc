@@ -57,9 +57,12 @@ io::HidAddress ScanCard::address(const CardModel& model, int interface_number) {
 CardReading ScanCard::cycle(const Clock& clock, const DeviceAsks& asks) {
   const TimePoint began = clock.now();
   const DeviceAsks before = std::exchange(asks_, asks);
-  if (before.tares != asks.tares && now_.state == CardState::Ready) load_.begin_tare_again();
+  load_.heed({.asked = before.tares != asks.tares,
+              .ready = now_.state == CardState::Ready,
+              .may_touch = asks.may_touch});
+  now_.tare = load_.news();
   if (before.restarts != asks.restarts && now_.state == CardState::Fault) {
-    load_.begin_tare();
+    held_ = {};
     load_.resume();
     now_.state = CardState::Starting;
     now_.why = {};
@@ -93,10 +96,12 @@ void ScanCard::reach(const Clock& clock) {
   if (tried_ && clock.now() < reopen_at_) return;
   tried_ = true;
   reopen_at_ = clock.now() + kCardReopenPause;
-  const bool open = std::ranges::all_of(
-      ports_, [](io::ReportPort* port) { return port->open() == PortFault::None; });
-  if (!open) {
-    now_.why = io::to_string(PortFault::NotOpen);
+  PortFault fault{};
+  for (io::ReportPort* const port : ports_) {
+    if (fault == PortFault::None) fault = port->open();
+  }
+  if (fault != PortFault::None) {
+    now_.why = io::to_string(fault);
   } else if (!read_calibration(clock)) {
     now_.why = "its calibration cannot be read";
   } else if (!start_scan()) {
@@ -109,6 +114,7 @@ void ScanCard::reach(const Clock& clock) {
     same_ = 0;
     load_.resume();
     heard_at_ = clock.now() + kMemoryPatience;
+    if (!held_.empty()) fail(held_);  // no cable frees it of its fault
     return;
   }
   close_all();
@@ -270,7 +276,7 @@ void ScanCard::vanish(std::string_view why, TimePoint now) {
 
 void ScanCard::fail(std::string_view why) {
   now_.state = CardState::Fault;
-  now_.why = why;
+  now_.why = held_ = why;
 }
 
 void ScanCard::close_all() {

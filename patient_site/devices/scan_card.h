@@ -102,6 +102,7 @@ class ScanCard {
   std::uint32_t count_{};  ///< of them
   bool full_{};            ///< one of them at the end of the scale
   DeviceAsks asks_;        ///< as heard last
+  std::string_view held_;  ///< why of the fault that no person has reset yet
   TimePoint heard_at_{};
   TimePoint reopen_at_{};
 };

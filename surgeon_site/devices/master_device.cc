@@ -15,6 +15,7 @@ constexpr Duration kReopenPause = std::chrono::milliseconds{500};
 constexpr Duration kHealthWait = std::chrono::seconds{1};  // after the last step of the start
 constexpr int kReportsMax = 4096;                          // of one cycle; no kernel keeps more
 constexpr std::size_t kReportBytesMax = 128;
+constexpr Duration kUnsentMax = std::chrono::milliseconds{100};
 constexpr double kJumpFree = 2e-3;  // [m], more than any rounding or late stamp
 
 }  // namespace
@@ -42,6 +43,7 @@ MasterReading MasterDevice::cycle(const Clock& clock, const MasterCommand& comma
   const TimePoint now = clock.now();
   if (std::exchange(restarts_, command.restarts) != command.restarts &&
       now_.state == MasterState::Fault) {
+    held_ = {};
     enter_start();
   }
   if (now_.state == MasterState::Absent) reach(now);
@@ -66,8 +68,9 @@ void MasterDevice::reach(TimePoint now) {
     now_.why = io::to_string(fault);
     return;
   }
-  heard_at_ = now;
+  heard_at_ = reached_at_ = now;
   enter_start();
+  if (!held_.empty()) fail(held_);  // no cable frees it of its fault
 }
 
 void MasterDevice::enter_start() noexcept {
@@ -93,14 +96,18 @@ void MasterDevice::drain(const Clock& clock) {
       ++now_.broken;
       continue;
     }
-    ++good;
     if (sample_.sequence_known) {
+      if (sequence_known_ && sample_.sequence == sequence_) {
+        ++now_.broken;  // one that was there already tells of no life
+        continue;
+      }
       if (sequence_known_) {
         now_.lost += static_cast<std::uint16_t>(sample_.sequence - sequence_ - 1);
       }
       sequence_ = sample_.sequence;
       sequence_known_ = true;
     }
+    ++good;
   }
   const TimePoint now = clock.now();
   if (good > 0) {
@@ -179,7 +186,12 @@ void MasterDevice::send(const MasterCommand& command, TimePoint now) {
       valid ? std::clamp(command.force, -installation_.force_max, installation_.force_max) : 0;
   const double sign = installation_.force_reversed ? -1 : 1;
   const double counts = valid ? sign * now_.force / installation_.force_unit : 0;
-  if (protocol_->send(port_, counts, valid, now) != PortFault::None) ++now_.unsent;
+  if (protocol_->send(port_, counts, valid, now) == PortFault::None) {
+    reached_at_ = now;
+    return;
+  }
+  ++now_.unsent;
+  if (now - reached_at_ > kUnsentMax) vanish("commands do not reach it", now);
 }
 
 void MasterDevice::vanish(std::string_view why, TimePoint now) {
@@ -195,7 +207,7 @@ void MasterDevice::vanish(std::string_view why, TimePoint now) {
 void MasterDevice::fail(std::string_view why) {
   if (now_.state == MasterState::Fault) return;
   now_.state = MasterState::Fault;
-  now_.why = why;
+  now_.why = held_ = why;
   now_.velocity = 0;
 }
 

@@ -89,7 +89,9 @@ class MasterDevice {
   io::ReportPort& port_;
   MasterSample sample_;
   MasterReading now_;
-  TimePoint heard_at_{};  ///< last good report, or the opening
+  TimePoint heard_at_{};    ///< last good report, or the opening
+  TimePoint reached_at_{};  ///< by a command, or the opening
+  std::string_view held_;   ///< why of the fault that no person has reset yet
   TimePoint reopen_at_{};
   TimePoint stepped_at_{};  ///< of the velocity
   TimePoint started_at_{};  ///< end of the protocol's start

@@ -149,6 +149,7 @@ const std::vector<Arrow>& arrows() {
        {"patient_site/devices", "common/config", "common/io/*", "site_program"}},
       {"patient_site/axis_check.*", {"patient_site/devices", "common/io/device", "site_program"}},
       {"patient_site/sensor_check.*", {"site_program"}},
+      {"patient_site/force_check.*", {"patient_site/devices", "common/io/device", "site_program"}},
       {"patient_site/device_check.*", {"patient_site/devices", "common/io/*", "site_program"}},
       // Reads the text of a device's registers, and of where it is built in.
       {"patient_site/settings_devices.*",

@@ -1,7 +1,9 @@
 // A person and a drive, in virtual time.
 #include "patient_site/axis_check.h"
 
+#include <functional>
 #include <sstream>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -22,14 +24,22 @@ class AxisCheckTest : public testing::Test {
   Result<DevicePlan> check(const std::string& answers) {
     std::istringstream in{answers};
     site_program::Dialogue talk{in, out_};
-    return AxisCheck{
-        plan_, drive_.port, drive_.clock, [this](Duration span) { drive_.pass(span); }, talk}
-        .run();
+    const TimePoint patience = drive_.clock.at + std::chrono::minutes{10};
+    const auto pass = [&](Duration span) {
+      drive_.pass(span);
+      if (during_) during_();
+      if (drive_.clock.at > patience) throw std::runtime_error{"it never ends"};
+    };
+    return AxisCheck{plan_, drive_.port, drive_.clock, pass, talk}.run();
+  }
+  [[nodiscard]] bool was_told(const char* words) const {
+    return out_.str().find(words) != std::string::npos;
   }
 
   DriveModel drive_{"iai"};
   DevicePlan plan_;
   std::ostringstream out_;
+  std::function<void()> during_;
 };
 
 TEST_F(AxisCheckTest, ADriveThatDoesAsItsFileSaysKeepsItsNumbers) {
@@ -70,6 +80,55 @@ TEST_F(AxisCheckTest, OneThatStandsStillAndOneThatIsAbsentAreTold) {
   EXPECT_EQ(check("yes\nout\n2\nyes\n").error().text, "it does not move");
   drive_.port.words[0x9005] = 0xB010;
   EXPECT_EQ(check("yes\n").error().text, "it is fault: the device reports: emergency stop");
+}
+
+TEST_F(AxisCheckTest, AStopInItsWayEndsItBeforeItIsLeftAlone) {
+  during_ = [this] {
+    if (was_told("um per count")) drive_.stop_at = std::abs(drive_.place());
+  };
+  EXPECT_EQ(check("yes\nout\n2\nyes\n").error().text, "it does not move");
+  EXPECT_TRUE(drive_.port.coils[0x42C]) << "nothing pushes on";
+}
+
+TEST_F(AxisCheckTest, ANoisyPositionComesToRestWithinItsNoise) {
+  drive_.wobble = 30e-6;
+  const auto found = check("yes\nout\n2\nno\n");
+  ASSERT_TRUE(found) << found.error().text;
+  EXPECT_TRUE(was_told("left alone it stopped"));
+}
+
+TEST_F(AxisCheckTest, OneThatNeverRestsOrGoesOnIsTold) {
+  during_ = [this] { drive_.wobble = was_told("um per count") ? 3e-4 : 0; };
+  EXPECT_EQ(check("yes\nout\n2\nno\n").error().text,
+            "it does not come to rest although nobody commands it");
+  drive_.wobble = 0;
+  out_.str("");
+  during_ = [this] { drive_.runs_on = was_told("um per count"); };
+  EXPECT_EQ(check("yes\nout\n2\nno\n").error().text, "it goes on although nobody commands it");
+  EXPECT_GT(drive_.place(), -6e-3) << "stopped at once";
+}
+
+TEST_F(AxisCheckTest, OneThatSwingsAboutDoesNotArrive) {
+  during_ = [this] {
+    if (!was_told("it moved after")) return;
+    drive_.wobble = 0.9e-3;
+    drive_.offset = 0.45e-3;
+  };
+  const auto found = check("yes\nout\n2\nno\n");
+  EXPECT_TRUE(!found && found.error().text.starts_with("it stands at")) << out_.str();
+}
+
+TEST(AxisThatFeelsTest, ItsUnloadedForceIsNoTouchForTheCheck) {
+  DriveModel drive{"orca"};
+  drive.force = 3;
+  DevicePlan plan;
+  plan.profile = drive.profile();
+  plan.installation = DriveModel::installation();
+  std::istringstream in{"no\n"};
+  std::ostringstream out;
+  site_program::Dialogue talk{in, out};
+  AxisCheck check{plan, drive.port, drive.clock, [&](Duration span) { drive.pass(span); }, talk};
+  EXPECT_EQ(check.run().error().text, "it was not moved: without that it is not calibrated");
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ TEST(DeviceCheckTest, WhatWasFoundIsReadBackWithTheRestOfTheFile) {
   plans.normal->lag = 0.017;
   const auto axis = calibrated_text(kRig, "rig", "normal", *plans.normal);
   ASSERT_TRUE(axis) << axis.error().text;
+  EXPECT_THAT(*axis, testing::StartsWith("# Written by a program, from rig. Comments"));
   plans.card->installation.newtons_per_volt = -7.5;
   const auto both = calibrated_text(*axis, "rig", *plans.card);
   ASSERT_TRUE(both) << both.error().text;

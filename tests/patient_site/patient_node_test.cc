@@ -14,6 +14,7 @@ namespace palp::patient {
 namespace {
 
 using record::NoteCode;
+using std::chrono::milliseconds;
 constexpr Duration kTick = std::chrono::milliseconds{1};
 
 /// The simulated phantom with faults that a test switches on.
@@ -47,6 +48,7 @@ class FaultySite final : public Stage, public ForceSensor {
     sample->saturated = saturated;
     return sample;
   }
+  void expect_touch(bool may_touch) noexcept override { touch_expected = may_touch; }
   [[nodiscard]] StageTarget target() const { return target_; }
 
   bool stage_gives_nan{};
@@ -55,6 +57,7 @@ class FaultySite final : public Stage, public ForceSensor {
   bool silent{};
   bool saturated{};
   bool halted{};
+  bool touch_expected{};
   std::optional<double> force;  ///< [N], in place of the sensor's
 
  private:
@@ -134,8 +137,6 @@ struct World {
   }
 };
 
-using std::chrono::milliseconds;
-
 TEST(PatientNodeTest, FollowsTheHandWhenEngagedAndSaysWhatItFeels) {
   World world;
   world.engage();
@@ -154,6 +155,7 @@ TEST(PatientNodeTest, SendsItsPositionForceAndState) {
   world.move(2e-3, milliseconds{500});
   EXPECT_EQ(world.heard.peer.state, SiteState::Engaged);
   EXPECT_EQ(world.heard.peer.epoch, 1U);
+  EXPECT_TRUE(world.site.touch_expected);
   ASSERT_FALSE(world.heard.samples.empty());
   EXPECT_NEAR(world.heard.samples.back().sample.position, 2e-3, 20e-6);
   EXPECT_GT(world.heard.samples.back().sample.force, 0);
@@ -164,6 +166,7 @@ TEST(PatientNodeTest, DoesNotMoveBeforeItIsEngaged) {
   world.say.site.state = SiteState::Clutched;
   world.move(3e-3, milliseconds{500});
   EXPECT_NEAR(world.plant.truth().position, -10e-3, 1e-6);
+  EXPECT_FALSE(world.site.touch_expected) << "a tare may go on";
 }
 
 TEST(PatientNodeTest, GivesTheEstimatorEveryTickOfAnEngagement) {

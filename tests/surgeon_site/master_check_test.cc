@@ -64,7 +64,7 @@ class PaddleWorld {
     clock.at += span;
     waited_ = force == pushed_ ? waited_ + 1 : 0;
     pushed_ = force;
-    if (waited_ >= 7) slipped_ -= force * 2e-5;  // it takes a while until it moves
+    if (waited_ >= 7 && !held) slipped_ -= force * slip;  // it takes a while until it moves
     palp_paddle::State state{};
     state.sequence = ++sequence_;
     state.flags = palp_paddle::kStateCalibrated;
@@ -75,8 +75,9 @@ class PaddleWorld {
   }
   Result<MasterPlan> check(const std::vector<std::string>& answers) {
     Deeds deeds{answers, [this](std::size_t number) {
-                  constexpr std::array<double, 6> kPlaces{0.0, 0.0, 0.02, 0.01, -0.03, 0.025};
+                  constexpr std::array<double, 7> kPlaces{0.0, 0.0, 0.02, 0.01, -0.03, 0.025, 0};
                   if (number < kPlaces.size()) place = kPlaces[number];
+                  held = number >= kPlaces.size();  // by a scale
                 }};
     std::istream in{&deeds};
     const auto plan = make_master_plan(*master_named("paddle"), "", "hand");
@@ -85,13 +86,17 @@ class PaddleWorld {
     return MasterCheck{*plan, port, clock, [this](Duration span) { pass(span); }, talk}.run();
   }
 
+  [[nodiscard]] double reached() const { return place + slipped_; }  ///< [m], by its motor
+
   TurnedClock clock;
   fake_hid::Device* raw{};
   std::ostringstream out;
   double place{};
-  double sense{1};  ///< of its counts, against its place
-  double motor{1};  ///< -1: wired the wrong way
-  double force{};   ///< [N]
+  double sense{1};    ///< of its counts, against its place
+  double motor{1};    ///< -1: wired the wrong way
+  double slip{2e-5};  ///< [m/N], in each millisecond
+  bool held{};
+  double force{};  ///< [N]
   double strongest{};
 
  private:
@@ -131,6 +136,7 @@ TEST(MasterCheckTest, FindsWhatIsTheWrongWayRound) {
   EXPECT_NEAR(found->installation.zero, -0.01, 1e-6) << "as it reads there, in its new unit";
   const auto text = calibrated_text("master { pedal_button: 3 }", "hand", *found);
   ASSERT_TRUE(text) << text.error().text;
+  EXPECT_TRUE(text->starts_with("# Written by a program, from hand. Comments")) << *text;
   const auto again = make_master_plan(*master_named("paddle"), *text, "written");
   ASSERT_TRUE(again) << again.error().text;
   EXPECT_EQ(again->pedal_button, 3);
@@ -150,6 +156,16 @@ TEST(MasterCheckTest, NothingMovesWithoutAYesAndAMotorThatDoesNothingIsTold) {
   dead.motor = 0;
   EXPECT_EQ(dead.check(kAnswers).error().text,
             "it did not move: no power, too little force, or a false scale of it");
+}
+
+TEST(MasterCheckTest, ItsMotorPushesNobodyBeyondTheLimitsThatWereFound) {
+  PaddleWorld world;
+  world.slip = 4e-4;  // [m/N], 58 mm in a push of half a second
+  const auto found = world.check(kAnswers);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().text, "the position is outside its travel");
+  EXPECT_EQ(world.force, 0);
+  EXPECT_GT(world.reached(), -0.032);
 }
 
 TEST(MasterCheckTest, ThatNobodyAnswersAndThatItIsAbsentAreTold) {

@@ -51,10 +51,12 @@ std::vector<HidFound> list_unlocked(std::uint16_t vendor, std::uint16_t product)
   return all;
 }
 
-/// Whether the first usage that is listed, or another of the same node, is the one asked for.
-std::string path_of(const HidAddress& address) {
+/// Whether the first usage that is listed, or another of the same node, is the one asked for. A
+/// device has each of its interfaces once: the same one at another path is another device, and
+/// which of two a kernel lists first changes with each plug.
+PortFault find_path(const HidAddress& address, std::string& best) {
   hid_device_info* const first = hid_enumerate(address.vendor, address.product);
-  std::string best;
+  std::vector<HidFound> agreeing;
   for (const hid_device_info* one = first; one != nullptr; one = one->next) {
     if (one->path == nullptr) continue;
     const HidFound found{.path = one->path,
@@ -65,10 +67,16 @@ std::string path_of(const HidAddress& address) {
                          .usage_page = one->usage_page,
                          .serial = printable(one->serial_number),
                          .name = {}};
-    if (agrees(found, address) && (best.empty() || found.path < best)) best = found.path;
+    if (agrees(found, address)) agreeing.push_back(found);
   }
   hid_free_enumeration(first);
-  return best;
+  if (agreeing.empty()) return PortFault::NotOpen;
+  const HidFound& chosen = *std::ranges::min_element(agreeing, {}, &HidFound::path);
+  best = chosen.path;
+  const bool twin = std::ranges::any_of(agreeing, [&](const HidFound& one) {
+    return one.path != chosen.path && one.interface_number == chosen.interface_number;
+  });
+  return twin ? PortFault::Ambiguous : PortFault::None;
 }
 
 }  // namespace
@@ -115,8 +123,8 @@ HidPort::~HidPort() = default;
 PortFault HidPort::open() {
   close();
   const std::lock_guard locked{hid_library_lock()};
-  const std::string path = path_of(address_);
-  if (path.empty()) return PortFault::NotOpen;
+  std::string path;
+  if (const PortFault fault = find_path(address_, path); fault != PortFault::None) return fault;
   hid_device* const device = hid_open_path(path.c_str());
   if (device == nullptr) return PortFault::NotOpen;
   handle_ = std::make_unique<Handle>(device);

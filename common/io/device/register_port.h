@@ -10,6 +10,7 @@ namespace palp::io {
 enum class PortFault : std::uint8_t {
   None,
   NotOpen,       ///< cannot be opened: nobody there, no permission
+  Ambiguous,     ///< more than one is there that agrees: which is meant, nobody said
   Lost,          ///< was open and is gone: unplugged, connection closed
   NoReply,       ///< within the time that baud rate, lengths and the device's delay allow
   BrokenFrame,   ///< checksum, length or function are not those of the answer
@@ -23,6 +24,8 @@ enum class PortFault : std::uint8_t {
       return "";
     case PortFault::NotOpen:
       return "cannot be opened";
+    case PortFault::Ambiguous:
+      return "more than one is there: unplug one, or give its serial";
     case PortFault::Lost:
       return "connection lost";
     case PortFault::NoReply:

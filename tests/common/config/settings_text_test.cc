@@ -55,6 +55,19 @@ TEST(SettingsTextTest, NamesPlaceAndFieldsOfAnUnknownField) {
             "through, room");
 }
 
+TEST(SettingsTextTest, AFileMadeOfAnotherSaysSoAndIsReadBack) {
+  PatientConfig patient;
+  ASSERT_TRUE(merge_text("motion_gate { force_limit_n: 2.5 }  # gentle\n", "a.conf", patient));
+  const std::string text = changed_settings_text(patient, "my\nrig: 1");
+  EXPECT_THAT(text,
+              StartsWith("# Written by a program, from my?rig: 1. Comments of that file were "
+                         "not kept.\nmotion_gate {"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("force_stop_n"))) << "only what was given";
+  PatientConfig again;
+  ASSERT_TRUE(merge_text(text, "written", again));
+  EXPECT_TRUE(MessageDifferencer::Equals(patient, again));
+}
+
 TEST(SettingsTextTest, RefusesWhatIsNotAFiniteNumber) {
   PatientConfig patient;
   for (const char* value :

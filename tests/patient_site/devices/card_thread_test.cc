@@ -82,7 +82,7 @@ TEST(CardThreadTest, TaresAndFeelsWithAThreadOfItsOwn) {
   ASSERT_TRUE(sample) << card.status().why;
   EXPECT_NEAR(sample->force, 0, 0.01);
   EXPECT_FALSE(sample->saturated);
-  card.restart();
+  card.requests().restart();
 }
 
 }  // namespace

@@ -74,7 +74,9 @@ class DriveModel {
   bool quiet{};      ///< without noise: stuck
   bool no_number{};
   double offset{};    ///< [m], what it reads too much
+  double wobble{};    ///< [m], either way, of what it reads
   double stop_at{1};  ///< [m], it goes no further than that either way
+  bool runs_on{};     ///< it goes on outwards, whatever it is told
 
  private:
   void heed(std::uint16_t address) {
@@ -95,6 +97,7 @@ class DriveModel {
   }
   void advance() {
     constexpr double kStep = kSpeed * 1e-3;
+    if (runs_on) target_ = place_ - kStep / 10;
     place_ = std::clamp(place_ + std::clamp(target_ - place_, -kStep, kStep), -stop_at, stop_at);
     tell();
   }
@@ -110,7 +113,8 @@ class DriveModel {
     }
   }
   void put(std::uint16_t at, double place) {
-    put_bits(at, static_cast<std::uint32_t>(std::lround((place + offset + 0.05) / unit())));
+    const double read = place + offset + wobble * (noise_ * 3 % 7 - 3) / 3;
+    put_bits(at, static_cast<std::uint32_t>(std::lround((read + 0.05) / unit())));
   }
   void put_bits(std::uint16_t at, std::uint32_t bits) {
     const bool low = low_first_ != swapped;

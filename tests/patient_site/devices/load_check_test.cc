@@ -60,5 +60,39 @@ TEST_F(LoadCheckTest, NoticesSameSaturatedAndNoNumbers) {
   EXPECT_TRUE(check.tared()) << "a tare outlives a gap";
 }
 
+TEST_F(LoadCheckTest, ATareThatIsUnderWayEndsWhereTheTipMayTouch) {
+  LoadCheck check{config_};
+  ASSERT_EQ(quiet(check, 2), Verdict::Good);
+  check.heed({.asked = true, .ready = true, .may_touch = false});
+  EXPECT_EQ(check.take(2.3, at_), Verdict::Good);
+  check.heed({.asked = false, .ready = true, .may_touch = true});
+  EXPECT_EQ(check.news().refused, 1U);
+  EXPECT_EQ(check.news().why, "the tip may touch something");
+  check.heed({.asked = false, .ready = true, .may_touch = false});
+  EXPECT_EQ(quiet(check, 2.3), Verdict::Good);
+  EXPECT_EQ(check.news().taken, 0U);
+  EXPECT_NEAR(check.zero(), 2, 0.01);
+  check.heed({.asked = true, .ready = true, .may_touch = true});
+  check.heed({.asked = true, .ready = false, .may_touch = false});
+  EXPECT_EQ(check.news().refused, 3U);
+  EXPECT_EQ(check.news().why, "the sensor is not ready");
+}
+
+TEST_F(LoadCheckTest, NoTareReachesOverAGap) {
+  LoadCheck check{config_};
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(check.take(2.4, at_), Verdict::Taring);
+  at_ += std::chrono::milliseconds{200};
+  check.resume();
+  EXPECT_EQ(check.take(2, at_), Verdict::Taring) << "the first begins anew";
+  ASSERT_EQ(quiet(check, 2), Verdict::Good);
+  check.heed({.asked = true, .ready = true, .may_touch = false});
+  EXPECT_EQ(check.take(2, at_), Verdict::Good);
+  check.resume();
+  EXPECT_EQ(quiet(check, 2.4), Verdict::Good);
+  EXPECT_EQ(check.news().taken, 0U);
+  EXPECT_EQ(check.news().refused, 1U);
+  EXPECT_NEAR(check.zero(), 2, 0.01) << "it came back pressed";
+}
+
 }  // namespace
 }  // namespace palp::patient

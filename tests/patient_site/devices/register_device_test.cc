@@ -167,6 +167,46 @@ TEST(RegisterDeviceTest, AnEmergencyStopIsAFaultUntilRestarted) {
   EXPECT_EQ(axis.cycles(30).state, DeviceState::Ready) << axis.why();
 }
 
+TEST(RegisterDeviceTest, ALineThatWasLostFreesItOfNoFault) {
+  Axis axis;
+  axis.cycles(20);
+  axis.port.words[0x9005] = 0xB010;
+  ASSERT_EQ(axis.cycles(1).state, DeviceState::Fault);
+  axis.port.fault = PortFault::Lost;
+  ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
+  axis.port.fault = PortFault::None;
+  axis.port.words[0x9005] = 0x3010;
+  axis.port.coils.clear();
+  ASSERT_EQ(axis.cycles(100).state, DeviceState::Fault);
+  EXPECT_EQ(axis.why(), "the device reports: emergency stop");
+  EXPECT_FALSE(axis.port.coils.contains(0x403)) << "its servo is not switched on";
+  ++axis.command.asks.restarts;
+  EXPECT_EQ(axis.cycles(30).state, DeviceState::Ready) << axis.why();
+}
+
+TEST(RegisterDeviceTest, WhatComesBackByItselfDoesNotHomeByItself) {
+  DeviceInstallation built_in = Axis::installation();
+  built_in.may_home = true;
+  Axis axis{"iai", built_in};
+  ASSERT_EQ(axis.cycles(20).state, DeviceState::Ready);
+  ++axis.command.asks.restarts;  // meant for the site
+  axis.port.fault = PortFault::Lost;
+  ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
+  axis.port.fault = PortFault::None;
+  axis.port.words[0x9005] = 0x3000;  // its power was lost, and its home with it
+  ASSERT_EQ(axis.cycles(100).state, DeviceState::Fault);
+  EXPECT_EQ(axis.why(), "it must move, which begins with a reset: home");
+  EXPECT_FALSE(axis.port.coils.contains(0x40B));
+  ++axis.command.asks.restarts;
+  axis.cycles(20);
+  EXPECT_TRUE(axis.port.coils[0x40B]);
+  axis.port.fault = PortFault::Lost;  // on its way home
+  ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
+  axis.port.fault = PortFault::None;
+  axis.port.words[0x9005] = 0x3010;
+  EXPECT_EQ(axis.cycles(100).state, DeviceState::Ready) << axis.why();
+}
+
 TEST(RegisterDeviceTest, HomesOnlyWhereItMay) {
   Axis axis;
   axis.port.words[0x9005] = 0x3000;
@@ -260,6 +300,39 @@ TEST(RegisterDeviceTest, ATareThatIsAskedForKeepsTheOldOneWhereSomethingTouches)
   EXPECT_EQ(cell.reading.state, DeviceState::Ready) << cell.why();
   EXPECT_EQ(cell.reading.tare.refused, 1U);
   EXPECT_NEAR(cell.reading.force, 1, 1e-9);
+}
+
+TEST(RegisterDeviceTest, ATareThatTheTipOrAGapOvertakesIsGivenUp) {
+  Axis cell{"tlb4"};
+  ASSERT_EQ(cell.cycles(40).state, DeviceState::Ready) << cell.why();
+  ++cell.command.asks.tares;
+  cell.cycles(5);
+  cell.command.asks.may_touch = true;
+  cell.port.words[8] = 30;  // 0.3 N, a light touch
+  cell.cycles(40);
+  EXPECT_EQ(cell.reading.tare.refused, 1U);
+  EXPECT_EQ(cell.reading.tare.why, "the tip may touch something");
+  cell.command.asks.may_touch = false;
+  cell.port.words[8] = 0;
+  ++cell.command.asks.tares;
+  cell.cycles(5);
+  cell.port.fault = PortFault::Lost;
+  ASSERT_EQ(cell.cycles(1).state, DeviceState::Absent);
+  cell.port.fault = PortFault::None;
+  cell.port.words[8] = 30;
+  ASSERT_EQ(cell.cycles(200).state, DeviceState::Ready);
+  EXPECT_EQ(cell.reading.tare.refused, 2U);
+  EXPECT_EQ(cell.reading.tare.taken, 0U);
+  EXPECT_NEAR(cell.reading.force, 0.3, 1e-9) << "it came back pressed";
+}
+
+TEST(RegisterDeviceTest, ATareOfADeviceThatIsNotReadyIsRefused) {
+  Axis cell{"tlb4"};
+  cell.port.openable = false;
+  ++cell.command.asks.tares;
+  EXPECT_EQ(cell.cycles(1).tare.refused, 1U);
+  EXPECT_EQ(cell.reading.tare.why, "the sensor is not ready");
+  EXPECT_EQ(cell.cycles(5).tare.refused, 1U) << "once";
 }
 
 TEST(DeviceFlawTest, NamesWhatIsNotRead) {

@@ -156,7 +156,7 @@ TEST_P(RegisterFaultTest, NoSequenceOfThemMakesItJumpOrLeaveItsTravel) {
     for (int i = 0; i < 6; ++i) {
       const double before = device.place();
       device.move(static_cast<double>(draw(600)) * 1e-3 - 0.3);
-      device.port.fault = draw(3) == 0 ? static_cast<PortFault>(draw(7)) : PortFault::None;
+      device.port.fault = draw(3) == 0 ? static_cast<PortFault>(draw(8)) : PortFault::None;
       device.port.openable = draw(3) != 0;
       device.swapped = draw(12) == 0;
       device.quiet = draw(8) == 0;

@@ -107,6 +107,14 @@ TEST(DeviceRigTest, TellsByNameWhoIsNotThere) {
   EXPECT_FALSE(rig.hopeless(std::chrono::seconds{1}));
   EXPECT_EQ(rig.hopeless(std::chrono::seconds{6}), news[0].sentence);
   rig.restart();
+  rig.tare();
+  news.clear();
+  ASSERT_TRUE(wait_for([&] {
+    for (const DeviceNews& one : rig.news()) news.push_back(one);
+    return !news.empty();
+  }));
+  EXPECT_EQ(news[0].sentence,
+            "normal axis (Iris ORCA): the tare was refused, the sensor is not ready");
 }
 
 }  // namespace

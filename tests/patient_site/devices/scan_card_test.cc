@@ -87,6 +87,22 @@ TEST_F(ScanCardTest, StuckSaturatedAndTouchedAreSeen) {
   EXPECT_EQ(run(50, 0x8000).state, CardState::Ready);
 }
 
+TEST_F(ScanCardTest, AResetKeepsTheZeroAndOnlyItEndsAFault) {
+  (void)run(50, 0x8000);
+  ASSERT_EQ(run(5, 0x8000 + 200, 0).state, CardState::Fault);
+  for (auto* one : raw_) one->there = false;
+  ASSERT_EQ(step().state, CardState::Absent);
+  for (auto* one : raw_) one->there = true;
+  for (int i = 0; i < 501; ++i) (void)step();
+  CardReading reading = run(50, 0x8000 + 200);
+  EXPECT_EQ(reading.state, CardState::Fault) << "no cable ends it";
+  EXPECT_EQ(reading.why, "the reading is stuck");
+  ++asks_.restarts;
+  reading = run(50, 0x8000 + 200);
+  EXPECT_EQ(reading.state, CardState::Ready) << reading.why;
+  EXPECT_NEAR(reading.force, 0.3, 0.01) << "the tip may press";
+}
+
 TEST_F(ScanCardTest, WhatTouchesAtTheStartIsNoTare) {
   EXPECT_EQ(run(50, 0x8000 + 1000).why, "the tare was refused: something touches the sensor");
 }
@@ -109,6 +125,27 @@ TEST_F(ScanCardTest, ATareThatIsAskedForIsTakenOrRefusedAndTheOldOneHoldsMeanwhi
   EXPECT_EQ(reading.state, CardState::Ready);
   EXPECT_EQ(reading.tare.refused, 1U);
   EXPECT_NEAR(reading.force, 1.47, 0.01) << "against the old zero";
+}
+
+TEST_F(ScanCardTest, ATareThatTheTipOrAGapOvertakesIsGivenUp) {
+  (void)run(50, 0x8000);
+  ++asks_.tares;
+  (void)run(1, 0x8000);
+  asks_.may_touch = true;
+  CardReading reading = run(50, 0x8000 + 200);  // 0.3 N, a light touch
+  EXPECT_EQ(reading.tare.refused, 1U);
+  EXPECT_NEAR(reading.force, 0.3, 0.01) << "against the old zero";
+  asks_.may_touch = false;
+  ++asks_.tares;
+  (void)run(1, 0x8000);
+  for (int i = 0; i < 7; ++i) reading = step();
+  ASSERT_EQ(reading.state, CardState::Absent);
+  ++asks_.tares;
+  EXPECT_EQ(step().tare.refused, 3U) << "the one under way, and another";
+  for (int i = 0; i < 501; ++i) (void)step();
+  reading = run(50, 0x8000 + 200);
+  EXPECT_EQ(reading.tare.taken, 0U);
+  EXPECT_NEAR(reading.force, 0.3, 0.01) << "it came back pressed";
 }
 
 TEST_F(ScanCardTest, SilenceAndUnpluggingMakeItAbsentAndItComesBackWithItsTare) {

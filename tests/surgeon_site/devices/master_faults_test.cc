@@ -52,6 +52,7 @@ class FarEnd {
 
   fake_hid::Device* raw{};
   bool talks{true};
+  bool frozen{};         ///< its program hangs, and its buffer is sent on
   bool heard{true};      ///< the site goes on commanding
   bool fit{true};        ///< no emergency stop
   bool power{true};      ///< of the motor; not too hot
@@ -83,7 +84,7 @@ class FarEnd {
       }
       case MasterKind::Paddle: {
         palp_paddle::State state{};
-        state.sequence = ++sequence_;
+        state.sequence = frozen ? sequence_ : ++sequence_;
         state.position_nm = static_cast<std::int32_t>(std::lround(position * 1e9));
         state.flags = static_cast<std::uint16_t>(palp_paddle::kStateCalibrated |
                                                  (fit ? 0 : palp_paddle::kStateEmergencyStop) |
@@ -127,6 +128,14 @@ std::vector<Fault> faults() {
        "paddle openffboard",
        [](FarEnd& far) { far.length = 70; },
        "absent: it fell silent"},
+      {"the same report again and again",
+       "paddle",
+       [](FarEnd& far) { far.frozen = true; },
+       "absent: it fell silent"},
+      {"commands cannot be written",
+       "paddle openffboard",
+       [](FarEnd& far) { far.raw->writable = false; },
+       "absent: commands do not reach it"},
       {"emergency stop",
        "paddle openffboard",
        [](FarEnd& far) { far.fit = false; },
@@ -173,6 +182,26 @@ TEST_P(MasterFaultTest, EachEndsWhereTheTableSaysInTimeAndWithoutForce) {
         far.name(), fault.name, in_words(fault.state), after, far.has_force() ? "0 N" : "-");
     EXPECT_TRUE(is_documented(row)) << row;
   }
+}
+
+TEST_P(MasterFaultTest, ACableFreesItOfNoFault) {
+  FarEnd far{GetParam()};
+  if (!far.has_force()) return;  // such a one has no fault
+  for (int i = 0; i < 40; ++i) (void)far.step(1.5);
+  far.fit = false;
+  ASSERT_EQ(far.step(1.5).state, MasterState::Fault);
+  far.raw->there = false;
+  ASSERT_EQ(far.step(1.5).state, MasterState::Absent);
+  far.raw->there = far.fit = true;
+  MasterReading reading;
+  for (int i = 0; i < 700; ++i) {
+    reading = far.step(1.5);
+    ASSERT_EQ(reading.force, 0);
+  }
+  EXPECT_EQ(state_of(reading), "fault: emergency stop");
+  far.restart();
+  for (int i = 0; i < 40; ++i) reading = far.step(1.5);
+  EXPECT_EQ(state_of(reading), "ready: ");
 }
 
 TEST_P(MasterFaultTest, NoSequenceOfThemGivesForceThatIsNotAskedFor) {

@@ -82,6 +82,26 @@ TEST_F(HidPortTest, HandsOverReportsAsTheyAre) {
   EXPECT_EQ(port.write(out), PortFault::Refused);
 }
 
+TEST_F(HidPortTest, OpensNeitherOfTwoThatAgree) {
+  fake_hid::Device& first = fake_hid::plug(device("/dev/hidraw3", 0));
+  fake_hid::Device& twin = fake_hid::plug(device("/dev/hidraw10", 0));
+  fake_hid::plug(device("/dev/hidraw4", 1));
+  HidPort port{kFirst};
+  EXPECT_EQ(port.open(), PortFault::Ambiguous);
+  EXPECT_FALSE(first.open || twin.open);
+  HidAddress any = kFirst;
+  any.interface_number = -1;
+  twin.there = false;
+  EXPECT_EQ(HidPort{any}.open(), PortFault::None) << "interfaces of one device are no twins";
+  twin.there = true;
+  twin.serial = L"56";
+  HidAddress by_serial = kFirst;
+  by_serial.serial = "56";
+  HidPort second{by_serial};
+  EXPECT_EQ(second.open(), PortFault::None);
+  EXPECT_TRUE(twin.open);
+}
+
 TEST_F(HidPortTest, FindsADeviceThatWasPluggedInAgainElsewhere) {
   auto& one = fake_hid::plug(device("a", 0));
   HidPort port{kFirst};
