@@ -390,4 +390,6 @@ Server::~Server() = default;
 
 std::uint16_t Server::port() const noexcept { return io_->port(); }
 
+std::optional<std::string> Server::failure() const { return loop_->failure(); }
+
 }  // namespace palp::monitor
