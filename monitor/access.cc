@@ -28,6 +28,19 @@ bool same_secret(std::string_view given, std::string_view kept) noexcept {
   return differences == 0;
 }
 
+std::string_view token_in(std::string_view target) noexcept {
+  constexpr std::string_view kName = "token=";
+  const auto query = target.find('?');
+  if (query == target.npos) return {};
+  std::string_view rest = target.substr(query + 1);
+  while (!rest.empty()) {
+    const std::string_view one = rest.substr(0, rest.find('&'));
+    if (one.starts_with(kName)) return one.substr(kName.size());
+    rest.remove_prefix(std::min(rest.size(), one.size() + 1));
+  }
+  return {};
+}
+
 Access::Access(Tokens tokens, std::vector<std::string> origins)
     : tokens_{std::move(tokens)}, origins_{std::move(origins)} {}
 

@@ -23,6 +23,9 @@ struct Tokens {
 /// Whether both are the same text, in a time that tells nothing of where they differ.
 [[nodiscard]] bool same_secret(std::string_view given, std::string_view kept) noexcept;
 
+/// The value behind "?token=" in a request's target; empty: there is none.
+[[nodiscard]] std::string_view token_in(std::string_view target) noexcept;
+
 /// Who may have what. Loopback is no border between the users of a machine, and a page of anywhere
 /// may ask a browser to call this one: so the name by which a request calls this site, the page it
 /// comes from and its token are looked at, each by itself. Thread: one.

@@ -16,6 +16,8 @@ using record::Topic;
 /// What a screen can take: 50 Hz and slower. The 1 kHz topics are in the file alone.
 constexpr std::array kLive{Topic::TickView, Topic::Link, Topic::Event, Topic::Depth};
 constexpr std::uint32_t kStatusChannel = 100;
+constexpr std::uint32_t kClientChannel = 101;
+constexpr Duration kTellWayStep = std::chrono::milliseconds{100};  ///< of an answer waited for
 constexpr std::size_t kKeptMax = 200;
 constexpr std::size_t kSubscriptionsMax = 64;
 constexpr std::string_view kPointerTopic = "monitor/pointer";
@@ -41,6 +43,11 @@ std::vector<Channel> channels_of(link::Role site) {
                       .encoding = "json",
                       .schema_name = "palp.monitor.Status",
                       .schema = status_schema()});
+  channels.push_back({.id = kClientChannel,
+                      .topic = std::string{record::site_name(site)} + "/client",
+                      .encoding = "json",
+                      .schema_name = "palp.monitor.Client",
+                      .schema = client_schema()});
   return channels;
 }
 
@@ -88,9 +95,33 @@ std::uint32_t Desk::join(Right right, TimePoint now) {
 void Desk::leave(std::uint32_t client, TimePoint now) {
   if (pilot_.give(client)) {
     controls_.pointer->put(pilot_.let_go(now));
-    ask(Request::Kind::PilotGave, client);
+    (void)ask(Request::Kind::PilotGave, client);
   }
   clients_.erase(client);
+}
+
+void Desk::heard_pong(std::uint32_t number, Duration round_trip, TimePoint now) {
+  Client& client = clients_.at(number);
+  tell_way(client, round_trip);
+  end_press(client, pilot_.heard_pong(number, round_trip, now));
+}
+
+void Desk::awaits_pong(std::uint32_t number, Duration age, TimePoint now) {
+  Client& client = clients_.at(number);
+  if (age > client.told_way + kTellWayStep) tell_way(client, age);
+  end_press(client, pilot_.awaits_pong(number, age, now));
+}
+
+void Desk::tell_way(Client& client, Duration round_trip) {
+  client.told_way = round_trip;
+  const std::string json = client_json(round_trip);
+  send(client, kClientChannel, told_, std::as_bytes(std::span{json}));
+}
+
+void Desk::end_press(Client& client, const std::optional<PointerReport>& report) {
+  if (!report) return;
+  controls_.pointer->put(*report);
+  tell(client, Level::Warning, "the hand was let go of: this page answers too late to hold it");
 }
 
 bool Desk::within_budget(Client& client, TimePoint now) noexcept {
@@ -197,18 +228,16 @@ void Desk::answer_call(std::uint32_t number,
 std::string Desk::serve(std::uint32_t number, const ClientBytes& call, TimePoint now) {
   switch (call.id) {
     case kMark:
-      ask(Request::Kind::Mark, number);
-      return {};
+      return ask(Request::Kind::Mark, number);
     case kStop:
       if (controls_.stops != nullptr) controls_.stops->put(++stops_);
-      ask(Request::Kind::Stop, number);
+      // The loop has it already; whether the file gets its note changes nothing.
+      (void)ask(Request::Kind::Stop, number);
       return {};
     case kReset:
-      ask(Request::Kind::Reset, number);
-      return {};
+      return ask(Request::Kind::Reset, number);
     case kEnd:
-      ask(Request::Kind::End, number);
-      return {};
+      return ask(Request::Kind::End, number);
     case kTake: {
       const auto request = is_shallow(call.payload) ? Json::parse(call.payload) : Json{};
       const auto name = request.at_or_null("name").text().value_or("");
@@ -217,35 +246,40 @@ std::string Desk::serve(std::uint32_t number, const ClientBytes& call, TimePoint
         const std::string who = pilot_.name().empty() ? "" : " (" + pilot_.name() + ")";
         return "client " + std::to_string(pilot_.client()) + who + " has the pointer";
       }
-      ask(Request::Kind::PilotTook, number);
+      (void)ask(Request::Kind::PilotTook, number);
       return {};
     }
     case kGive:
       if (!pilot_.give(number)) return "this client does not have the pointer";
       controls_.pointer->put(pilot_.let_go(now));
-      ask(Request::Kind::PilotGave, number);
+      (void)ask(Request::Kind::PilotGave, number);
       return {};
     default:
       return "there is no such service";
   }
 }
 
-void Desk::ask(Request::Kind kind, std::uint32_t client) {
-  if (controls_.requests != nullptr) (void)controls_.requests->try_enqueue({kind, client});
+std::string Desk::ask(Request::Kind kind, std::uint32_t client) {
+  if (controls_.requests->try_enqueue({kind, client})) return {};
+  return "the program has not taken the requests before this one; nothing was done";
 }
 
 void Desk::tell(Client& client, Level level, std::string_view sentence) {
   client.outbox.push({.text = true, .passing = true, .body = status_text(level, sentence)});
 }
 
-void Desk::send(std::uint32_t channel, std::uint64_t stamp, std::span<const std::byte> payload) {
-  for (auto& [number, client] : clients_) {
-    for (const auto& [id, wanted] : client.subscriptions) {
-      if (wanted != channel) continue;
-      client.outbox.push(
-          {.text = false, .passing = true, .body = message_bytes(id, stamp, payload)});
-    }
+void Desk::send(Client& client,
+                std::uint32_t channel,
+                std::uint64_t stamp,
+                std::span<const std::byte> payload) {
+  for (const auto& [id, wanted] : client.subscriptions) {
+    if (wanted != channel) continue;
+    client.outbox.push({.text = false, .passing = true, .body = message_bytes(id, stamp, payload)});
   }
+}
+
+void Desk::send(std::uint32_t channel, std::uint64_t stamp, std::span<const std::byte> payload) {
+  for (auto& [number, client] : clients_) send(client, channel, stamp, payload);
 }
 
 void Desk::publish(const LiveMessage& message) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,10 +46,10 @@ class Desk {
   /// false: it is no client of ours any more, and is to be closed.
   [[nodiscard]] bool hear_text(std::uint32_t client, std::string_view text, TimePoint now);
   [[nodiscard]] bool hear_bytes(std::uint32_t client, std::string_view bytes, TimePoint now);
-  /// An answer to a ping.
-  void heard_pong(std::uint32_t client, Duration round_trip) noexcept {
-    pilot_.heard_pong(client, round_trip);
-  }
+  /// An answer to a ping; the client is told how long it took.
+  void heard_pong(std::uint32_t client, Duration round_trip, TimePoint now);
+  /// A ping that has had no answer for so long: a round trip of at least that.
+  void awaits_pong(std::uint32_t client, Duration age, TimePoint now);
   [[nodiscard]] std::uint32_t pilot() const noexcept { return pilot_.client(); }
 
   void publish(const LiveMessage& message);
@@ -63,6 +64,7 @@ class Desk {
     bool publishes{};
     double budget{kMessagesPerSecond};  ///< [-], messages it may send at once
     TimePoint heard_at{};
+    Duration told_way{};  ///< the round trip it was told of last
   };
   struct Kept {
     std::uint32_t channel{};
@@ -76,8 +78,15 @@ class Desk {
   void answer_call(std::uint32_t number, Client& client, const ClientBytes& call, TimePoint now);
   /// Empty: done. Else why not.
   [[nodiscard]] std::string serve(std::uint32_t number, const ClientBytes& call, TimePoint now);
-  void ask(Request::Kind kind, std::uint32_t client);
+  /// Empty: the program will hear of it. Else why not.
+  [[nodiscard]] std::string ask(Request::Kind kind, std::uint32_t client);
+  void tell_way(Client& client, Duration round_trip);
+  void end_press(Client& client, const std::optional<PointerReport>& report);
   void tell(Client& client, Level level, std::string_view sentence);
+  static void send(Client& client,
+                   std::uint32_t channel,
+                   std::uint64_t stamp,
+                   std::span<const std::byte> payload);
   void send(std::uint32_t channel, std::uint64_t stamp, std::span<const std::byte> payload);
 
   DeskConfig config_;

@@ -48,7 +48,7 @@ struct LiveStatus {
 static_assert(std::is_trivially_copyable_v<LiveStatus>, "crosses threads by copy");
 
 /// From the record thread to the monitor's: the same encoder that fills the session file makes the
-/// messages of up to 60 Hz once more for the screen, whether there is a file or not. A full queue
+/// messages of up to 50 Hz once more for the screen, whether there is a file or not. A full queue
 /// drops the message and counts it; the record thread never waits.
 class Feed {
  public:

@@ -7,6 +7,7 @@ namespace palp::monitor {
 
 void Outbox::push(Frame frame) {
   waiting_ += frame.body.size();
+  if (!frame.passing) ++staying_;
   frames_.push_back(std::move(frame));
   auto one = std::next(frames_.begin(), sending_ ? 1 : 0);
   while (waiting_ > bound_ && one != frames_.end() && std::next(one) != frames_.end()) {
@@ -22,6 +23,7 @@ void Outbox::push(Frame frame) {
 
 void Outbox::pop() {
   waiting_ -= frames_.front().body.size();
+  if (!frames_.front().passing) --staying_;
   frames_.pop_front();
   sending_ = false;
 }

@@ -15,9 +15,12 @@ struct Frame {
 };
 
 /// What one client has not taken yet, bounded: where it takes nothing, passing frames give way, the
-/// oldest first. Answers wait; a client that lets even those pile up is given up. Thread: one.
+/// oldest first. Answers wait; a client that lets even those pile up, in bytes or in number, is
+/// given up. Thread: one.
 class Outbox {
  public:
+  static constexpr std::size_t kStayingMax = 2048;  ///< frames that do not give way
+
   explicit Outbox(std::size_t bound) noexcept : bound_{bound} {}
 
   void push(Frame frame);
@@ -31,12 +34,15 @@ class Outbox {
 
   [[nodiscard]] std::size_t waiting() const noexcept { return waiting_; }  ///< [bytes]
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
-  [[nodiscard]] bool hopeless() const noexcept { return waiting_ > 2 * bound_; }
+  [[nodiscard]] bool hopeless() const noexcept {
+    return waiting_ > 2 * bound_ || staying_ > kStayingMax;
+  }
 
  private:
   std::size_t bound_;  ///< [bytes]
   std::list<Frame> frames_;
   std::size_t waiting_{};
+  std::size_t staying_{};  ///< of the frames
   std::uint64_t dropped_{};
   bool sending_{};
 };

@@ -26,6 +26,8 @@ bool Pilot::take(std::uint32_t client, std::string_view name) {
   client_ = client;
   name_ = printable(name.substr(0, kNameMax));
   measured_ = 0;
+  awaited_ = {};
+  newest_.held = false;
   press_ = 0;
   refused_ = 0;
   return true;
@@ -38,22 +40,43 @@ bool Pilot::give(std::uint32_t client) {
   return true;
 }
 
-void Pilot::heard_pong(std::uint32_t client, Duration round_trip) noexcept {
-  if (client != client_) return;
+std::optional<PointerReport> Pilot::heard_pong(std::uint32_t client,
+                                               Duration round_trip,
+                                               TimePoint now) noexcept {
+  if (client != client_) return std::nullopt;
   round_trips_[measured_++ % kRoundTrips] = round_trip;
+  awaited_ = {};
+  return judge(round_trip, now);
+}
+
+std::optional<PointerReport> Pilot::awaits_pong(std::uint32_t client,
+                                                Duration age,
+                                                TimePoint now) noexcept {
+  if (client != client_) return std::nullopt;
+  awaited_ = age;
+  return judge(age, now);
+}
+
+/// One is enough: the message that lets go may stand in the same queue.
+std::optional<PointerReport> Pilot::judge(Duration round_trip, TimePoint now) noexcept {
+  if (round_trip <= kRoundTripMax || !newest_.held) return std::nullopt;
+  refused_ = press_;
+  newest_ = let_go(now);
+  return newest_;
 }
 
 Duration Pilot::round_trip() const noexcept {
   const std::size_t count = std::min(measured_, kRoundTrips);
-  if (count == 0) return {};
+  if (count == 0) return awaited_;
   auto sorted = round_trips_;
   std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
-  return sorted[(count * 19 + 19) / 20 - 1];
+  const Duration newest = round_trips_[(measured_ - 1) % kRoundTrips];
+  return std::max({sorted[(count * 19 + 19) / 20 - 1], newest, awaited_});
 }
 
 std::string_view Pilot::obstacle() const noexcept {
-  if (measured_ == 0) return "the way to this page is not measured yet";
   if (round_trip() > kRoundTripMax) return "this page answers too late to hold a hand";
+  if (measured_ == 0) return "the way to this page is not measured yet";
   return {};
 }
 

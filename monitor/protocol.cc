@@ -91,6 +91,19 @@ void read_ids(const Json& json, std::string_view name, ClientText& text) {
 
 }  // namespace
 
+std::string_view subprotocol_of(std::string_view offered) noexcept {
+  constexpr std::string_view kBlanks = " \t";
+  while (!offered.empty()) {
+    std::string_view one = offered.substr(0, offered.find(','));
+    offered.remove_prefix(std::min(offered.size(), one.size() + 1));
+    one.remove_prefix(std::min(one.size(), one.find_first_not_of(kBlanks)));
+    one = one.substr(0, one.find_last_not_of(kBlanks) + 1);
+    const auto* const ours = std::ranges::find(kSubprotocols, one);
+    if (ours != std::end(kSubprotocols)) return *ours;
+  }
+  return {};
+}
+
 Channel channel_of(const record::TopicFormat& format) {
   return {.id = static_cast<std::uint32_t>(format.topic) + 1,
           .topic = format.name,

@@ -16,6 +16,8 @@ namespace palp::monitor {
 
 /// What current clients offer; both have the same frames.
 inline constexpr std::string_view kSubprotocols[]{"foxglove.sdk.v1", "foxglove.websocket.v1"};
+/// Of a client's list, the one it likes best, the first that is ours; empty: none.
+[[nodiscard]] std::string_view subprotocol_of(std::string_view offered) noexcept;
 
 /// A topic as clients see it.
 struct Channel {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
@@ -28,40 +29,22 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 
 constexpr Duration kRound = std::chrono::milliseconds{10};
-constexpr Duration kPingEvery = std::chrono::milliseconds{250};
+/// A queue that grows in a press is noticed so much and a slow round trip (pilot.h) later: within
+/// the 200 ms in which a hand is let go of.
+constexpr Duration kPingEvery = std::chrono::milliseconds{100};
 constexpr auto kRequestTime = std::chrono::seconds{10};
 constexpr auto kIdleTime = std::chrono::seconds{20};
-constexpr std::size_t kConnectionsMax = 64;     ///< clients, and who has not shown a token yet
-constexpr std::size_t kMessageMax = 16 * 1024;  ///< [bytes], of a client
-constexpr std::uint32_t kHeaderMax = 8 * 1024;  ///< [bytes]
-constexpr std::uint64_t kBodyMax = 1024;        ///< [bytes], nobody asks with one
+constexpr std::size_t kConnectionsMax = 64;  ///< clients, and who has not shown a token yet
+constexpr int kUnsentMax = 64 * 1024;  ///< [bytes], that the system keeps: nothing in it gives way
+constexpr int kPortTries = 10;         ///< for one that is free at both addresses
+constexpr std::size_t kMessageMax = std::size_t{16} * 1024;  ///< [bytes], of a client
+constexpr std::uint32_t kHeaderMax = 8 * 1024;               ///< [bytes]
+constexpr std::uint64_t kBodyMax = 1024;                     ///< [bytes], nobody asks with one
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
     "connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
-
-/// The value behind "?token=" in a request's target; empty: there is none.
-std::string_view token_in(std::string_view target) {
-  constexpr std::string_view kName = "token=";
-  const auto query = target.find('?');
-  if (query == target.npos) return {};
-  std::string_view rest = target.substr(query + 1);
-  while (!rest.empty()) {
-    const std::string_view one = rest.substr(0, rest.find('&'));
-    if (one.starts_with(kName)) return one.substr(kName.size());
-    rest.remove_prefix(std::min(rest.size(), one.size() + 1));
-  }
-  return {};
-}
-
-/// The one of ours that a client offers first; empty: none.
-std::string_view subprotocol_of(std::string_view offered) {
-  for (const std::string_view ours : kSubprotocols) {
-    if (offered.find(ours) != offered.npos) return ours;
-  }
-  return {};
-}
 
 /// What a connection needs of all others.
 struct Shared {
@@ -121,7 +104,8 @@ class Connection {
   std::uint32_t client_{};  ///< its number at the desk; 0: none yet
   int under_way_{};
   bool writing_{};
-  bool pinging_{};
+  bool pinging_{};      ///< a ping is being written
+  bool awaits_pong_{};  ///< and then answered
   TimePoint pinged_at_{};
   std::uint64_t pings_{};
   bool closed_{};
@@ -210,7 +194,9 @@ void Connection::upgrade() {
   socket_->read_message_max(kMessageMax);
   socket_->auto_fragment(false);
   beast::error_code ignored;
-  (void)beast::get_lowest_layer(*socket_).socket().set_option(tcp::no_delay{true}, ignored);
+  tcp::socket& below = beast::get_lowest_layer(*socket_).socket();
+  (void)below.set_option(tcp::no_delay{true}, ignored);
+  (void)below.set_option(tcp::socket::send_buffer_size{kUnsentMax}, ignored);
   ++under_way_;
   socket_->async_accept(request, [this](beast::error_code error) {
     --under_way_;
@@ -246,10 +232,11 @@ void Connection::hear() {
 }
 
 void Connection::pump() {
-  if (!is_client() || closed_ || writing_) return;
+  if (!is_client() || closed_) return;
   Outbox& outbox = shared_.desk.outbox(client_);
+  // Also while a write waits: a client that reads nothing never ends it.
   if (outbox.hopeless()) return close();
-  if (outbox.empty()) return;
+  if (writing_ || outbox.empty()) return;
   const Frame& frame = outbox.begin_first();
   writing_ = true;
   socket_->text(frame.text);
@@ -260,9 +247,13 @@ void Connection::pump() {
                        }));
 }
 
+/// One at a time: what has had no answer counts by its age, however long the way has become.
 void Connection::ping(TimePoint now) {
-  if (!is_client() || closed_ || pinging_ || now - pinged_at_ < kPingEvery) return;
-  pinging_ = true;
+  if (!is_client() || closed_) return;
+  const Duration age = now - pinged_at_;
+  if (awaits_pong_) return shared_.desk.awaits_pong(client_, age, now);
+  if (pinging_ || age < kPingEvery) return;
+  pinging_ = awaits_pong_ = true;
   pinged_at_ = now;
   const std::string number = std::to_string(++pings_);
   ++under_way_;
@@ -273,10 +264,11 @@ void Connection::ping(TimePoint now) {
   });
 }
 
-/// Only of the newest: what answers an older one has been late already.
 void Connection::heard_pong(std::string_view payload) {
-  if (!is_client() || payload != std::to_string(pings_)) return;
-  shared_.desk.heard_pong(client_, shared_.clock.now() - pinged_at_);
+  if (!is_client() || !awaits_pong_ || payload != std::to_string(pings_)) return;
+  awaits_pong_ = false;
+  const TimePoint now = shared_.clock.now();
+  shared_.desk.heard_pong(client_, now - pinged_at_, now);
 }
 
 }  // namespace
@@ -290,13 +282,23 @@ class Server::Io {
   [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
 
  private:
-  void accept(tcp::acceptor& acceptor);
+  struct Listener {
+    tcp::acceptor acceptor;
+    bool accepting{};
+  };
+
+  void listen(std::uint16_t port);
+  /// At `port_`, which it sets where that is 0. @returns why not.
+  beast::error_code open(const asio::ip::address& address);
+  void accept(Listener& listener);
   void take(tcp::socket socket);
 
   Feed& feed_;
   Shared shared_;
   asio::io_context context_{1};
-  std::list<tcp::acceptor> acceptors_;
+  /// A round has its length also while nothing is asked of any socket.
+  asio::executor_work_guard<asio::io_context::executor_type> guard_{context_.get_executor()};
+  std::list<Listener> listeners_;
   std::uint16_t port_{};
   std::list<Connection> connections_;  ///< the oldest first
   LiveMessage message_;
@@ -306,29 +308,51 @@ Server::Io::Io(const ServerConfig& config, Controls controls, Feed& feed)
     : feed_{feed},
       shared_{.access = Access{config.tokens, config.origins},
               .desk = Desk{config.desk, controls}} {
-  const auto open = [this](const asio::ip::address& address, std::uint16_t port) {
-    acceptors_.emplace_back(context_, tcp::endpoint{address, port});
-    port_ = acceptors_.back().local_endpoint().port();
-    accept(acceptors_.back());
+  listen(config.port);
+}
+
+/// At both addresses or not at all: a browser may take "localhost" for either, and whoever held the
+/// port of the other would be shown the key. Only a machine without IPv6 has one.
+void Server::Io::listen(std::uint16_t port) {
+  namespace errc = boost::system::errc;
+  const asio::ip::address both[]{asio::ip::address_v4::loopback(),
+                                 asio::ip::address_v6::loopback()};
+  const auto refuse = [this](const char* address, beast::error_code error) {
+    throw std::runtime_error{std::string{"the monitor cannot listen on "} + address + ":" +
+                             std::to_string(port_) + ": " + error.message()};
   };
-  try {
-    open(asio::ip::address_v4::loopback(), config.port);
-  } catch (const boost::system::system_error& error) {
-    throw std::runtime_error{"the monitor cannot listen on 127.0.0.1:" +
-                             std::to_string(config.port) + ": " + error.code().message()};
-  }
-  try {
-    open(asio::ip::address_v6::loopback(), port_);
-  } catch (const boost::system::system_error&) {  // a machine without IPv6 has the other
-    return;
+  for (int tries = 1;; ++tries) {
+    listeners_.clear();
+    port_ = port;
+    if (const auto error = open(both[0])) refuse("127.0.0.1", error);
+    const auto error = open(both[1]);
+    if (!error || error == errc::address_family_not_supported ||
+        error == errc::address_not_available) {
+      return;
+    }
+    if (port != 0 || tries == kPortTries) refuse("[::1]", error);
   }
 }
 
-void Server::Io::accept(tcp::acceptor& acceptor) {
-  acceptor.async_accept([this, &acceptor](beast::error_code error, tcp::socket socket) {
+beast::error_code Server::Io::open(const asio::ip::address& address) {
+  try {
+    listeners_.push_back({tcp::acceptor{context_, tcp::endpoint{address, port_}}});
+    port_ = listeners_.back().acceptor.local_endpoint().port();
+  } catch (const boost::system::system_error& error) {
+    return error.code();
+  }
+  return {};
+}
+
+/// After an error the next round asks again: what has run out stays so for a while.
+void Server::Io::accept(Listener& listener) {
+  if (std::exchange(listener.accepting, true)) return;
+  listener.acceptor.async_accept([this, &listener](beast::error_code error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    if (!error) take(std::move(socket));
-    accept(acceptor);
+    listener.accepting = false;
+    if (error) return;
+    take(std::move(socket));
+    accept(listener);
   });
 }
 
@@ -352,7 +376,7 @@ void Server::Io::work(TimePoint now) {
     one.pump();
     one.ping(now);
   }
-  context_.restart();
+  for (Listener& one : listeners_) accept(one);
   context_.run_for(kRound);
   connections_.remove_if([](const Connection& one) { return one.over(); });
 }
@@ -365,5 +389,7 @@ Server::Server(const ServerConfig& config, Controls controls, Feed& feed)
 Server::~Server() = default;
 
 std::uint16_t Server::port() const noexcept { return io_->port(); }
+
+std::optional<std::string> Server::failure() const { return loop_->failure(); }
 
 }  // namespace palp::monitor

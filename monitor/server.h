@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,8 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   [[nodiscard]] std::uint16_t port() const noexcept;
+  /// What ended its thread; nullopt: it serves.
+  [[nodiscard]] std::optional<std::string> failure() const;
 
  private:
   class Io;

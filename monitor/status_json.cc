@@ -15,6 +15,20 @@ Json text_of(std::uint16_t code) {
   return code == 0 ? std::string_view{} : record::note_text(code);
 }
 
+/// Of a message like any other: what it says is what there is.
+std::string schema_of(const std::string& message) {
+  const Json example = Json::parse(message);
+  Json schema;
+  schema["type"] = "object";
+  schema["properties"] = Json::object();
+  for (const std::string_view name : example.names()) {
+    const Json& value = example[name];
+    const char* const type = value.text() ? "string" : value.truth() ? "boolean" : "number";
+    schema["properties"][name] = Json{{"type", type}};
+  }
+  return schema.dump();
+}
+
 }  // namespace
 
 std::string status_json(const LiveStatus& status, const Pilot& pilot, std::size_t clients) {
@@ -54,18 +68,12 @@ std::string status_json(const LiveStatus& status, const Pilot& pilot, std::size_
   return json.dump();
 }
 
-std::string status_schema() {
-  // Of a status like any other: what it says is what there is.
-  const Json example = Json::parse(status_json({}, {}, 0));
-  Json schema;
-  schema["type"] = "object";
-  schema["properties"] = Json::object();
-  for (const std::string_view name : example.names()) {
-    const Json& value = example[name];
-    const char* const type = value.text() ? "string" : value.truth() ? "boolean" : "number";
-    schema["properties"][name] = Json{{"type", type}};
-  }
-  return schema.dump();
+std::string client_json(Duration round_trip) {
+  return Json{{"round_trip_ms", seconds(round_trip) * 1e3}}.dump();
 }
+
+std::string status_schema() { return schema_of(status_json({}, {}, 0)); }
+
+std::string client_schema() { return schema_of(client_json({})); }
 
 }  // namespace palp::monitor

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 
+#include "common/core/time.h"
 #include "monitor/feed.h"
 #include "monitor/pilot.h"
 
@@ -14,7 +15,11 @@ namespace palp::monitor {
                                       const Pilot& pilot,
                                       std::size_t clients);
 
-/// Its JSON schema, for tools that plot it.
+/// The message of SITE/client: what the site knows of the client that it is sent to.
+[[nodiscard]] std::string client_json(Duration round_trip);
+
+/// Their JSON schemas, for tools that plot them.
 [[nodiscard]] std::string status_schema();
+[[nodiscard]] std::string client_schema();
 
 }  // namespace palp::monitor

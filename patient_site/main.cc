@@ -292,6 +292,7 @@ void Program::look(TimePoint now) {
   runner_.tell_news(line_);
   if (const auto peer = runner_.take_peer()) recording_.tell_of_peer(*peer);
   recording_.tell_news(line_);
+  monitoring_.tell_news(line_);
   tell_of_devices();
   show(status, now);
 }

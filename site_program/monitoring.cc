@@ -74,6 +74,14 @@ void Monitoring::announce(StatusLine& line) const {
   line.info("monitor, only to look: " + page + tokens_.view);
 }
 
+void Monitoring::tell_news(StatusLine& line) {
+  if (!server_ || told_of_failure_) return;
+  const auto failure = server_->failure();
+  if (!failure) return;
+  told_of_failure_ = true;
+  line.warn("the monitor has ended: " + *failure + "; the session goes on without its page");
+}
+
 void Monitoring::look(Recording& recording, TimePoint now) {
   for (Request request; requests_.try_dequeue(request);) {
     recording.note(code_of(request.kind), request.client, now);

@@ -45,6 +45,8 @@ class Monitoring {
   [[nodiscard]] std::uint16_t port() const noexcept { return server_ ? server_->port() : 0; }
   /// Says where the page is and who may do what there, or why there is none.
   void announce(StatusLine& line) const;
+  /// Says once where the page has gone while the session goes on.
+  void tell_news(StatusLine& line);
   /// Notes what clients asked for since the last call.
   void look(Recording& recording, TimePoint now);
   [[nodiscard]] std::uint32_t marks() const noexcept { return marks_; }
@@ -63,6 +65,7 @@ class Monitoring {
   std::uint32_t marks_{};
   std::uint32_t resets_{};
   bool end_asked_{};
+  bool told_of_failure_{};
 };
 
 }  // namespace palp::site_program

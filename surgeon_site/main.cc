@@ -305,6 +305,7 @@ ExitStatus Program::run(io::Terminal& terminal) {
   while (true) {
     const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
     monitoring_.look(recording_, clock_.now());
+    monitoring_.tell_news(line_);
     recording_.mark(terminal.marks() + monitoring_.marks(), clock_.now());
     const std::uint32_t resets = terminal.resets() + monitoring_.resets();
     node_.commands().put({.emergency_stop = false, .resets = resets});

@@ -35,7 +35,7 @@ void run(ByteSource input) {
   TimePoint now{std::chrono::seconds{1}};
   const std::uint32_t looks = rig.desk.join(Right::View, now);
   const std::uint32_t steers = rig.desk.join(Right::Control, now);
-  rig.desk.heard_pong(steers, std::chrono::milliseconds{1});
+  rig.desk.heard_pong(steers, std::chrono::milliseconds{1}, now);
   while (!input.empty()) {
     const std::uint32_t who = input.below(2) == 0 ? looks : steers;
     now += std::chrono::milliseconds{10} + std::chrono::milliseconds{input.below(256)};
@@ -47,7 +47,7 @@ void run(ByteSource input) {
     const bool stays =
         text ? rig.desk.hear_text(who, said, now) : rig.desk.hear_bytes(who, said, now);
     PALP_CHECK(stays, "who keeps within its budget stays");
-    rig.desk.heard_pong(steers, std::chrono::milliseconds{1});
+    rig.desk.heard_pong(steers, std::chrono::milliseconds{1}, now);
     LiveStatus status;
     status.stamp = static_cast<std::uint64_t>(now.time_since_epoch().count());
     rig.desk.publish(status);

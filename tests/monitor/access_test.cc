@@ -24,6 +24,14 @@ TEST(SameSecretTest, NothingIsNoSecret) {
   EXPECT_FALSE(same_secret(kView + "a", kView));
 }
 
+TEST(TokenInTest, IsTheWholeValueOfItsNameAlone) {
+  EXPECT_EQ(token_in("/?token=abc"), "abc");
+  EXPECT_EQ(token_in("/?name=x&token=abc&more=y"), "abc");
+  for (const char* none : {"", "/", "/token=abc", "/?", "/?mytoken=abc", "/?token"}) {
+    EXPECT_EQ(token_in(none), "") << none;
+  }
+}
+
 TEST(AccessTest, OnlyLoopbackNamesAreOurs) {
   for (const char* good : {"127.0.0.1:8080", "localhost:1", "[::1]:65535", "localhost"}) {
     EXPECT_TRUE(Access::host_allowed(good)) << good;

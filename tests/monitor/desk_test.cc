@@ -74,10 +74,13 @@ TEST(DeskTest, AClientIsToldWhoServesAndWhat) {
   for (const Json& one : topics["channels"].parts()) {
     names.emplace_back(*one.at_or_null("topic").text());
   }
-  EXPECT_THAT(
-      names,
-      testing::UnorderedElementsAre(
-          "surgeon/tick_view", "surgeon/link", "surgeon/event", "surgeon/depth", "surgeon/status"));
+  EXPECT_THAT(names,
+              testing::UnorderedElementsAre("surgeon/tick_view",
+                                            "surgeon/link",
+                                            "surgeon/event",
+                                            "surgeon/depth",
+                                            "surgeon/status",
+                                            "surgeon/client"));
   EXPECT_THAT(rig.next(client), HasSubstr("pointer/take"));
 }
 
@@ -131,7 +134,7 @@ TEST(DeskTest, APilotThatGoesLetsGo) {
   const std::uint32_t client = rig.join(Right::Control);
   rig.publish_pointer(client);
   (void)rig.call(client, '\5');
-  rig.desk.heard_pong(client, 1ms);
+  rig.desk.heard_pong(client, 1ms, kNow);
   ASSERT_TRUE(rig.point(client, kHeld));
   EXPECT_TRUE(rig.pointer.get().held);
   EXPECT_EQ(rig.pointer.get().into, 0.001);
@@ -145,9 +148,54 @@ TEST(DeskTest, WhoIsNotThePilotMovesNothing) {
   const std::uint32_t pilot = rig.join(Right::Control), other = rig.join(Right::Control);
   rig.publish_pointer(other);
   (void)rig.call(pilot, '\5');
-  rig.desk.heard_pong(other, 1ms);
+  rig.desk.heard_pong(other, 1ms, kNow);
   EXPECT_TRUE(rig.point(other, kHeld));
   EXPECT_FALSE(rig.pointer.get().held);
+}
+
+TEST(DeskTest, AQueueThatGrowsInAPressEndsItAndItsOwnerIsTold) {
+  Rig rig;
+  const std::uint32_t client = rig.join(Right::Control);
+  rig.publish_pointer(client);
+  (void)rig.call(client, '\5');
+  rig.desk.heard_pong(client, 1ms, kNow);
+  ASSERT_TRUE(rig.point(client, kHeld));
+  ASSERT_TRUE(rig.pointer.get().held);
+  rig.desk.awaits_pong(client, 60ms, kNow + 60ms);
+  EXPECT_FALSE(rig.pointer.get().held);
+  EXPECT_THAT(rig.next(client), HasSubstr("the hand was let go of"));
+  ASSERT_TRUE(rig.point(client, kHeld));
+  EXPECT_FALSE(rig.pointer.get().held);
+}
+
+TEST(DeskTest, EachClientIsToldOfItsOwnWay) {
+  Rig rig;
+  const std::uint32_t near = rig.join(Right::View), far = rig.join(Right::View);
+  const std::string ask = R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":101}]})";
+  for (const std::uint32_t one : {near, far}) EXPECT_TRUE(rig.desk.hear_text(one, ask, kNow));
+  rig.desk.heard_pong(near, 2ms, kNow);
+  EXPECT_THAT(rig.next(near), HasSubstr("\"round_trip_ms\":2.0"));
+  EXPECT_EQ(rig.next(far), "");
+  rig.desk.awaits_pong(far, 50ms, kNow);
+  EXPECT_EQ(rig.next(far), "");
+  rig.desk.awaits_pong(far, 110ms, kNow);
+  EXPECT_THAT(rig.next(far), HasSubstr("\"round_trip_ms\":110.0"));
+  rig.desk.awaits_pong(far, 120ms, kNow);
+  EXPECT_EQ(rig.next(far), "") << "told ten times a second at most";
+}
+
+TEST(DeskTest, WhatTheProgramDoesNotTakeIsNotSaidToBeDone) {
+  Rig rig;
+  const std::uint32_t client = rig.join(Right::Control);
+  while (rig.requests.try_enqueue({})) {
+  }
+  for (const char service : {'\1', '\3', '\4'}) {
+    const Json answer = rig.call(client, service);
+    EXPECT_EQ(answer["ok"].truth(), false);
+    EXPECT_THAT(std::string{*answer["why"].text()}, HasSubstr("nothing was done"));
+  }
+  EXPECT_EQ(rig.call(client, '\2')["ok"].truth(), true) << "a stop goes to the loop by itself";
+  EXPECT_EQ(rig.stops.get(), 1U);
 }
 
 LiveMessage event(std::uint64_t stamp) {

@@ -40,6 +40,18 @@ TEST(OutboxTest, AClientThatTakesNoAnswersIsHopeless) {
   EXPECT_TRUE(box.hopeless());
 }
 
+TEST(OutboxTest, NorMayManySmallAnswersPileUp) {
+  Outbox box{1024 * 1024};
+  for (std::size_t i = 0; i < Outbox::kStayingMax; ++i) box.push(answer("a"));
+  for (int i = 0; i < 10; ++i) box.push(passing("b"));
+  EXPECT_FALSE(box.hopeless()) << "what gives way does not count";
+  box.push(answer("a"));
+  EXPECT_TRUE(box.hopeless());
+  (void)box.begin_first();
+  box.pop();
+  EXPECT_FALSE(box.hopeless());
+}
+
 RC_GTEST_PROP(OutboxTest,
               NeverHoldsMoreThanItsBoundAndTheNewest,
               (const std::vector<std::string>& all)) {

@@ -22,7 +22,7 @@ std::string up(int press) {
 Pilot piloted() {
   Pilot pilot;
   EXPECT_TRUE(pilot.take(1, "one"));
-  pilot.heard_pong(1, 2ms);
+  (void)pilot.heard_pong(1, 2ms, {});
   return pilot;
 }
 
@@ -60,7 +60,7 @@ TEST(PilotTest, PressesOfTwoPilotsAreNotTakenForOne) {
   ASSERT_TRUE(pilot.give(1));
   EXPECT_FALSE(pilot.let_go({}).held);
   ASSERT_TRUE(pilot.take(2, ""));
-  pilot.heard_pong(2, 2ms);
+  (void)pilot.heard_pong(2, 2ms, {});
   EXPECT_GT(pilot.hear(2, held(1), {})->press, of_first->press);
 }
 
@@ -68,14 +68,61 @@ TEST(PilotTest, NoPressBeginsOverALongWay) {
   Pilot pilot;
   ASSERT_TRUE(pilot.take(1, ""));
   EXPECT_FALSE(pilot.hear(1, held(1), {})->held) << "not measured yet";
-  for (int i = 0; i < 20; ++i) pilot.heard_pong(1, i < 18 ? 10ms : 60ms);
-  EXPECT_FALSE(pilot.obstacle().empty()) << "one in ten is late";
+  for (int i = 0; i < 50; ++i) (void)pilot.heard_pong(1, i < 46 ? 10ms : 60ms, {});
+  EXPECT_FALSE(pilot.obstacle().empty());
+  (void)pilot.heard_pong(1, 10ms, {});
+  EXPECT_FALSE(pilot.obstacle().empty()) << "four of fifty were late";
   EXPECT_FALSE(pilot.hear(1, held(2), {})->held);
-  pilot.heard_pong(1, 10ms);
-  for (int i = 0; i < 19; ++i) pilot.heard_pong(1, i < 1 ? 60ms : 10ms);
-  EXPECT_TRUE(pilot.obstacle().empty()) << "one in twenty is not";
+  for (int i = 0; i < 50; ++i) (void)pilot.heard_pong(1, i < 2 ? 60ms : 10ms, {});
+  EXPECT_TRUE(pilot.obstacle().empty()) << "two were";
   EXPECT_FALSE(pilot.hear(1, held(2), {})->held) << "a press that was refused stays so";
   EXPECT_TRUE(pilot.hear(1, held(3), {})->held);
+}
+
+TEST(PilotTest, AnAnswerThatIsWaitedForCountsByItsAge) {
+  Pilot pilot = piloted();
+  (void)pilot.awaits_pong(1, 50ms, {});
+  EXPECT_TRUE(pilot.obstacle().empty());
+  (void)pilot.awaits_pong(1, 51ms, {});
+  EXPECT_EQ(pilot.round_trip(), 51ms);
+  EXPECT_FALSE(pilot.hear(1, held(1), {})->held);
+  (void)pilot.awaits_pong(2, 0ms, {});
+  EXPECT_FALSE(pilot.obstacle().empty()) << "another's";
+  (void)pilot.heard_pong(1, 10ms, {});
+  EXPECT_TRUE(pilot.obstacle().empty());
+}
+
+TEST(PilotTest, TheNewestLateOneIsEnoughToWait) {
+  Pilot pilot = piloted();
+  for (int i = 0; i < 48; ++i) (void)pilot.heard_pong(1, 2ms, {});
+  (void)pilot.heard_pong(1, 3s, {});
+  EXPECT_FALSE(pilot.obstacle().empty());
+}
+
+TEST(PilotTest, ALongWayEndsAPressThatIsInProgress) {
+  Pilot pilot = piloted();
+  const auto down = pilot.hear(1, held(1, 0.004), {});
+  ASSERT_TRUE(down->held);
+  EXPECT_FALSE(pilot.heard_pong(1, 50ms, {}));
+  EXPECT_FALSE(pilot.awaits_pong(1, 50ms, {}));
+  const auto ended = pilot.awaits_pong(1, 51ms, TimePoint{3s});
+  ASSERT_TRUE(ended);
+  EXPECT_FALSE(ended->held);
+  EXPECT_EQ(ended->press, down->press);
+  EXPECT_EQ(ended->arrived_at, TimePoint{3s});
+  EXPECT_FALSE(pilot.awaits_pong(1, 60ms, {})) << "it is told once";
+  (void)pilot.heard_pong(1, 10ms, {});
+  EXPECT_FALSE(pilot.hear(1, held(1), {})->held) << "it never comes back";
+  EXPECT_TRUE(pilot.hear(1, held(2), {})->held);
+  EXPECT_TRUE(pilot.heard_pong(1, 60ms, {})) << "an answer that came late does the same";
+}
+
+TEST(PilotTest, ThePressOfWhoHadItBeforeIsNotEnded) {
+  Pilot pilot = piloted();
+  ASSERT_TRUE(pilot.hear(1, held(1), {})->held);
+  ASSERT_TRUE(pilot.give(1));
+  ASSERT_TRUE(pilot.take(2, ""));
+  EXPECT_FALSE(pilot.awaits_pong(2, 1s, {}));
 }
 
 TEST(PilotTest, WhatIsNoPointersMessageChangesNothing) {

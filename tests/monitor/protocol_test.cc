@@ -29,6 +29,15 @@ TEST(ProtocolTest, ATopicsSchemaIsThatOfTheSessionFile) {
   EXPECT_EQ(encoded("foobar"), "Zm9vYmFy");
 }
 
+TEST(ProtocolTest, OfASubprotocolsListTheFirstThatIsOursIsTaken) {
+  EXPECT_EQ(subprotocol_of("foxglove.sdk.v1"), "foxglove.sdk.v1");
+  EXPECT_EQ(subprotocol_of("foxglove.websocket.v1, foxglove.sdk.v1"), "foxglove.websocket.v1");
+  EXPECT_EQ(subprotocol_of("mqtt,\tfoxglove.sdk.v1 "), "foxglove.sdk.v1");
+  for (const char* none : {"", " ", ",, ,", "foxglove.sdk.v10", "my.foxglove.sdk.v1", "foxglove"}) {
+    EXPECT_EQ(subprotocol_of(none), "") << none;
+  }
+}
+
 TEST(ProtocolTest, AMessageIsLittleEndianBehindItsSubscription) {
   const std::array payload{std::byte{7}, std::byte{8}};
   EXPECT_EQ(message_bytes(0x01020304, 0x1122334455667788, payload),

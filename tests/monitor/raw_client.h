@@ -16,14 +16,14 @@ class RawClient {
   ~RawClient();
 
   /// false: the other side has closed.
-  bool say(const std::string& bytes) const;
+  [[nodiscard]] bool say(const std::string& bytes) const;
   /// All until the other side closes.
   [[nodiscard]] std::string rest() const;
   /// The head of an HTTP answer.
   [[nodiscard]] std::string head();
 
   /// A frame as a client sends it. `opcode`: 1 text, 2 bytes.
-  bool say_frame(int opcode, const std::string& body) const;
+  [[nodiscard]] bool say_frame(int opcode, const std::string& body) const;
   struct Frame {
     int opcode{};
     std::string body;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/io/realtime/steady_clock.h"
 #include "tests/monitor/server_rig.h"
 
 // Goal: whoever is no page of this run, by its own browser or on this machine, gets nothing.
@@ -122,6 +123,30 @@ TEST(ServerAttackTest, GarbageIsAnsweredWithASentenceAndAFloodWithTheEnd) {
   }
   while (client.message()) {
   }
+  expect_serves(rig);
+}
+
+TEST(ServerAttackTest, WhoAsksAndReadsNothingIsClosed) {
+  constexpr int kSubscriptions = 3;
+  ServerRig rig;
+  // Events that each new subscription is told of.
+  for (int i = 0; i < 200; ++i) rig.feed.take(Note{.at = {}, .code = 49, .detail = 1.5 * i});
+  RawClient client = rig.client(rig.view);
+  std::string ask, forget;
+  for (int i = 1; i <= kSubscriptions; ++i) {
+    const std::string comma = i > 1 ? "," : "";
+    ask += comma + R"({"id":)" + std::to_string(i) + R"(,"channelId":)" +
+           std::to_string(static_cast<int>(record::Topic::Event) + 1) + "}";
+    forget += comma + std::to_string(i);
+  }
+  const io::SteadyClock clock;
+  bool open = true;
+  for (int i = 0; i < 100 && open; ++i) {
+    (void)client.say_frame(1, R"({"op":"subscribe","subscriptions":[)" + ask + "]}");
+    open = client.say_frame(1, R"({"op":"unsubscribe","subscriptionIds":[)" + forget + "]}");
+    clock.pass(std::chrono::milliseconds{50});
+  }
+  EXPECT_FALSE(open) << "what waits for it grows without end";
   expect_serves(rig);
 }
 

@@ -1,10 +1,18 @@
 #include "monitor/server.h"
 
+#include <optional>
 #include <stdexcept>
+#include <vector>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include "common/io/realtime/steady_clock.h"
 #include "tests/monitor/server_rig.h"
 
 namespace palp::monitor {
@@ -81,6 +89,124 @@ TEST(ServerTest, APortInUseIsOneSentence) {
                 StartsWith("the monitor cannot listen on 127.0.0.1:" + std::to_string(rig.port()) +
                            ": Address already in use"));
   }
+}
+
+/// A socket at ::1 on a free port, as another user's program has it. 0: there is no IPv6.
+class AtIpv6 {
+ public:
+  AtIpv6() : socket_{::socket(AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0)} {
+    sockaddr_in6 at{};
+    at.sin6_family = AF_INET6;
+    at.sin6_addr = IN6ADDR_LOOPBACK_INIT;
+    socklen_t size = sizeof at;
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): how sockets take addresses
+    auto* const address = reinterpret_cast<sockaddr*>(&at);
+    if (::bind(socket_, address, size) == 0 && ::listen(socket_, 1) == 0 &&
+        ::getsockname(socket_, address, &size) == 0) {
+      port_ = ntohs(at.sin6_port);
+    }
+  }
+  AtIpv6(const AtIpv6&) = delete;
+  AtIpv6& operator=(const AtIpv6&) = delete;
+  ~AtIpv6() { ::close(socket_); }
+  [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
+
+ private:
+  int socket_;
+  std::uint16_t port_{};
+};
+
+TEST(ServerTest, APortThatAnotherHasAtTheOtherAddressIsInUse) {
+  const AtIpv6 other;
+  if (other.port() == 0) GTEST_SKIP() << "no IPv6 here";
+  Feed feed{link::Role::Surgeon, {}, std::chrono::milliseconds{1}};
+  try {
+    const Server server{{.desk = {}, .tokens = {}, .port = other.port(), .origins = {}}, {}, feed};
+    FAIL() << "http://localhost would be the other's page";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(),
+                StartsWith("the monitor cannot listen on [::1]:" + std::to_string(other.port()) +
+                           ": Address already in use"));
+  }
+}
+
+/// So that the client is the pilot and may publish where its pointer is.
+void take_pointer(RawClient& client) {
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(client.message());
+  (void)client.say_frame(
+      1, R"({"op":"advertise","channels":[{"id":9,"topic":"monitor/pointer","encoding":"json"}]})");
+  ASSERT_TRUE(client.say_frame(2, "\x02\x05\0\0\0\x09\0\0\0\x04\0\0\0json{}"s));
+  const auto answer = client.message();
+  ASSERT_TRUE(answer);
+  ASSERT_THAT(answer->body, HasSubstr("\"ok\":true"));
+}
+void hold(RawClient& client, int press) {
+  (void)client.say_frame(2,
+                         "\x01\x09\0\0\0{\"press\":"s + std::to_string(press) +
+                             R"(,"held":true,"into_m":0,"x_m":0,"y_m":0})");
+}
+
+TEST(ServerTest, AHandIsLetGoOfWhereAnswersDoNotComeThoughMessagesDo) {
+  constexpr Duration kMessageEvery = std::chrono::milliseconds{16};
+  ServerRig rig;
+  RawClient client = rig.client(rig.control);
+  take_pointer(client);
+  const io::SteadyClock clock;
+  // Pings are answered until the hand is held; a busy machine may be late a few times.
+  int press = 0;
+  for (int i = 0; i < 100 && !rig.pointer.get().held; ++i) {
+    const auto ping = client.frame();
+    ASSERT_TRUE(ping);
+    if (ping->opcode != 9) continue;
+    (void)client.say_frame(10, ping->body);
+    hold(client, ++press);
+    clock.pass(kMessageEvery);
+  }
+  ASSERT_TRUE(rig.pointer.get().held);
+  for (int i = 0; i < 300 && rig.pointer.get().held; ++i) {
+    hold(client, press);
+    clock.pass(kMessageEvery);
+  }
+  EXPECT_FALSE(rig.pointer.get().held);
+  std::string said;
+  for (int i = 0; i < 10 && said.find("let go of") == said.npos; ++i) {
+    const auto frame = client.frame();
+    if (!frame) break;
+    said = frame->body;
+  }
+  EXPECT_THAT(said, HasSubstr("the hand was let go of: this page answers too late to hold it"));
+}
+
+double processor_seconds() {
+  rusage used{};
+  (void)::getrusage(RUSAGE_SELF, &used);
+  return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+         1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+}
+
+TEST(ServerTest, WhereDescriptorsHaveRunOutItWaitsAndThenServesAgain) {
+  const ServerRig rig;
+  const io::SteadyClock clock;
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  rlimit few = before;
+  few.rlim_cur = 64;
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+  std::vector<int> all;
+  for (int one = 0; (one = ::open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0;) all.push_back(one);
+  ASSERT_FALSE(all.empty());
+  ::close(all.back());
+  all.pop_back();
+  // Has the last one, which each accept() takes for a moment; the server has none for it.
+  std::optional<RawClient> client{rig.port()};
+  while (!client->say("GET / HTTP/1.1\r\n")) client.emplace(rig.port());
+  const double used = processor_seconds();
+  clock.pass(std::chrono::milliseconds{500});
+  EXPECT_LT(processor_seconds() - used, 0.05) << "[s], of half a second";
+  for (const int one : all) ::close(one);
+  (void)::setrlimit(RLIMIT_NOFILE, &before);
+  (void)client->say("Host: localhost\r\n\r\n");
+  EXPECT_THAT(client->rest(), StartsWith("HTTP/1.1 200"));
 }
 
 }  // namespace

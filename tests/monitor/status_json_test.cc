@@ -42,5 +42,11 @@ TEST(StatusJsonTest, TheSchemaNamesEveryMember) {
   EXPECT_EQ(schema["properties"]["recording"]["type"].text(), "boolean");
 }
 
+TEST(StatusJsonTest, AClientIsToldItsWay) {
+  EXPECT_EQ(client_json(std::chrono::milliseconds{30}), R"({"round_trip_ms":30.0})");
+  const Json schema = Json::parse(client_schema());
+  EXPECT_EQ(schema["properties"]["round_trip_ms"]["type"].text(), "number");
+}
+
 }  // namespace
 }  // namespace palp::monitor

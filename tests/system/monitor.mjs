@@ -123,7 +123,7 @@ try {
   await pause(1000);
   await page.close();
 
-  // Space is the pedal, Escape stops.
+  // Space is the pedal, and a mouse that moves meanwhile draws nothing; Escape stops.
   const next = await browser.open(controlUrl);
   await next.state('CLUTCHED');
   await next.until('document.getElementById("pointer")?.innerText === "you"', 'the pointer, given back by the dead page');
@@ -134,6 +134,11 @@ try {
     await next.key('keyUp', ' ', 'Space');
     await next.state('CLUTCHED');
   }
+  const tip = await next.eval('window.palpTip().tip'), beside = new Hand(next);
+  await beside.find();
+  for (const y of [50, 150, 250]) await next.mouse('mouseMoved', beside.left + beside.width / 2, beside.top + y);
+  await pause(600);
+  must(Math.abs(await next.eval('window.palpTip().tip') - tip) < 1, 'a mouse that holds nothing moves the tip');
   await shoot(next, 'engaged');
   await next.key('keyDown', 'Escape');
   await next.state('STOPPED');

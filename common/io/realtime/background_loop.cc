@@ -86,4 +86,16 @@ bool BackgroundLoop::stop_within(Duration patience) {
   return true;
 }
 
+std::optional<std::string> BackgroundLoop::failure() const {
+  const std::lock_guard lock{ending_->mutex};
+  if (!ending_->failure) return std::nullopt;
+  try {
+    std::rethrow_exception(ending_->failure);
+  } catch (const std::exception& thrown) {
+    return thrown.what();
+  } catch (...) {
+    return "an unknown fault";
+  }
+}
+
 }  // namespace palp::io

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -28,6 +29,8 @@ class BackgroundLoop {
   /// @returns false: it did not. The thread is left to itself then, and `work` must own what it
   /// refers to.
   [[nodiscard]] bool stop_within(Duration patience);
+  /// What `work` threw, if it did: nothing is done any more. Not after a stop_within() that failed.
+  [[nodiscard]] std::optional<std::string> failure() const;
 
  private:
   struct Ending;

@@ -22,6 +22,7 @@ export interface Trace { t: number[]; tip: number[]; hand: number[]; contact: nu
 const SPAN_MS = 12500;
 const CONTACT_N = 0.12, AIR_N = 0.06;
 const KEPT = 200;
+export const OLD_MS = 500;
 const REASONS: Record<string, string> = {
   STROKE_TOO_SHORT: 'the press was too shallow', STROKE_TOO_FEW_SAMPLES: 'the press was too quick',
   STROKE_NOT_MONOTONE: 'the press went back and forth', NO_CONTACT: 'no contact was found',
@@ -34,6 +35,7 @@ export class Model {
   greeting: Greeting | undefined;
   status: Status | undefined;
   heardAt = 0;  // page time of the newest status
+  roundTrip = 0;  // [ms] between the site and this page, as the site measures it
   link: Message = {};
   depth: Depth | undefined;
   strokes: Stroke[] = [];  // newest first
@@ -49,8 +51,11 @@ export class Model {
   get client(): number { return Number(this.greeting?.metadata.client ?? 0); }
   get pilots(): boolean { return this.client !== 0 && this.status?.pilot === this.client; }
 
-  /** What nobody tells any more is old. */
-  stale(now: number): boolean { return !this.status || now - this.heardAt > 500; }
+  /**
+   * What nobody tells any more is old, and so is what comes late: behind a long queue it comes as
+   * evenly as ever. The whole round trip counts, for nobody knows in which direction the queue is.
+   */
+  stale(now: number): boolean { return !this.status || now - this.heardAt + this.roundTrip > OLD_MS; }
 
   tip(s: Status): number { return this.patient ? s.position_mm : s.peer_position_mm; }
   contact(s: Status): number { return this.patient ? s.force_n : s.peer_force_n; }
@@ -68,12 +73,14 @@ export class Model {
     // The site tells again what happened before.
     this.happenings = [];
     this.lastDepth = 0;
+    this.roundTrip = 0;
     this.greeting = greeting;
     this.refused = false;
   }
 
   hear(topic: string, stamp: number, message: Message, now: number): void {
     if (topic === 'status') this.hearStatus(message as unknown as Status, stamp, now);
+    else if (topic === 'client') this.roundTrip = number(message.round_trip_ms);
     else if (topic === 'link') this.link = message;
     else if (topic === 'depth') this.hearDepth(message, stamp);
     else if (topic === 'event') this.hearEvent(message, stamp);

@@ -6,6 +6,8 @@ const EVERY_MS = 16;  // however fast the mouse is: the site gives a client 120 
 const KEY_SPEED = 2;  // [mm/s], of an arrow key
 const REACH_MM = 20, ASIDE_MM = 100;
 
+const MAIN_BUTTON = 1;
+
 export interface Finger { into: number; x: number; y: number }  // [mm], since the press
 
 export class Pilot {
@@ -15,6 +17,7 @@ export class Pilot {
   from = { x: 0, y: 0, tip: 0 };
   private press = 0;
   private timer = 0;
+  private by: number | undefined;  // the pointer that opened the press; undefined: the key did
   private origin = { x: 0, y: 0 };
   private keys = new Set<string>();
   private steppedAt = 0;
@@ -26,22 +29,30 @@ export class Pilot {
     document.addEventListener('visibilitychange', () => { if (document.hidden) up(); });
   }
 
-  down(x: number, y: number): void {
+  /** By a pointer at a point of the page [px], or by the key. */
+  down(by: number | undefined, x = 0, y = 0): void {
     const s = this.model.status;
     if (this.finger || !s || !this.model.pilots || this.model.stale(performance.now())) return;
     this.press++;
+    this.by = by;
     this.finger = { into: 0, x: 0, y: 0 };
     this.from = { x: this.model.tipX(s), y: this.model.tipY(s), tip: this.model.tip(s) };
     this.origin = { x, y };
+    // A key that went down before may have come up unheard.
+    this.keys.clear();
     this.steppedAt = performance.now();
     this.tell();
     this.timer = setInterval(() => this.tell(), EVERY_MS) as unknown as number;
   }
 
-  /** The finger is at a point of the page [px], in its scale; `across`: it moves out of the plane of the section. */
-  draw(x: number, y: number, mmPerPx: number, across: boolean): void {
+  /**
+   * A pointer is at a point of the page [px], in its scale; `across`: it moves out of the plane of the section.
+   * Only the one that went down draws, and only until its button is up.
+   */
+  draw(by: number, buttons: number, x: number, y: number, mmPerPx: number, across: boolean): void {
     const f = this.finger;
-    if (!f) return;
+    if (!f || by !== this.by) return;
+    if (!(buttons & MAIN_BUTTON)) return this.up();
     f.x = clamp(f.x + (across ? 0 : (x - this.origin.x) * mmPerPx), ASIDE_MM);
     f.y = clamp(f.y + (across ? (x - this.origin.x) * mmPerPx : 0), ASIDE_MM);
     f.into = clamp(f.into + (y - this.origin.y) * mmPerPx, REACH_MM);
@@ -49,18 +60,18 @@ export class Pilot {
   }
 
   up(): void {
+    this.keys.clear();
     if (!this.finger) return;
     clearInterval(this.timer);
     const last = this.finger;
     this.finger = undefined;
-    this.keys.clear();
     this.client.point({ press: this.press, held: false, into_m: last.into / 1e3, x_m: last.x / 1e3, y_m: last.y / 1e3 });
   }
 
   /** @returns whether the key was one of the pad's. */
   key(key: string, pressed: boolean): boolean {
     if (key === ' ') {
-      if (pressed) this.down(0, 0); else this.up();
+      if (pressed) this.down(undefined); else this.up();
       return true;
     }
     if (!/^Arrow(Up|Down|Left|Right)$/.test(key)) return false;

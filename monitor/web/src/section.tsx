@@ -42,10 +42,10 @@ export function Section({ model, pilot, control }: { model: Model; pilot: Pilot;
         if (!control || e.button !== 0 || !e.isPrimary) return;
         (e.currentTarget as HTMLElement).focus();
         (e.currentTarget as HTMLElement).setPointerCapture(e.pointerId);
-        pilot.down(e.clientX, e.clientY);
+        pilot.down(e.pointerId, e.clientX, e.clientY);
         e.preventDefault();
       }}
-      onPointerMove={e => { if (e.isPrimary) pilot.draw(e.clientX, e.clientY, scale.current, e.shiftKey); }}
+      onPointerMove={e => pilot.draw(e.pointerId, e.buttons, e.clientX, e.clientY, scale.current, e.shiftKey)}
       onPointerUp={() => pilot.up()} onPointerCancel={() => pilot.up()} onLostPointerCapture={() => pilot.up()}
       onContextMenu={e => e.preventDefault()}
       onKeyDown={e => { if (control && (e.repeat || pilot.key(e.key, true)) && e.key !== 'Escape' && e.key !== 'Tab') e.preventDefault(); }}

@@ -1,5 +1,5 @@
 // What a state means for whoever looks at it, and what to do next.
-import type { Model } from './model';
+import { OLD_MS, type Model } from './model';
 
 export interface Words { icon: string; word: string; tone: 'live' | 'idle' | 'warn' | 'bad'; text: string }
 
@@ -8,7 +8,7 @@ const sentence = (text: string): string => text ? text.charAt(0).toUpperCase() +
 export function wordsOf(m: Model, stale: boolean, finger: boolean): Words {
   const s = m.status;
   if (m.refused) return { icon: '✕', word: 'Not allowed', tone: 'bad', text: 'Open the address that the program printed: its end behind # is the key of this run.' };
-  if (!s || stale) return { icon: '▲', word: 'No data', tone: 'bad', text: s ? 'The program of this site does not answer. What you see is old.' : 'Waiting for the program of this site.' };
+  if (!s || stale) return { icon: '▲', word: 'No data', tone: 'bad', text: s ? oldText(m) : 'Waiting for the program of this site.' };
   if (m.patient) return patientWords(s.state, s.reason);
   switch (s.state) {
     case 'PARKED':
@@ -27,6 +27,11 @@ export function wordsOf(m: Model, stale: boolean, finger: boolean): Words {
       return { icon: '■', word: 'Stopped', tone: 'bad', text: `${sentence(s.reason)}${m.mayControl ? 'Reset there, then here (R).' : 'It must be reset at both sites.'}` };
   }
   return { icon: '?', word: s.state, tone: 'idle', text: '' };
+}
+
+function oldText(m: Model): string {
+  return m.roundTrip > OLD_MS / 2 ? `What you see is old: the way to this page and back takes ${(m.roundTrip / 1e3).toFixed(1)} s.`
+    : 'The program of this site does not answer. What you see is old.';
 }
 
 function clutchedText(m: Model, finger: boolean): string {

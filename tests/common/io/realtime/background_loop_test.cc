@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/io/realtime/steady_clock.h"
+
 namespace palp::io {
 namespace {
 
@@ -46,6 +48,18 @@ TEST(BackgroundLoopTest, StopThrowsWhatTheWorkThrew) {
         }
       },
       std::runtime_error);
+}
+
+TEST(BackgroundLoopTest, AsksWhatTheWorkThrew) {
+  std::atomic<bool> throws{false};
+  BackgroundLoop loop{"test", milliseconds{1}, [&](TimePoint) {
+                        if (throws) throw std::runtime_error{"out of ink"};
+                      }};
+  EXPECT_EQ(loop.failure(), std::nullopt);
+  throws = true;
+  while (!loop.failure()) SteadyClock{}.pass(milliseconds{1});
+  EXPECT_EQ(loop.failure(), "out of ink");
+  EXPECT_THROW(loop.stop(), std::runtime_error);
 }
 
 TEST(BackgroundLoopTest, WhatDoesNotComeBackIsLeftToItself) {
