@@ -26,7 +26,7 @@ class OffAxisContact {
   /// ln(F / F_plain) with F_plain without the ball. [-] The cells' own error leaves it: the plain
   /// block that gives the same force on the same cells says which depth without a ball the tip
   /// feels, and plain() says what forces belong to both depths. `indentation` > 0 [m]; `offset`
-  /// between the axes, on either side [m]. An error where the contact outgrows the cells.
+  /// between the axes, on either side [m].
   [[nodiscard]] Result<double> excess(double indentation, double offset);
   /// The tip on the plain block, on a dome (> 0) or in a hollow of `surface_curvature` [1/m].
   [[nodiscard]] SneddonSphere plain(double surface_curvature) const noexcept;

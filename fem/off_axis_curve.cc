@@ -93,10 +93,10 @@ Result<AxisCurves> solve_axis(CurveRequest request, double cosine) {
 /// Part of the ball's effect that is left `offset` beside its axis. [-]
 Result<double> shape_of(OffAxisContact& contact, double indentation, double offset) {
   if (offset == 0) return 1;
-  const auto above = contact.excess(indentation, 0);
+  auto above = contact.excess(indentation, 0);
   if (!above) return above;
   if (std::abs(*above) < kNoExcess) return 0;
-  const auto beside = contact.excess(indentation, offset);
+  auto beside = contact.excess(indentation, offset);
   if (!beside) return beside;
   return *beside / *above;
 }
