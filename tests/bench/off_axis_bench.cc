@@ -60,7 +60,7 @@ void measure(double radius_mm, double depth_mm, int rounds) {
     }
   });
   fem::OffAxisContact contact{specimen, kOffset, fem::Accuracy::Normal};
-  fem::CurveRequest request{.specimen = specimen, .with_error = false};
+  fem::CurveRequest request{.specimen = specimen, .indentations = {}, .with_error = false};
   for (int i = 1; i <= 8; ++i) request.indentations.push_back(0.5e-3 * i);
   bool solved = true;
   double offset = kOffset;  // each round another, or the compliance is at hand
