@@ -43,7 +43,10 @@ double fitted_constant(Specimen specimen) {
 }  // namespace
 
 double offset_limit(const Specimen& specimen) noexcept {
-  return specimen.block.half_width - (kPatchRadius + kClearance) * specimen.indenter.radius;
+  // A limit of whole millimetres must not be missed by its last bit.
+  constexpr double kRounding = 1e-12;
+  return specimen.block.half_width - (kPatchRadius + kClearance) * specimen.indenter.radius +
+         kRounding;
 }
 
 OffAxisContact::OffAxisContact(const Specimen& specimen, double offset_max, Accuracy accuracy)

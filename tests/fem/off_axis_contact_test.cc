@@ -52,6 +52,11 @@ TEST(OffAxisContactTest, TheShapeOverTheOffsetAgreesWithThreeDimensions) {
   EXPECT_EQ(compared, 7);
 }
 
+TEST(OffAxisContactTest, TheLimitOfTheOffsetIsWithinReach) {
+  EXPECT_GE(offset_limit({}), 35e-3);
+  EXPECT_LT(offset_limit({}), 35.001e-3);
+}
+
 TEST(OffAxisContactTest, TheEffectIsEvenAndFallsWithTheOffset) {
   OffAxisContact contact{ball(5, 5, 856), 20e-3, Accuracy::Coarse};
   EXPECT_LT(contact.last_share(), 1e-4);
