@@ -7,6 +7,7 @@
 #include "fem/bonded_layer.h"
 #include "fem/finite_contact.h"
 #include "fem/linear_contact.h"
+#include "fem/sneddon_sphere.h"
 #include "fem/verification.h"
 
 namespace palp::fem {
@@ -41,17 +42,6 @@ double pressed(const Specimen& specimen, double indentation, Accuracy accuracy) 
   return row ? row->force : 0;
 }
 
-/// Sneddon: contact radius of a sphere at an indentation.
-double sneddon_radius(double indentation) {
-  double low = 0;
-  double high = kRadius;
-  for (int pass = 0; pass < 100; ++pass) {
-    const double a = 0.5 * (low + high);
-    (0.5 * a * std::log((kRadius + a) / (kRadius - a)) < indentation ? low : high) = a;
-  }
-  return 0.5 * (low + high);
-}
-
 void add_half_spaces(Checks& to, Extent extent) {
   const Accuracy accuracy = Accuracy::Normal;
   for (const double poisson : {0.3, 0.49}) {
@@ -64,14 +54,12 @@ void add_half_spaces(Checks& to, Extent extent) {
                          pressed(hertz, d, accuracy),
                          4 * modulus * std::sqrt(kRadius) * d * std::sqrt(d) / 3,
                          3e-3));
-      const double a = sneddon_radius(d);
-      to.push_back(close(
-          name_of("sphere (Sneddon)", poisson, d),
-          "force N",
-          pressed(half_space(IndenterShape::Sphere, poisson), d, accuracy),
-          modulus * (0.5 * (a * a + kRadius * kRadius) * std::log((kRadius + a) / (kRadius - a)) -
-                     a * kRadius),
-          3e-3));
+      const SneddonSphere sneddon{.radius = kRadius, .modulus = modulus};
+      to.push_back(close(name_of("sphere (Sneddon)", poisson, d),
+                         "force N",
+                         pressed(half_space(IndenterShape::Sphere, poisson), d, accuracy),
+                         sneddon.press(d).force,
+                         3e-3));
       const Specimen cone = half_space(IndenterShape::Cone, poisson);
       // Its contact must stay on the fine part of the surface.
       const double shallow = 0.5 * d;

@@ -91,11 +91,12 @@ Result<Curve> solve_curve(const CurveRequest& request) {
   auto curve = solve_once(request, request.accuracy);
   if (!curve || !request.with_error) return curve;
   const bool fine = request.accuracy == Accuracy::Fine;
-  const auto coarser = solve_once(request, fine ? Accuracy::Normal : Accuracy::Coarse);
-  if (!coarser) return tl::unexpected<Error>(coarser.error());
+  const bool normal = request.accuracy == Accuracy::Normal;
+  const double share = fine ? kErrorOfNormal : normal ? kErrorOfCoarse : 1;
+  const auto other = solve_once(request, normal ? Accuracy::Coarse : Accuracy::Normal);
+  if (!other) return tl::unexpected<Error>(other.error());
   for (std::size_t i = 0; i < curve->rows.size(); ++i) {
-    const double off = std::abs(curve->rows[i].force - coarser->rows[i].force);
-    curve->rows[i].error = (fine ? kErrorOfNormal : kErrorOfCoarse) * off;
+    curve->rows[i].error = share * std::abs(curve->rows[i].force - other->rows[i].force);
   }
   return curve;
 }

@@ -34,7 +34,7 @@ struct CurveRequest {
   Model model{Model::Linear};
   Accuracy accuracy{Accuracy::Normal};
   std::vector<double> indentations;  ///< [m], in any order
-  bool with_error{true};             ///< solves a coarser mesh as well
+  bool with_error{true};             ///< solves another mesh as well
 };
 
 struct Curve {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
+#include <utility>
 
 #include "common/config/number.h"
 #include "common/config/report.h"
@@ -53,9 +55,15 @@ void declare_curve(config::CommandLine& line, CurveFlags& flags) {
   length("--half-width-mm", flags.half_width_mm, "of the block");
   length("--height-mm", flags.height_mm, "of the block, bonded at its base");
   length("--indenter-radius-mm", flags.indenter_radius_mm, "of the rigid sphere");
+  length("--offset-mm", flags.offset_mm, "of the tip's axis from that of the ball");
+  line.number("--tilt-deg",
+              flags.tilt_deg,
+              {.min = -1e6, .max = 1e6, .unit = "deg"},
+              "of the tip's way off the normal, away from the ball");
+  length("--surface-radius-mm", flags.surface_radius_mm, "dome > 0, hollow < 0, flat 0");
   line.choice("--model", flags.model, {"l1", "neo"}, "small strain, or finite neo-Hookean");
   line.text("--indentations-mm", flags.indentations_mm, "LIST", "0.5,1,2 or from:to:step");
-  line.choice("--accuracy", flags.accuracy, {"normal", "fine"}, "of the mesh");
+  line.choice("--accuracy", flags.accuracy, {"coarse", "normal", "fine"}, "of the mesh");
   line.text("--csv", flags.csv, "FILE", "rows d_mm,F_N,contact_radius_mm,err_N");
   line.text("--vtu", flags.vtu, "FILE", "deformed section at the largest indentation");
 }
@@ -112,9 +120,18 @@ Result<CurveRequest> curve_request(const CurveFlags& flags) {
   }
   specimen.indenter.radius = flags.indenter_radius_mm * kMillimetre;
   request.model = flags.model == "l1" ? Model::Linear : Model::NeoHookean;
-  request.accuracy = flags.accuracy == "fine" ? Accuracy::Fine : Accuracy::Normal;
+  request.accuracy = flags.accuracy == "fine"     ? Accuracy::Fine
+                     : flags.accuracy == "coarse" ? Accuracy::Coarse
+                                                  : Accuracy::Normal;
   request.indentations = std::move(*indentations);
   return request;
+}
+
+Approach approach_of(const CurveFlags& flags) {
+  const double radius = flags.surface_radius_mm * kMillimetre;
+  return {.offset = flags.offset_mm * kMillimetre,
+          .tilt = flags.tilt_deg * std::numbers::pi / 180,
+          .surface_curvature = radius == 0 ? 0 : 1 / radius};
 }
 
 std::string csv_text(const std::vector<CurveRow>& rows) {
@@ -136,14 +153,25 @@ std::string csv_text(const std::vector<CurveRow>& rows) {
 ExitStatus run_curve(const CurveFlags& flags) {
   const auto request = curve_request(flags);
   if (!request) return {ExitCode::BadInput, "palp-fem: " + request.error().text};
-  const auto curve = solve_curve(*request);
-  if (!curve) return {ExitCode::BadInput, "palp-fem: " + curve.error().text};
-  const std::string text = csv_text(curve->rows);
-  if (!flags.vtu.empty()) {
-    const auto written =
-        config::write_whole_file(flags.vtu, vtu_text(*curve, request->specimen, request->model));
-    if (!written) return {ExitCode::CannotOpen, "palp-fem: " + written.error().text};
+  std::vector<CurveRow> rows;
+  if (const Approach approach = approach_of(flags); !approach.straight()) {
+    if (!flags.vtu.empty()) {
+      return {ExitCode::BadInput, "palp-fem: --vtu shows a tip straight above the inclusion alone"};
+    }
+    auto found = solve_off_axis_curve(*request, approach);
+    if (!found) return {ExitCode::BadInput, "palp-fem: " + found.error().text};
+    rows = std::move(*found);
+  } else {
+    auto curve = solve_curve(*request);
+    if (!curve) return {ExitCode::BadInput, "palp-fem: " + curve.error().text};
+    if (!flags.vtu.empty()) {
+      const auto written =
+          config::write_whole_file(flags.vtu, vtu_text(*curve, request->specimen, request->model));
+      if (!written) return {ExitCode::CannotOpen, "palp-fem: " + written.error().text};
+    }
+    rows = std::move(curve->rows);
   }
+  const std::string text = csv_text(rows);
   if (flags.csv.empty()) return {ExitCode::Done, text};
   if (const auto written = config::write_whole_file(flags.csv, text); !written) {
     if (!flags.vtu.empty()) static_cast<void>(std::remove(flags.vtu.c_str()));

@@ -23,6 +23,7 @@
 #include "fem/database_builder.h"
 #include "fem/depth_table.h"
 #include "fem/interpolation_check.h"
+#include "fem/shape_builder.h"
 
 namespace palp::fem {
 namespace {
@@ -253,6 +254,7 @@ config::Json describe(const DepthTable& table) {
   out["indentation_max_mm"] = grid.indentations.back() / kMillimetre;
   out["members"] = table.members.size();
   out["members_wanted"] = wanted_members(grid);
+  out["off_axis_values"] = table.off_axis ? table.off_axis->shape.size() : 0;
   out["checked_count"] = table.checked_count;
   out["checked_rms_share"] = table.checked_rms;
   out["checked_max_share"] = table.checked_max;
@@ -275,6 +277,16 @@ Result<void> check_if_asked(DepthTable& table, const DatabaseFlags& flags) {
   return check_interpolation(table, static_cast<std::uint32_t>(flags.check), kCheckSeed);
 }
 
+/// The shape beside the axis, of a grid that is whole.
+Result<void> add_shape_if_asked(DepthTable& table, const DatabaseFlags& flags) {
+  const bool whole = table.members.size() == wanted_members(table.grid);
+  if (!flags.off_axis || !whole || table.off_axis) return {};
+  auto shape = solve_shape_table(table.grid, shape_axes(), Accuracy::Normal);
+  if (!shape) return tl::unexpected<Error>(shape.error());
+  table.off_axis = std::move(*shape);
+  return {};
+}
+
 ExitStatus save(const DepthTable& table, const DatabaseFlags& flags) {
   if (const auto written = config::write_whole_file(flags.out, table_bytes(table)); !written) {
     return cannot_open(written.error().text);
@@ -282,11 +294,13 @@ ExitStatus save(const DepthTable& table, const DatabaseFlags& flags) {
   return tell(table, flags.report);
 }
 
-void declare_check(config::CommandLine& line, DatabaseFlags& flags) {
+/// What is done once the grid is whole.
+void declare_of_whole(config::CommandLine& line, DatabaseFlags& flags) {
   line.whole("--check",
              flags.check,
              {.min = 0, .max = 10'000},
              "phantoms between the grid's points, solved to state the interpolation's error");
+  line.toggle("--off-axis", flags.off_axis, "adds what is left of a ball's effect beside its axis");
 }
 
 }  // namespace
@@ -295,14 +309,14 @@ void declare_database(config::CommandLine& line, DatabaseFlags& flags) {
   line.text("--out", flags.out, "FILE", "the database; an unfinished one is completed");
   line.text("--shard", flags.shard, "i/n", "one share of the grid; merge puts them together");
   line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "processes at a time");
-  declare_check(line, flags);
+  declare_of_whole(line, flags);
   line.report(flags.report, kSchema);
   config::declare_submission(line, flags.submission);
 }
 
 void declare_merge(config::CommandLine& line, DatabaseFlags& flags) {
   line.text("--out", flags.out, "FILE", "the database");
-  declare_check(line, flags);
+  declare_of_whole(line, flags);
   line.report(flags.report, kSchema);
   line.arguments("FILE", flags.files, "databases of one grid");
 }
@@ -331,6 +345,9 @@ ExitStatus run_database(const DatabaseFlags& flags) {
   if (auto checked = check_if_asked(*table, flags); !checked) {
     return bad_input(checked.error().text);
   }
+  if (auto added = add_shape_if_asked(*table, flags); !added) {
+    return bad_input(added.error().text);
+  }
   ExitStatus exit_status = save(*table, flags);
   for (std::size_t core = 0; core < flags.cores; ++core) {
     static_cast<void>(std::remove(part_name(flags.out, core).c_str()));
@@ -353,6 +370,9 @@ ExitStatus run_merge(const DatabaseFlags& flags) {
   }
   if (auto checked = check_if_asked(*table, flags); !checked) {
     return bad_input(checked.error().text);
+  }
+  if (auto added = add_shape_if_asked(*table, flags); !added) {
+    return bad_input(added.error().text);
   }
   ExitStatus exit_status = save(*table, flags);
   const std::size_t wanted = wanted_members(table->grid);

@@ -15,6 +15,7 @@ struct DatabaseFlags {
   std::string out{"depth_database.bin"};
   std::string shard{};  ///< "i/n"; empty: all of it
   std::uint64_t cores{2};
+  bool off_axis{};        ///< solves the shape beside the axis as well, once the grid is whole
   std::uint64_t check{};  ///< phantoms between the grid's points, solved after the grid is whole
   std::string report{};
   std::vector<std::string> files{};  ///< of merge
@@ -24,7 +25,7 @@ struct DatabaseFlags {
                .part_flag = "--out",
                .part_ending = ".bin",
                .first = 1,
-               .of_merge = {"--out", "--report", "--check"}}};  ///< of database
+               .of_merge = {"--out", "--report", "--check", "--off-axis"}}};  ///< of database
   /// [s] since some instant; empty: nobody watches. main() knows clocks and terminals.
   std::function<double()> wall{};
 };

@@ -15,6 +15,7 @@ constexpr std::string_view kMagic{"PALPDDB1"};
 constexpr std::size_t kHashBytes = 8;
 constexpr std::uint32_t kFormatVersion = 1;
 constexpr std::size_t kAxisMax = 200;  // values along one axis of a grid
+constexpr double kShapeScale = 65535;  // [-], of a shape of 1 in 16 bits
 
 std::uint64_t fnv(std::string_view bytes) {
   std::uint64_t hash = 14695981039346656037ULL;
@@ -80,7 +81,39 @@ Result<void> check_table(const DepthTable& table) {
       return fail("the depth database has a member outside its grid, twice, or without a force");
     }
   }
+  if (!table.off_axis) return {};
+  if (auto ok = check(*table.off_axis); !ok) return fail("the depth database", ok.error());
   return {};
+}
+
+void write_shape(const ShapeTable& table, wire::ShapeTable& out) {
+  for (const double depth : table.depths) out.add_depth_mm(depth / kMillimetre);
+  for (const double radius : table.radii) out.add_radius_mm(radius / kMillimetre);
+  for (const double ratio : table.ratios) out.add_ratio(ratio);
+  for (const double offset : table.offsets) out.add_offset_share(offset);
+  for (const double d : table.indentations) out.add_indentation_mm(d / kMillimetre);
+  std::string& bytes = *out.mutable_shape();
+  for (const float value : table.shape) {
+    const auto code = static_cast<unsigned>(std::lround(kShapeScale * static_cast<double>(value)));
+    bytes += static_cast<char>(code & 0xff);
+    bytes += static_cast<char>(code >> 8 & 0xff);
+  }
+}
+
+ShapeTable read_shape(const wire::ShapeTable& in) {
+  ShapeTable table{.depths = scaled(in.depth_mm(), kMillimetre),
+                   .radii = scaled(in.radius_mm(), kMillimetre),
+                   .ratios = scaled(in.ratio(), 1),
+                   .offsets = scaled(in.offset_share(), 1),
+                   .indentations = scaled(in.indentation_mm(), kMillimetre),
+                   .shape = {}};
+  const std::string& bytes = in.shape();
+  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
+    const unsigned low = static_cast<unsigned char>(bytes[i]);
+    const unsigned high = static_cast<unsigned char>(bytes[i + 1]);
+    table.shape.push_back(static_cast<float>((low | high << 8) / kShapeScale));
+  }
+  return table;
 }
 
 }  // namespace
@@ -144,6 +177,7 @@ std::string table_bytes(const DepthTable& table) {
   out.set_checked_rms_share(table.checked_rms);
   out.set_checked_max_share(table.checked_max);
   out.set_checked_count(table.checked_count);
+  if (table.off_axis) write_shape(*table.off_axis, *out.mutable_off_axis());
   const std::string payload = out.SerializeAsString();
   return std::string{kMagic} + hash_bytes(payload) + payload;
 }
@@ -191,6 +225,7 @@ Result<DepthTable> parse_table(std::string_view bytes) {
   table.checked_rms = in.checked_rms_share();
   table.checked_max = in.checked_max_share();
   table.checked_count = in.checked_count();
+  if (in.has_off_axis()) table.off_axis = read_shape(in.off_axis());
   if (auto ok = check_table(table); !ok) return tl::unexpected<Error>(ok.error());
   return table;
 }
@@ -204,6 +239,7 @@ Result<void> merge_table(DepthTable& into, const DepthTable& from) {
   for (const DepthMember& member : from.members) {
     if (have.insert(key(member)).second) into.members.push_back(member);
   }
+  if (!into.off_axis) into.off_axis = from.off_axis;
   into.checked_count = 0;
   into.checked_rms = into.checked_max = 0;
   return {};

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/core/result.h"
+#include "fem/shape_table.h"
 #include "fem/specimen.h"
 
 namespace palp::fem {
@@ -46,13 +48,15 @@ struct DepthTable {
   double checked_rms{};           ///< [-], of F: interpolated against solved between grid points
   double checked_max{};           ///< [-]
   std::uint32_t checked_count{};  ///< 0: not checked
+  std::optional<ShapeTable> off_axis;
 };
 
 [[nodiscard]] std::string table_bytes(const DepthTable& table);
 /// What is not exactly a table of this version is refused in one sentence.
 [[nodiscard]] Result<DepthTable> parse_table(std::string_view bytes);
 
-/// Members of both; the grids must be the same.
+/// Members of both, and the shape beside the axis of the one that has it; the grids must be the
+/// same.
 [[nodiscard]] Result<void> merge_table(DepthTable& into, const DepthTable& from);
 
 }  // namespace palp::fem

@@ -9,6 +9,7 @@
 #include "common/core/conventions.h"
 #include "fem/dense_solver.h"
 #include "fem/linear_contact.h"
+#include "fem/trailing_block.h"
 
 namespace palp::fem {
 namespace {
@@ -156,14 +157,7 @@ bool FiniteContact::factorize(const State& state) {
 
 void FiniteContact::condense() {
   const int size = surface_count();
-  const int first = assembler_.equations() - size;
-  surface_lower_ = Eigen::MatrixXd::Identity(size, size);
-  const SparseMatrix& factors = factor_.matrixL().nestedExpression();
-  for (int column = 0; column < size; ++column) {
-    for (SparseMatrix::InnerIterator it{factors, first + column}; it; ++it) {
-      if (it.row() > it.col()) surface_lower_(it.row() - first, column) = it.value();
-    }
-  }
+  surface_lower_ = trailing_block(factor_.matrixL().nestedExpression(), size);
   surface_stiffness_ =
       surface_lower_ * factor_.vectorD().tail(size).asDiagonal() * surface_lower_.transpose();
 }

@@ -34,4 +34,24 @@ void Mesh::add_block(int columns,
   }
 }
 
+void Mesh::collect_surface() {
+  const auto at = [&](int node) { return nodes[static_cast<std::size_t>(node)]; };
+  for (const Element& element : elements) {
+    constexpr std::array<std::array<std::size_t, 3>, 4> kSides{
+        {{0, 1, 2}, {2, 5, 8}, {8, 7, 6}, {6, 3, 0}}};
+    for (const auto& side : kSides) {
+      SurfaceEdge edge{};
+      for (std::size_t i = 0; i < 3; ++i) edge[i] = element.nodes[side[i]];
+      const bool free =
+          std::all_of(edge.begin(), edge.end(), [&](int node) { return at(node).z == 0; });
+      if (!free) continue;
+      if (at(edge[0]).r > at(edge[2]).r) std::swap(edge[0], edge[2]);
+      surface.push_back(edge);
+    }
+  }
+  std::sort(surface.begin(), surface.end(), [&](const SurfaceEdge& a, const SurfaceEdge& b) {
+    return at(a[0]).r < at(b[0]).r;
+  });
+}
+
 }  // namespace palp::fem

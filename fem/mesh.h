@@ -38,14 +38,25 @@ struct Mesh {
                  int rows,
                  const std::function<int(int column, int row)>& node,
                  int material);
+  /// Enters the element sides on z = 0.
+  void collect_surface();
 };
 
 /// How fine, as a factor on all element sizes.
 enum class Accuracy { Coarse, Normal, Fine };
 
+/// How close the nodes of the surface lie even far from the axis, where a map is solved.
+struct SurfaceNodes {
+  double reach{};    ///< [m], from the axis, below the half width; 0: as the accuracy has it
+  double spacing{};  ///< [m], at most, out to there
+};
+
 /// Own mapped blocks: a fan of graded rows between the inclusion and a box around it, whose upper
 /// side is the surface under the indenter; beyond the box plain rectangles. Smooth in depth,
-/// radius and height. `specimen` has passed check().
-[[nodiscard]] Mesh make_mesh(const Specimen& specimen, Accuracy accuracy);
+/// radius and height. `specimen` has passed check(). `surface` is heeded where there is an
+/// inclusion; the number of elements then goes by the geometry, in steps.
+[[nodiscard]] Mesh make_mesh(const Specimen& specimen,
+                             Accuracy accuracy,
+                             const SurfaceNodes& surface = {});
 
 }  // namespace palp::fem

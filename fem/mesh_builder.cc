@@ -20,11 +20,12 @@ struct Station {
 
 class Builder {
  public:
-  Builder(const Specimen& specimen, Accuracy accuracy)
+  Builder(const Specimen& specimen, Accuracy accuracy, const SurfaceNodes& surface)
       : block_{specimen.block},
         inclusion_{specimen.inclusion},
         indenter_{specimen.indenter},
         sizes_{accuracy},
+        wanted_{surface},
         angular_{inclusion_.shape == InclusionShape::Cylinder ||
                  inclusion_.shape == InclusionShape::Column} {
     mesh_.half_width = block_.half_width;
@@ -35,6 +36,9 @@ class Builder {
       sizes_.side += 4;
       sizes_.below += 3;
       sizes_.rim += 3;
+    }
+    if (wanted_.reach > 0) {
+      sizes_.rows = std::max(sizes_.rows, int(std::ceil(elements_wanted(cover_rows()))));
     }
   }
 
@@ -49,7 +53,7 @@ class Builder {
       build_inside();
       build_outside();
     }
-    collect_surface();
+    mesh_.collect_surface();
     return std::move(mesh_);
   }
 
@@ -138,8 +142,10 @@ class Builder {
     const Grading rim{.length = box_r_ - contact_reach_,
                       .first = rim_size(),
                       .last = corner * box_r_ / inclusion_.radius,
-                      .growth = 0.4};
-    append(top_, distribute(rim, sizes_.rim));
+                      .growth = 0.4,
+                      .most = wanted_.reach > 0 ? 2 * wanted_.spacing : kAnySize};
+    const double least = wanted_.reach > 0 ? std::ceil(elements_wanted(rim)) : 0;
+    append(top_, distribute(rim, std::max(sizes_.rim, static_cast<int>(least))));
   }
 
   /// Radius on the inclusion below the surface radius `r`: slope 1 at the axis, `r_end` at the box.
@@ -210,17 +216,24 @@ class Builder {
     }
   }
 
+  /// Of the fan between the inclusion's top and the surface.
+  [[nodiscard]] Grading cover_rows() const {
+    const double a = inclusion_.radius;
+    double edge = angular_ ? a * 0.03 * sizes_.scale : kAnySize;
+    if (wanted_.reach > 0) edge = 0.3 * a * sizes_.scale;  // or the far field of a ball is wrong
+    return {.length = inclusion_.depth,
+            .first = edge,
+            .last = sizes_.surface_row * indenter_.radius,
+            .growth = 0.3};
+  }
+
   void build_fan() {
-    const double cover = inclusion_.depth;
-    const double edge = angular_ ? inclusion_.radius * 0.03 * sizes_.scale : kAnySize;
-    const std::vector<double> rows_top = distribute({.length = cover,
-                                                     .first = edge,
-                                                     .last = sizes_.surface_row * indenter_.radius,
-                                                     .growth = 0.3},
-                                                    sizes_.rows);
+    const Grading cover = cover_rows();
+    const std::vector<double> rows_top = distribute(cover, sizes_.rows);
     const double gap = box_r_ - 0.7 * inclusion_.radius;
     const std::vector<double> rows_side = distribute(
-        {.length = gap, .first = angular_ ? edge : gap, .last = gap, .growth = 0.4}, sizes_.rows);
+        {.length = gap, .first = angular_ ? cover.first : gap, .last = gap, .growth = 0.4},
+        sizes_.rows);
     const int rows = 2 * sizes_.rows;
     for (const Station& station : stations_) {
       std::vector<int>& column = fan_.emplace_back();
@@ -231,7 +244,7 @@ class Builder {
           break;
         }
         const double t =
-            (1 - station.side) * rows_top[k] / cover + station.side * rows_side[k] / gap;
+            (1 - station.side) * rows_top[k] / cover.length + station.side * rows_side[k] / gap;
         column.push_back(add({station.inner.r + t * (station.outer.r - station.inner.r),
                               station.inner.z + t * (station.outer.z - station.inner.z)}));
       }
@@ -303,14 +316,23 @@ class Builder {
   /// Rectangles beside and below the box.
   void build_outside() {
     const int rows = 2 * sizes_.rows;
-    const Grading outward{.length = block_.half_width - box_r_,
-                          .first = 0.3 * box_r_,
+    std::vector<double> r{0};
+    double first = 0.3 * box_r_;
+    if (wanted_.reach > box_r_) {
+      first = std::min(first, 2 * wanted_.spacing);
+      const double length = wanted_.reach - box_r_;
+      r = distribute({.length = length, .first = kAnySize, .last = kAnySize, .growth = 0.1},
+                     static_cast<int>(std::ceil(length / first)));
+    }
+    const Grading outward{.length = block_.half_width - box_r_ - r.back(),
+                          .first = first,
                           .last = kAnySize,
                           .growth = 0.5};
     // The count must not jump with the inclusion's radius: it goes by the block alone.
-    const int columns = sizes_.count(
+    const int beyond = sizes_.count(
         std::max(3.0, std::round(1.5 * std::log(block_.half_width / indenter_.radius) + 1)));
-    const std::vector<double> r = distribute(outward, columns);
+    append(r, distribute(outward, beyond));
+    const int columns = static_cast<int>(r.size() - 1) / 2;
     std::vector<std::vector<int>> beside;  // by row from the surface
     for (int i = top_end(); i <= side_end(); ++i) {
       std::vector<int>& line = beside.emplace_back(1, fan_at(i, rows));
@@ -353,32 +375,11 @@ class Builder {
         0);
   }
 
-  /// Element sides on z = 0, outward.
-  void collect_surface() {
-    const auto r = [&](int node) { return mesh_.nodes[static_cast<std::size_t>(node)].r; };
-    for (const Element& element : mesh_.elements) {
-      constexpr std::array<std::array<std::size_t, 3>, 4> kSides{
-          {{0, 1, 2}, {2, 5, 8}, {8, 7, 6}, {6, 3, 0}}};
-      for (const auto& side : kSides) {
-        SurfaceEdge edge{};
-        for (std::size_t i = 0; i < 3; ++i) edge[i] = element.nodes[side[i]];
-        const bool free = std::all_of(edge.begin(), edge.end(), [&](int node) {
-          return mesh_.nodes[static_cast<std::size_t>(node)].z == 0;
-        });
-        if (!free) continue;
-        if (r(edge[0]) > r(edge[2])) std::swap(edge[0], edge[2]);
-        mesh_.surface.push_back(edge);
-      }
-    }
-    std::sort(mesh_.surface.begin(),
-              mesh_.surface.end(),
-              [&](const SurfaceEdge& a, const SurfaceEdge& b) { return r(a[0]) < r(b[0]); });
-  }
-
   const Block& block_;
   const Inclusion& inclusion_;
   const Indenter& indenter_;
   Sizes sizes_;
+  SurfaceNodes wanted_;
   bool angular_;
   Mesh mesh_;
   double contact_reach_{};   ///< [m]
@@ -391,8 +392,8 @@ class Builder {
 
 }  // namespace
 
-Mesh make_mesh(const Specimen& specimen, Accuracy accuracy) {
-  return Builder{specimen, accuracy}.build();
+Mesh make_mesh(const Specimen& specimen, Accuracy accuracy, const SurfaceNodes& surface) {
+  return Builder{specimen, accuracy, surface}.build();
 }
 
 }  // namespace palp::fem

@@ -1,6 +1,8 @@
 #include "fem/curve_command.h"
 
+#include <cmath>
 #include <fstream>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -79,6 +81,41 @@ TEST(CurveCommandTest, NoFileIsLeftWhereOneCannotBeWritten) {
       {.model = "l1", .indentations_mm = "1", .csv = "/nonexistent/curve.csv", .vtu = vtu});
   EXPECT_EQ(exit_status.code, config::ExitCode::CannotOpen);
   EXPECT_FALSE(std::ifstream{vtu});
+}
+
+TEST(CurveCommandTest, APlaceBesideTheBallGoesThroughFlagsInMillimetreAndDegrees) {
+  const CurveFlags flags{.shape = "ball",
+                         .depth_mm = 5,
+                         .radius_mm = 5,
+                         .offset_mm = 5,
+                         .tilt_deg = 10,
+                         .surface_radius_mm = 60,
+                         .model = "l1",
+                         .indentations_mm = "1",
+                         .accuracy = "coarse"};
+  const Approach approach = approach_of(flags);
+  EXPECT_NEAR(approach.offset, 5e-3, 1e-15);
+  EXPECT_NEAR(approach.tilt, std::numbers::pi / 18, 1e-15);
+  EXPECT_NEAR(approach.surface_curvature, 1 / 60e-3, 1e-9);
+  EXPECT_TRUE(approach_of({}).straight());
+  const auto found = solve_off_axis_curve(*curve_request(flags), approach);
+  ASSERT_TRUE(found);
+  const auto exit_status = run_curve(flags);
+  EXPECT_EQ(exit_status.code, config::ExitCode::Done);
+  EXPECT_EQ(exit_status.text, csv_text(*found));
+}
+
+TEST(CurveCommandTest, ASectionIsDrawnOfATipAboveTheBallAlone) {
+  const auto exit_status =
+      run_curve({.offset_mm = 5, .model = "l1", .indentations_mm = "1", .vtu = "/nonexistent/a"});
+  EXPECT_EQ(exit_status.code, config::ExitCode::BadInput);
+}
+
+TEST(CurveCommandTest, TheErrorOfACoarseMeshIsItsDistanceFromTheNormalOne) {
+  const auto coarse = solve({.model = "l1", .indentations_mm = "2", .accuracy = "coarse"});
+  const auto normal = solve({.model = "l1", .indentations_mm = "2"});
+  ASSERT_TRUE(coarse && normal);
+  EXPECT_DOUBLE_EQ(coarse->rows[0].error, std::abs(coarse->rows[0].force - normal->rows[0].force));
 }
 
 TEST(CurveCommandTest, RowsComeInTheOrderAskedWithAHeader) {

@@ -42,6 +42,36 @@ TEST(DepthTableTest, ComesBackFromItsBytes) {
   EXPECT_EQ(table_bytes(*back), table_bytes(table));
 }
 
+/// A ball's effect beside its axis, at two offsets.
+ShapeTable small_shape() {
+  return {.depths = {5e-3},
+          .radii = {5e-3},
+          .ratios = {10},
+          .offsets = {0.5, 1},
+          .indentations = {2e-3},
+          .shape = {0.6F, 0.2F}};
+}
+
+TEST(DepthTableTest, TheShapeBesideTheAxisComesBackInSixteenBits) {
+  DepthTable table = small_table();
+  EXPECT_FALSE(parse_table(table_bytes(table))->off_axis);
+  table.off_axis = small_shape();
+  const auto back = parse_table(table_bytes(table));
+  ASSERT_TRUE(back) << back.error().text;
+  ASSERT_TRUE(back->off_axis);
+  EXPECT_EQ(back->off_axis->offsets, table.off_axis->offsets);
+  EXPECT_NEAR(back->off_axis->depths[0], 5e-3, 1e-15);
+  ASSERT_EQ(back->off_axis->shape.size(), 2U);
+  EXPECT_NEAR(back->off_axis->shape[0], 0.6, 0.5 / 65535);
+  EXPECT_NEAR(back->off_axis->shape[1], 0.2, 0.5 / 65535);
+  EXPECT_EQ(table_bytes(*back), table_bytes(table));
+  table.off_axis->shape.pop_back();
+  EXPECT_FALSE(parse_table(table_bytes(table)));
+  DepthTable merged = small_table();
+  ASSERT_TRUE(merge_table(merged, *back));
+  EXPECT_TRUE(merged.off_axis);
+}
+
 TEST(DepthTableTest, RefusesWhatIsTruncatedForeignOrDamaged) {
   const std::string bytes = table_bytes(small_table());
   for (const std::size_t length :

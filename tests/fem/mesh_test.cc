@@ -77,5 +77,27 @@ TEST(MeshTest, SurfaceRunsFromTheAxisToTheSide) {
   }
 }
 
+TEST(MeshTest, SurfaceNodesLieAsCloseAsAskedOutToTheReach) {
+  for (const double depth : {3.0, 10.0, 25.0}) {
+    for (const double radius : {3.0, 8.0, 15.0}) {
+      const Mesh mesh = make_mesh(with(InclusionShape::Ball, depth, radius),
+                                  Accuracy::Coarse,
+                                  {.reach = 32e-3, .spacing = 1.5e-3});
+      EXPECT_NEAR(
+          volume(mesh, 0) + volume(mesh, 1), std::numbers::pi * 45e-3 * 45e-3 * 57e-3, 1e-9);
+      double last = 0;
+      for (const SurfaceEdge& edge : mesh.surface) {
+        for (const int node : edge) {
+          const double r = mesh.nodes[static_cast<std::size_t>(node)].r;
+          if (last < 32e-3 - 1e-9) {
+            EXPECT_LE(r - last, 1.5e-3 + 1e-9) << depth << ' ' << radius;
+          }
+          last = r;
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace palp::fem

@@ -1,0 +1,58 @@
+#include "fem/shape_builder.h"
+
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "fem/off_axis_contact.h"
+
+namespace palp::fem {
+namespace {
+
+ShapeTable axes_of(std::vector<double> depths, std::vector<double> radii) {
+  return {.depths = std::move(depths),
+          .radii = std::move(radii),
+          .ratios = {100},
+          .offsets = {0.3, 1, 2},
+          .indentations = {2e-3},
+          .shape = {}};
+}
+
+TEST(ShapeBuilderTest, TheTableHoldsWhatTheContactFinds) {
+  const DepthGrid grid = default_grid();
+  const auto table = solve_shape_table(grid, axes_of({5e-3}, {5e-3}), Accuracy::Coarse);
+  ASSERT_TRUE(table) << table.error().text;
+  ASSERT_TRUE(check(*table));
+  Specimen specimen;
+  specimen.inclusion = {.shape = InclusionShape::Ball, .depth = 5e-3, .radius = 5e-3, .ratio = 100};
+  OffAxisContact contact{specimen, 20e-3, Accuracy::Coarse};
+  for (const double offset : {3e-3, 10e-3, 20e-3}) {
+    const double wanted = *contact.excess(2e-3, offset) / *contact.excess(2e-3, 0);
+    EXPECT_NEAR(table->at({5e-3, 5e-3, 100, offset, 2e-3}), wanted, 2e-4) << offset;
+  }
+}
+
+// A ball of 18 mm does not fit 24 mm deep, nor an offset of twice its centre's depth.
+TEST(ShapeBuilderTest, WhatDoesNotFitIsFilledFromItsNeighbours) {
+  const DepthGrid grid = default_grid();
+  const ShapeTable axes = axes_of({24e-3}, {5e-3, 18e-3});
+  const auto large = solve_shape(grid, axes, 0, 1, 0, Accuracy::Coarse);
+  const auto small = solve_shape(grid, axes, 0, 0, 0, Accuracy::Coarse);
+  ASSERT_TRUE(large && small);
+  EXPECT_EQ(*large, *small);
+  EXPECT_LT((*small)[2], (*small)[1]);
+  EXPECT_GT((*small)[2], 0);
+}
+
+TEST(ShapeBuilderTest, TheAxesCoverTheDatabase) {
+  const DepthGrid grid = default_grid();
+  const ShapeTable axes = shape_axes();
+  EXPECT_NEAR(axes.depths.back(), grid.depths.back(), 1e-9);
+  EXPECT_EQ(axes.radii, grid.radii);
+  EXPECT_EQ(axes.ratios.back(), grid.ratios.back());
+  EXPECT_EQ(axes.indentations.back(), grid.indentations.back());
+}
+
+}  // namespace
+}  // namespace palp::fem
