@@ -1,6 +1,7 @@
 #include "review/session_figure.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace palp::review {
@@ -38,6 +39,9 @@ plot::Figure SessionFigure::figure() const {
   }
   for (plot::Curve* of_hand : {&hand, &felt}) of_hand->colour = plot::kBlue;
   truth.colour = plot::kGrey;
+  const bool law_known = std::any_of(
+      truth.y.begin(), truth.y.end(), [](double force) { return std::isfinite(force); });
+  if (!law_known) truth.name.clear();  // a legend of what is there
   return {.title = "Hand and tip",
           .panels = {{.axes = {.y_name = "below the surface [mm]"},
                       .curves = {surface, std::move(hand), std::move(tip)}},

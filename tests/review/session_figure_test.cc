@@ -44,6 +44,19 @@ TEST(SessionFigureTest, ShowsItsSpanAloneTickByTickHoweverLongTheSession) {
   EXPECT_LT(time.back(), 51);
 }
 
+TEST(SessionFigureTest, ALawThatNobodyKnowsIsNotInTheLegend) {
+  SessionFigure known{{}};
+  SessionFigure unknown{{}};
+  for (int ms = 0; ms < 20; ++ms) {
+    judge::RunTick tick = tick_of(ms);
+    known.see(tick);
+    tick.force_true = judge::kUndefined;
+    unknown.see(tick);
+  }
+  EXPECT_FALSE(known.figure().panels[1].curves[0].name.empty());
+  EXPECT_TRUE(unknown.figure().panels[1].curves[0].name.empty());
+}
+
 TEST(SessionFigureTest, OfNothingThereIsNoPanel) {
   SessionFigure seen{{.from = 5}};
   seen.see(tick_of(0));
