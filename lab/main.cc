@@ -131,8 +131,9 @@ ExitStatus run(const Arguments& arguments) {
     const auto written = config::write_whole_file(arguments.trace, trace_csv(result));
     if (!written) return {ExitCode::CannotOpen, "palp-lab: " + written.error().text};
   }
-  if (const auto drawn = plot::write_picture(figure_of(result), arguments.picture); !drawn) {
-    return {ExitCode::CannotOpen, "palp-lab: " + drawn.error().text};
+  if (arguments.picture.asked()) {
+    const auto drawn = plot::write_picture(figure_of(result), arguments.picture);
+    if (!drawn) return {ExitCode::CannotOpen, "palp-lab: " + drawn.error().text};
   }
   return exit_status_of(result.outcome, run_summary(*scenario, result, account));
 }

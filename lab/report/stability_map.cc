@@ -55,7 +55,7 @@ Json numbers(const std::vector<std::string>& texts) {
 }
 
 /// The cells of a grip that are as `state` says.
-plot::Curve cells_of(const Map& map, std::size_t grip, std::optional<bool> state) {
+plot::Curve cells_where(const Map& map, std::size_t grip, std::optional<bool> state) {
   plot::Curve cells{.mark = plot::Mark::Cells};
   for (std::size_t s = 0; s < map.springs.size(); ++s) {
     for (std::size_t t = 0; t < map.trips.size(); ++t) {
@@ -124,7 +124,7 @@ plot::Figure map_figure(const std::vector<CaseResult>& results) {
     const bool first = g == 0;  // its legend is that of all
     const bool last = g + 1 == map.grips.size();
     std::vector<plot::Curve> kinds{
-        cells_of(map, g, true), cells_of(map, g, false), cells_of(map, g, std::nullopt)};
+        cells_where(map, g, true), cells_where(map, g, false), cells_where(map, g, std::nullopt)};
     kinds[0].colour = plot::kBlue;
     kinds[1].colour = plot::kOrange;
     kinds[2].colour = plot::kGrey;
