@@ -10,7 +10,6 @@
 #include "common/config/json.h"
 #include "common/config/report.h"
 #include "common/core/conventions.h"
-#include "common/plot/line_plot.h"
 
 namespace palp::fem {
 namespace {
@@ -139,7 +138,7 @@ void print_table(std::string& to, const PaperStudy& study) {
 plot::Panel formula_panel(const PaperStudy& study) {
   plot::Panel panel;
   panel.axes = {
-      .title = "Fig. 5: depth over hash, eq. (3)", .x_name = "h [N]", .y_name = "depth [mm]"};
+      .title = "Fig. 5: depth over hash, eq. (3)", .x_name = "hash h [N]", .y_name = "depth [mm]"};
   plot::Curve ours{
       .name = "our phantoms", .x = {}, .y = {}, .mark = plot::Mark::Points, .colour = 0};
   plot::Curve refit{.name = "(3) refitted", .x = {}, .y = {}, .colour = 0};
@@ -228,7 +227,7 @@ void declare_paper(config::CommandLine& line, PaperFlags& flags) {
               flags.range_mm,
               {.min = 1, .max = 4, .unit = "mm"},
               "indentations of the cubic, from 0");
-  line.text("--svg", flags.svg, "FILE", "a picture: Fig. 5 and Fig. 8");
+  plot::declare_picture(line, flags.picture, "a picture: Fig. 5 and Fig. 8");
   line.report(flags.report, "palp.paper/1");
 }
 
@@ -274,8 +273,9 @@ std::string paper_text(const PaperStudy& study) {
   return text;
 }
 
-std::string paper_svg(const PaperStudy& study) {
-  return plot::panels_svg({formula_panel(study), force_panel(study)});
+plot::Figure paper_figure(const PaperStudy& study) {
+  return {.title = "The paper's phantom and estimator",
+          .panels = {formula_panel(study), force_panel(study)}};
 }
 
 std::string paper_report(const PaperStudy& study) {
@@ -335,14 +335,11 @@ std::vector<std::string> paper_misses(const PaperStudy& study) {
 ExitStatus run_paper(const PaperFlags& flags) {
   const auto study = study_paper(flags);
   if (!study) return {ExitCode::BadInput, "palp-fem: " + study.error().text};
-  const std::vector<std::pair<std::string, std::string>> files{
-      {flags.svg, paper_svg(*study)}, {flags.report, paper_report(*study)}};
-  for (const auto& [name, text] : files) {
-    if (name.empty()) continue;
-    if (const auto written = config::write_whole_file(name, text); !written) {
-      return {ExitCode::CannotOpen, "palp-fem: " + written.error().text};
-    }
+  auto written = plot::write_picture(paper_figure(*study), flags.picture);
+  if (written && !flags.report.empty()) {
+    written = config::write_whole_file(flags.report, paper_report(*study));
   }
+  if (!written) return {ExitCode::CannotOpen, "palp-fem: " + written.error().text};
   const std::string text = paper_text(*study);
   const std::vector<std::string> missed = paper_misses(*study);
   if (missed.empty()) return {ExitCode::Done, text};

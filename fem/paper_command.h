@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/config/command_line.h"
+#include "common/plot/picture.h"
 #include "fem/curve.h"
 #include "fem/depth_formula.h"
 
@@ -16,7 +17,7 @@ struct PaperFlags {
   double radius_mm{15};
   double range_mm{4};
   double step_mm{2.5};
-  std::string svg{};
+  plot::PictureFlags picture{};
   std::string report{};
 };
 
@@ -43,7 +44,7 @@ struct PaperStudy {
 
 [[nodiscard]] Result<PaperStudy> study_paper(const PaperFlags& flags);
 [[nodiscard]] std::string paper_text(const PaperStudy& study);
-[[nodiscard]] std::string paper_svg(const PaperStudy& study);
+[[nodiscard]] plot::Figure paper_figure(const PaperStudy& study);
 [[nodiscard]] std::string paper_report(const PaperStudy& study);
 /// What is off by more than 1 %, one line each.
 [[nodiscard]] std::vector<std::string> paper_misses(const PaperStudy& study);

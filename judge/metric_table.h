@@ -12,6 +12,8 @@ namespace palp::judge {
 /// One number of a run as reports name it, in the unit at the end of the name.
 struct Metric {
   std::string_view name;
+  std::string_view axis;  ///< of a picture: words and unit
+  double scale{};         ///< [-], from the value to that unit
   double (*value)(const RunMetrics&);
 };
 

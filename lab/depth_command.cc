@@ -20,6 +20,7 @@
 #include "lab/partial_rows.h"
 #include "lab/plan/plan.h"
 #include "lab/report/depth_cases.h"
+#include "lab/report/depth_picture.h"
 #include "lab/run/digest.h"
 
 namespace palp::lab {
@@ -223,12 +224,15 @@ ExitStatus finish_depth(const DepthRows& rows, const DepthFlags& flags) {
   const std::string& csv = flags.csv.empty() ? flags.cases : flags.csv;
   for (const auto& [path, text] : {std::pair{flags.cases, all_rows(rows, makers)},
                                    std::pair{flags.report, depth_report(study, rows.cases, csv)},
-                                   std::pair{flags.csv, depth_csv(rows.cases)},
-                                   std::pair{flags.svg, depth_svg(study, rows.cases)}}) {
+                                   std::pair{flags.csv, depth_csv(rows.cases)}}) {
     if (path.empty()) continue;
     if (const auto written = config::write_whole_file(path, text); !written) {
       return {ExitCode::CannotOpen, "palp-lab: " + written.error().text};
     }
+  }
+  if (const auto drawn = plot::write_picture(depth_figure(study, rows.cases), flags.picture);
+      !drawn) {
+    return {ExitCode::CannotOpen, "palp-lab: " + drawn.error().text};
   }
   return {ExitCode::Done,
           depth_table(study, rows.cases) + "digest " + hexadecimal(digest_of(rows.cases)) + "\n"};
@@ -255,15 +259,16 @@ void declare_depth(config::CommandLine& line, DepthFlags& flags) {
   line.report(flags.report, "palp.depth/1");
   line.text("--cases", flags.cases, "FILE", "every case to the bit, for merge and --resume");
   line.text("--csv", flags.csv, "FILE", "a line per case");
-  line.text("--svg", flags.svg, "FILE", "estimates, intervals and the truth");
+  plot::declare_picture(line, flags.picture, "estimates, intervals and the truth");
   config::declare_submission(line, flags.submission);
 }
 
 ExitStatus run_depth(const DepthFlags& flags, const Machine& machine) {
   const auto study = study_of(flags);
   if (!study) return bad_input(study.error().text);
-  if (const auto can = config::can_write_files({flags.report, flags.csv, flags.svg, flags.cases});
-      !can) {
+  auto can = config::can_write_files({flags.report, flags.csv, flags.cases});
+  if (can) can = plot::can_write_picture(flags.picture);
+  if (!can) {
     return {ExitCode::CannotOpen, "palp-lab: " + can.error().text};
   }
   const auto rows = run_all(*study, flags, machine);

@@ -4,6 +4,7 @@
 
 #include "common/config/command_line.h"
 #include "common/config/submission.h"
+#include "common/plot/picture.h"
 #include "lab/plan/depth_study.h"
 #include "lab/verbs.h"
 
@@ -25,7 +26,7 @@ struct DepthFlags {
   std::uint64_t cores{2};
   std::string report{};
   std::string csv{};
-  std::string svg{};
+  plot::PictureFlags picture{};
   std::string cases{};  ///< from which a run goes on, or is put together
   std::string shard{};  ///< "i/n"; empty: all
   bool resume{};

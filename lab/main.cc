@@ -14,6 +14,7 @@
 #include "common/config/submission.h"
 #include "common/io/process/parallel.h"
 #include "common/io/process/process_time.h"
+#include "common/plot/picture.h"
 #include "lab/depth_command.h"
 #include "lab/plan/plan.h"
 #include "lab/plan/scenario_file.h"
@@ -22,6 +23,7 @@
 #include "lab/run/run.h"
 #include "lab/scenarios_command.h"
 #include "lab/verbs.h"
+#include "review/session_figure.h"
 #include "site_program/build_info.h"
 
 namespace palp::lab {
@@ -38,6 +40,7 @@ struct Arguments {
   std::string report;
   std::string session_files;
   std::string trace;
+  plot::PictureFlags picture;
   bool bare{};
 };
 
@@ -94,10 +97,18 @@ ExitStatus exit_status_of(surgeon::ScriptOutcome outcome, const std::string& sum
               std::string{surgeon::to_string(outcome)}};
 }
 
+plot::Figure figure_of(const RunResult& result) {
+  review::SessionFigure seen{review::FigureSpan{}};
+  for (const judge::RunTick& tick : result.ticks) seen.see(tick);
+  return seen.figure();
+}
+
 ExitStatus run(const Arguments& arguments) {
   const auto scenario = scenario_of(arguments);
   if (!scenario) return refusal(scenario.error());
-  if (const auto can = config::can_write_files({arguments.report, arguments.trace}); !can) {
+  auto can = config::can_write_files({arguments.report, arguments.trace});
+  if (can) can = plot::can_write_picture(arguments.picture);
+  if (!can) {
     return {ExitCode::CannotOpen, "palp-lab: " + can.error().text};
   }
   auto files = open_files(arguments.session_files);
@@ -119,6 +130,10 @@ ExitStatus run(const Arguments& arguments) {
   if (!arguments.trace.empty()) {
     const auto written = config::write_whole_file(arguments.trace, trace_csv(result));
     if (!written) return {ExitCode::CannotOpen, "palp-lab: " + written.error().text};
+  }
+  if (arguments.picture.asked()) {
+    const auto drawn = plot::write_picture(figure_of(result), arguments.picture);
+    if (!drawn) return {ExitCode::CannotOpen, "palp-lab: " + drawn.error().text};
   }
   return exit_status_of(result.outcome, run_summary(*scenario, result, account));
 }
@@ -171,6 +186,7 @@ int main(int argc, char** argv) {
            "keep the session files: PREFIXsurgeon.mcap, PREFIXpatient.mcap");
   run.report(arguments.report, "palp.run/1");
   run.text("--trace", arguments.trace, "FILE", "every tick of the script as CSV");
+  palp::plot::declare_picture(run, arguments.picture, "hand and tip over time");
   palp::lab::BatchArguments batch;
   palp::lab::declare_batch_verbs(line, batch);
   const palp::lab::ScenariosCommand scenarios{line};

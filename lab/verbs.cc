@@ -35,21 +35,25 @@ constexpr std::uint64_t kSeedMax = 9007199254740991;  // what a JSON number hold
 ExitStatus refusal(const Error& fault) { return config::refusal("palp-lab", fault); }
 
 /// Writes what was asked for; the error, if any.
-std::optional<ExitStatus> write_files(
-    const std::vector<std::pair<std::string, std::string>>& files) {
+std::optional<ExitStatus> write_files(const std::vector<std::pair<std::string, std::string>>& files,
+                                      const plot::Figure& figure,
+                                      const plot::PictureFlags& picture) {
   for (const auto& [path, text] : files) {
     if (path.empty()) continue;
     if (const auto written = config::write_whole_file(path, text); !written) {
       return ExitStatus{ExitCode::CannotOpen, "palp-lab: " + written.error().text};
     }
   }
+  if (const auto drawn = plot::write_picture(figure, picture); !drawn) {
+    return ExitStatus{ExitCode::CannotOpen, "palp-lab: " + drawn.error().text};
+  }
   return std::nullopt;
 }
 
 /// Before hours are spent on what nobody could write down.
 std::optional<ExitStatus> check_files(const BatchArguments& arguments) {
-  const auto can =
-      config::can_write_files({arguments.cases, arguments.report, arguments.svg, arguments.csv});
+  auto can = config::can_write_files({arguments.cases, arguments.report, arguments.csv});
+  if (can) can = plot::can_write_picture(arguments.picture);
   if (can) return std::nullopt;
   return ExitStatus{ExitCode::CannotOpen, "palp-lab: " + can.error().text};
 }
@@ -127,15 +131,16 @@ Result<Run> run(Plan plan, const BatchArguments& arguments, const Machine& machi
   return Run{std::move(plan), std::move(*results), account};
 }
 
-std::string plot(const Run& done, const std::string& metric, const std::string& title) {
+plot::Figure figure_of(const Run& done, const std::string& metric, const std::string& title) {
   return metric_plot(done.plan.label_names, done.results, metric, title);
 }
 
-ExitStatus finish(const Run& done, const BatchArguments& arguments, const std::string& svg) {
+ExitStatus finish(const Run& done, const BatchArguments& arguments, const plot::Figure& figure) {
   if (auto failed =
           write_files({{arguments.cases, cases_csv(done.plan, done.results)},
-                       {arguments.report, batch_report(done.plan, done.results, done.account)},
-                       {arguments.svg, svg}})) {
+                       {arguments.report, batch_report(done.plan, done.results, done.account)}},
+                      figure,
+                      arguments.picture)) {
     return *failed;
   }
   if (done.account.cores > 0) remove_partial_rows(arguments.cases);  // none of a merge
@@ -148,7 +153,7 @@ ExitStatus montecarlo(const BatchArguments& arguments, const Machine& machine, b
   auto done = run(std::move(*plan), arguments, machine);
   if (!done) return refusal(done.error());
   if (lying) done->account.schema = kAdversary;
-  return finish(*done, arguments, plot(*done, arguments.metric, "set " + done->plan.name));
+  return finish(*done, arguments, figure_of(*done, arguments.metric, "set " + done->plan.name));
 }
 
 ExitStatus sweep(const BatchArguments& arguments, const Machine& machine) {
@@ -165,15 +170,17 @@ ExitStatus sweep(const BatchArguments& arguments, const Machine& machine) {
   auto done = run(std::move(*plan), arguments, machine);
   if (!done) return refusal(done.error());
   done->account.schema = kSweep;
-  return finish(*done, arguments, plot(*done, arguments.metric, "sweep of " + arguments.scenario));
+  return finish(
+      *done, arguments, figure_of(*done, arguments.metric, "sweep of " + arguments.scenario));
 }
 
 /// What a map has to say, run here or merged.
 ExitStatus finish_map(const Run& done, const BatchArguments& arguments) {
   if (auto failed =
           write_files({{arguments.cases, cases_csv(done.plan, done.results)},
-                       {arguments.report, map_report(done.plan, done.results, done.account)},
-                       {arguments.svg, map_svg(done.results)}})) {
+                       {arguments.report, map_report(done.plan, done.results, done.account)}},
+                      map_figure(done.results),
+                      arguments.picture)) {
     return *failed;
   }
   if (done.account.cores > 0) remove_partial_rows(arguments.cases);  // none of a merge
@@ -216,10 +223,10 @@ ExitStatus compare(const BatchArguments& arguments, const Machine& machine) {
   }
   all.plan.coupling.clear();
   all.plan.label_names.emplace_back("coupling");
-  if (auto failed =
-          write_files({{arguments.report, json.dump(2) + "\n"},
-                       {arguments.cases, cases_csv(all.plan, all.results)},
-                       {arguments.svg, plot(all, arguments.metric, "set " + all.plan.name)}})) {
+  if (auto failed = write_files({{arguments.report, json.dump(2) + "\n"},
+                                 {arguments.cases, cases_csv(all.plan, all.results)}},
+                                figure_of(all, arguments.metric, "set " + all.plan.name),
+                                arguments.picture)) {
     return *failed;
   }
   return {ExitCode::Done, text};
@@ -249,7 +256,7 @@ ExitStatus merge_depth_of(const BatchArguments& arguments) {
   DepthFlags flags;
   flags.report = arguments.report;
   flags.csv = arguments.csv;
-  flags.svg = arguments.svg;
+  flags.picture = arguments.picture;
   flags.cases = arguments.cases;
   return merge_depth(arguments.list, flags);
 }
@@ -273,14 +280,14 @@ ExitStatus merge(const BatchArguments& arguments) {
   warn_of_makers(makers(all.plan, all.results));
   if (all.plan.name == kMapName) return finish_map(all, arguments);
   if (all.plan.name == kSweepName) all.account.schema = kSweep;
-  return finish(all, arguments, plot(all, arguments.metric, "set " + all.plan.name));
+  return finish(all, arguments, figure_of(all, arguments.metric, "set " + all.plan.name));
 }
 
 void declare_common(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {
   verb.whole("--seed", arguments.seed, {.min = 0, .max = kSeedMax}, "of everything random; 1");
   verb.report(arguments.report, schema);
   verb.text("--cases", arguments.cases, "FILE", "one row per case as CSV");
-  verb.text("--svg", arguments.svg, "FILE", "plot");
+  plot::declare_picture(verb, arguments.picture, "a picture");
 }
 
 void declare_running(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {
@@ -323,7 +330,7 @@ config::ShardForm shard_form() {
           .part_flag = "--cases",
           .part_ending = ".csv",
           .resume = "--resume",
-          .of_merge = {"--report", "--cases", "--svg", "--metric", "--csv"}};
+          .of_merge = {"--report", "--cases", "--svg", "--pdf", "--style", "--metric", "--csv"}};
 }
 
 void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
@@ -336,7 +343,7 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
       verb.text("--set", arguments.set, "NAME", "which (palp-lab scenarios lists them); mc");
     }
     verb.whole("--count", arguments.count, {.min = 1, .max = 1000000}, "cases of a random set");
-    verb.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
+    verb.text("--metric", arguments.metric, "NAME", "what the picture shows; tap_a_error");
   };
   auto& monte = line.verb("montecarlo", "a set of scenarios: errors, energies, stability");
   set_flags(monte, true);
@@ -358,7 +365,7 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   axes.text("--coupling", arguments.coupling, "NAME", "instead of the scenario's");
   axes.whole("--repeats", arguments.repeats, {.min = 1, .max = 100000}, "seeds of each; 1");
   axes.text("--tissue", arguments.tissue, "PHANTOM", "instead of the scenario's");
-  axes.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
+  axes.text("--metric", arguments.metric, "NAME", "what the picture shows; tap_a_error");
   axes.arguments(
       "AXIS", arguments.list, "PATH=VALUE,VALUE,...; coupling.*, loop.* at both sites; rtt_ms");
   axes.required();
@@ -367,7 +374,7 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   joined.text("--set", arguments.set, "NAME", "refuse cases of another");
   joined.text("--coupling", arguments.coupling, "NAME", "refuse cases of another");
   tissue_flag(joined);
-  joined.text("--metric", arguments.metric, "NAME", "what the plot shows; tap_a_error");
+  joined.text("--metric", arguments.metric, "NAME", "what the picture shows; tap_a_error");
   joined.text("--csv", arguments.csv, "FILE", "of depth: a line per case");
   joined.arguments("FILE", arguments.list, "as --cases wrote them");
   joined.required();

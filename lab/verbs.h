@@ -9,6 +9,7 @@
 
 #include "common/config/command_line.h"
 #include "common/config/submission.h"
+#include "common/plot/picture.h"
 #include "lab/plan/batch.h"
 
 /// The verbs of palp-lab that run many cases.
@@ -44,8 +45,8 @@ struct BatchArguments {
   std::string shard;
   std::string report;
   std::string cases;
-  std::string svg;
   std::string csv;  ///< of a merge of depths
+  plot::PictureFlags picture;
   std::string metric{"tap_a_error"};
   std::vector<std::string> list;  ///< axes of a sweep, files of a merge
   std::optional<std::uint64_t> seed;

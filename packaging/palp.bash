@@ -19,6 +19,7 @@ _palp() {
         --set | run) candidates=$([ "$program" != palp-lab ] || palp-lab scenarios 2>/dev/null |
           command awk '{print $1}') ;;
         --coupling) candidates="direct wave tdpa mmt" ;;
+        --style) candidates="screen single double" ;;
         --grip) candidates="light mid firm arm" ;;
         --phantom) candidates="paper-5mm paper-10mm paper-15mm paper-20mm paper-25mm none" ;;
         --master) candidates="script:standard script:demo script:breath script:long pointer" ;;

@@ -18,9 +18,9 @@ constexpr double kSecantAt = 3e-3;                                // [m]
 constexpr double kDeepest = 10e-3;                                // [m]
 
 /// Successive draws of one tissue.
-class Draws {
+class TissueDraws {
  public:
-  explicit Draws(std::uint64_t seed) : stream_{seed, kTissueDraws} {}
+  explicit TissueDraws(std::uint64_t seed) : stream_{seed, kTissueDraws} {}
   double between(double low, double high) { return low + (high - low) * stream_.uniform(next_++); }
   double log_between(double low, double high) {
     return low * std::pow(high / low, stream_.uniform(next_++));
@@ -35,12 +35,13 @@ class Draws {
 /// x for x > 0 and 0 below, with a bend as wide as `width` [m] between.
 double ramp(double x, double width) { return width * std::log1p(std::exp(x / width)); }
 
-enum class Kind : std::uint8_t { Power, Exponential, Skin, Kink, Layers };
-constexpr std::array kKinds{Kind::Power, Kind::Exponential, Kind::Skin, Kind::Kink, Kind::Layers};
+enum class LawKind : std::uint8_t { Power, Exponential, Skin, Kink, Layers };
+constexpr std::array kLawKinds{
+    LawKind::Power, LawKind::Exponential, LawKind::Skin, LawKind::Kink, LawKind::Layers};
 
 /// A force up to a factor, over the indentation.
-struct Law {
-  Kind kind{};
+struct DrawnLaw {
+  LawKind kind{};
   double exponent{};  ///< [-], of Power; of what lies under a skin
   double length{};    ///< [m], over which an exponential grows by e
   double first{};     ///< [m], where a skin ends, where the first layer does
@@ -51,17 +52,17 @@ struct Law {
 
   [[nodiscard]] double force(double d) const {
     switch (kind) {
-      case Kind::Power:
+      case LawKind::Power:
         return std::pow(d, exponent);
-      case Kind::Exponential:
+      case LawKind::Exponential:
         return std::expm1(d / length);
-      case Kind::Skin: {
+      case LawKind::Skin: {
         const double under = kSecantAt * std::pow(d / kSecantAt, exponent);
         return under + skin * (d - bent(d, first));
       }
-      case Kind::Kink:
+      case LawKind::Kink:
         return d + harder * bent(d, first);
-      case Kind::Layers:
+      case LawKind::Layers:
         return d + harder * bent(d, first) + 2 * harder * bent(d, second);
     }
     return d;
@@ -73,20 +74,20 @@ struct Law {
   }
 };
 
-Law draw_law(Kind kind, Draws& draws) {
-  Law law{.kind = kind};
-  law.exponent = kind == Kind::Skin ? draws.between(1, 1.5) : draws.between(0.8, 2.5);
+DrawnLaw draw_law(LawKind kind, TissueDraws& draws) {
+  DrawnLaw law{.kind = kind};
+  law.exponent = kind == LawKind::Skin ? draws.between(1, 1.5) : draws.between(0.8, 2.5);
   law.length = draws.between(2e-3, 6e-3);
   law.first = draws.between(1e-3, 3e-3);
   law.second = law.first + draws.between(1e-3, 3e-3);
   law.width = draws.between(0.1e-3, 0.5e-3);
-  law.harder = kind == Kind::Kink ? draws.between(0.5, 3) : draws.between(0.3, 1.5);
+  law.harder = kind == LawKind::Kink ? draws.between(0.5, 3) : draws.between(0.3, 1.5);
   law.skin = draws.between(0.3, 2);
   return law;
 }
 
 /// `secant` [N/m], at kSecantAt.
-ForceTable table_of(const Law& law, double secant) {
+ForceTable table_of(const DrawnLaw& law, double secant) {
   constexpr int kRows = 1500;
   const double scale = secant * kSecantAt / law.force(kSecantAt);
   std::vector<ForceRow> rows;
@@ -102,13 +103,13 @@ ForceTable table_of(const Law& law, double secant) {
 }  // namespace
 
 Phantom drawn_tissue(std::uint64_t seed) {
-  Draws draws{seed};
-  const auto which = static_cast<std::size_t>(draws.between(0, kKinds.size()));
-  const Kind kind = kKinds[which];
+  TissueDraws draws{seed};
+  const auto which = static_cast<std::size_t>(draws.between(0, kLawKinds.size()));
+  const LawKind kind = kLawKinds[which];
   const double secant = draws.log_between(20, 1500);
-  const Law at_a = draw_law(kind, draws);
-  const Law other = draw_law(kind, draws);
-  const Law at_b = draws.heads() ? other : at_a;
+  const DrawnLaw at_a = draw_law(kind, draws);
+  const DrawnLaw other = draw_law(kind, draws);
+  const DrawnLaw at_b = draws.heads() ? other : at_a;
   const double harder = draws.between(1.1, 2.5);
   const double share = draws.between(0.05, 0.35);
   const double time = draws.log_between(0.5, 5);

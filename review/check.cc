@@ -48,4 +48,5 @@ Checked checked(const record::FileBytes& file) {
   if (!found.fault) found.lack = lack_of(reader);
   return found;
 }
+
 }  // namespace palp::review

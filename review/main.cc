@@ -20,6 +20,7 @@
 #include "review/export.h"
 #include "review/info.h"
 #include "review/merge.h"
+#include "review/plot_command.h"
 #include "review/recover.h"
 #include "review/replay_command.h"
 #include "review/report_curves.h"
@@ -111,21 +112,13 @@ std::string optional_text(const std::string& path) {
   return std::move(text).value_or("");
 }
 
-Result<SessionPair> load_pair(const SessionPaths& paths) {
-  auto surgeon = load_site(paths.surgeon, link::Role::Surgeon);
-  if (!surgeon) return tl::unexpected(surgeon.error());
-  auto patient = load_site(paths.patient, link::Role::Patient);
-  if (!patient) return tl::unexpected(patient.error());
-  return pair_of(std::move(*surgeon), std::move(*patient));
-}
-
 struct MergeFlags {
   SessionPaths sessions;
   std::string out;
 };
 
 ExitStatus run_merge(const MergeFlags& flags) {
-  const auto session = load_pair(flags.sessions);
+  const auto session = load_pair(flags.sessions.surgeon, flags.sessions.patient);
   if (!session) return exit_status_of(session.error());
   const auto surgeon = open_session(flags.sessions.surgeon);
   const auto patient = open_session(flags.sessions.patient);
@@ -232,22 +225,13 @@ struct MetricsFlags {
   Asked asked;
 };
 
-/// The tissue of the patient's file; nothing: it holds none.
-Result<std::optional<judge::TissueTable>> tissue_of(const SiteData& patient,
-                                                    const std::string& path) {
-  if (!patient.tissue_csv) return std::optional<judge::TissueTable>{};
-  auto table = judge::TissueTable::parse(*patient.tissue_csv);
-  if (!table) return fail(path, table.error());
-  return std::optional{std::move(*table)};
-}
-
 ExitStatus run_compare(const std::vector<std::string>& files) {
   if (files.size() % 2 != 0) {
     return bad_input("compare needs the files in pairs: surgeon, patient, surgeon, patient, ...");
   }
   std::vector<Compared> sessions;
   for (std::size_t i = 0; i + 1 < files.size(); i += 2) {
-    const auto session = load_pair({.surgeon = files[i], .patient = files[i + 1]});
+    const auto session = load_pair(files[i], files[i + 1]);
     if (!session) return exit_status_of(session.error());
     const auto tissue = tissue_of(session->patient, files[i + 1]);
     if (!tissue) return exit_status_of(tissue.error());
@@ -260,7 +244,7 @@ ExitStatus run_compare(const std::vector<std::string>& files) {
 }
 
 ExitStatus run_metrics(const MetricsFlags& flags) {
-  auto session = load_pair(flags.sessions);
+  auto session = load_pair(flags.sessions.surgeon, flags.sessions.patient);
   if (!session) return exit_status_of(session.error());
   const SiteData* const surgeon = &session->surgeon;
   const SiteData* const patient = &session->patient;
@@ -342,6 +326,8 @@ int run(int argc, char** argv) {
   ReplayFlags replay;
   declare(line.verb("replay", "do a site's ticks again; exit code 1 at the first difference"),
           replay);
+  PlotFlags plotted;
+  declare_plot(line.verb("plot", "hand and tip over time as a picture, for a paper"), plotted);
   std::vector<std::string> compared;
   auto& compare = line.verb("compare", "the metrics of several sessions side by side");
   compare.arguments("FILE", compared, "session files: surgeon, patient, surgeon, patient, ...");
@@ -361,6 +347,7 @@ int run(int argc, char** argv) {
     if (verb == "merge") return run_merge(merge);
     if (verb == "export") return run_export(exported);
     if (verb == "replay") return run_replay(replay);
+    if (verb == "plot") return run_plot(plotted);
     return verb == "recover" ? run_recover(in, out) : run_metrics(flags);
   });
 }

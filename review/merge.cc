@@ -1,13 +1,12 @@
 #include "review/merge.h"
 
-#include <cstring>
-#include <map>
 #include <optional>
 #include <string>
 
 #include "common/config/number.h"
 #include "common/record/mcap_reader.h"
 #include "common/record/mcap_writer.h"
+#include "review/copied_channels.h"
 
 namespace palp::review {
 namespace {
@@ -32,26 +31,11 @@ class MergeSource {
   }
   [[nodiscard]] bool done() const { return !message_; }
   [[nodiscard]] std::uint64_t at() const { return at_; }  ///< [ns], common line
-  void write() {
-    std::byte* place = writer_.add_message({.channel = channels_[message_->channel->id],
-                                            .sequence = message_->sequence,
-                                            .log_time = at_,
-                                            .publish_time = at_},
-                                           message_->payload.size());
-    if (place != nullptr && !message_->payload.empty()) {
-      std::memcpy(place, message_->payload.data(), message_->payload.size());
-    }
-  }
+  void write() { channels_.add(*message_, at_, at_); }
 
  private:
-  void take(const record::McapSchema& schema) {
-    schemas_[schema.id] = writer_.add_schema(schema.name, schema.encoding, schema.data);
-  }
-  void take(const record::McapChannel& channel) {
-    const std::uint16_t schema = channel.schema == 0 ? std::uint16_t{0} : schemas_[channel.schema];
-    channels_[channel.id] =
-        writer_.add_channel(schema, channel.topic, channel.message_encoding, channel.metadata);
-  }
+  void take(const record::McapSchema& schema) { channels_.add(schema); }
+  void take(const record::McapChannel& channel) { channels_.add(channel); }
   void take(const record::McapMessage& message) { message_ = message; }
   void take(const record::McapAttachment& attachment) {
     writer_.add_attachment(attachment.log_time,
@@ -67,8 +51,7 @@ class MergeSource {
   record::McapReader reader_;
   std::string site_;
   record::McapWriter& writer_;
-  std::map<std::uint16_t, std::uint16_t> schemas_;   ///< old id to new
-  std::map<std::uint16_t, std::uint16_t> channels_;  ///< old id to new
+  CopiedChannels channels_{writer_};
   std::optional<record::McapMessage> message_;
   std::uint64_t at_{};
 };

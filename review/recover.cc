@@ -1,37 +1,28 @@
 #include "review/recover.h"
 
-#include <cstring>
+#include <map>
 
 #include "common/core/printable.h"
 #include "common/record/mcap_writer.h"
 #include "common/record/wall_clock.h"
+#include "review/copied_channels.h"
 #include "review/lack.h"
 
 namespace palp::review {
 namespace {
 
-/// Copies items one by one; ids may change on the way.
+/// Copies items one by one, and counts what is missing between them.
 class Copy {
  public:
   explicit Copy(record::ByteSink& out) : writer_{out, {.library = "palp-review recover"}} {}
 
-  void operator()(const record::McapSchema& schema) {
-    schemas_[schema.id] = writer_.add_schema(schema.name, schema.encoding, schema.data);
-  }
-  void operator()(const record::McapChannel& channel) {
-    const std::uint16_t schema = channel.schema == 0 ? std::uint16_t{0} : schemas_[channel.schema];
-    channels_[channel.id] =
-        writer_.add_channel(schema, channel.topic, channel.message_encoding, channel.metadata);
-  }
+  Copy(const Copy&) = delete;
+  Copy& operator=(const Copy&) = delete;
+
+  void operator()(const record::McapSchema& schema) { channels_.add(schema); }
+  void operator()(const record::McapChannel& channel) { channels_.add(channel); }
   void operator()(const record::McapMessage& message) {
-    std::byte* place = writer_.add_message({.channel = channels_[message.channel->id],
-                                            .sequence = message.sequence,
-                                            .log_time = message.log_time,
-                                            .publish_time = message.publish_time},
-                                           message.payload.size());
-    if (place != nullptr && !message.payload.empty()) {
-      std::memcpy(place, message.payload.data(), message.payload.size());
-    }
+    channels_.add(message, message.log_time, message.publish_time);
     count_gap(message);
   }
   void operator()(const record::McapAttachment& attachment) {
@@ -64,8 +55,7 @@ class Copy {
   }
 
   record::McapWriter writer_;
-  std::map<std::uint16_t, std::uint16_t> schemas_;   ///< old id to new
-  std::map<std::uint16_t, std::uint16_t> channels_;  ///< old id to new
+  CopiedChannels channels_{writer_};
   std::map<std::uint16_t, Last> last_;
   std::map<std::string, TopicLoss> losses_;
 };

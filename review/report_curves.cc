@@ -85,6 +85,24 @@ void ReportCurves::end_stroke() {
   stroke_ = Thinned<judge::RunTick>{kLoopPoints};
 }
 
+std::vector<ReportCurves::Point> ReportCurves::points() const {
+  std::vector<Point> points;
+  for (const Bucket& bucket : buckets_) {
+    const bool falls = bucket.high.tick.at < bucket.low.tick.at;
+    points.push_back(falls ? bucket.high : bucket.low);
+    if (bucket.high.tick.at != bucket.low.tick.at) {
+      points.push_back(falls ? bucket.low : bucket.high);
+    }
+  }
+  return points;
+}
+
+std::vector<judge::RunTick> ReportCurves::ticks() const {
+  std::vector<judge::RunTick> ticks;
+  for (const Point& point : points()) ticks.push_back(point.tick);
+  return ticks;
+}
+
 void ReportCurves::add_to(Json& series) const {
   for (const char* name :
        {"t", "felt", "touched", "truth", "hand", "tip", "x", "y", "energy", "energy_tissue"}) {
@@ -103,11 +121,7 @@ void ReportCurves::add_to(Json& series) const {
     series["energy"].push_back(shown(tick.energy_operator, 1e-3));
     series["energy_tissue"].push_back(shown(point.energy_tissue, 1e-3));
   };
-  for (const Bucket& bucket : buckets_) {
-    const bool falls = bucket.high.tick.at < bucket.low.tick.at;
-    draw(falls ? bucket.high : bucket.low);
-    if (bucket.high.tick.at != bucket.low.tick.at) draw(falls ? bucket.low : bucket.high);
-  }
+  for (const Point& point : points()) draw(point);
   series["idle"] = Json::array();
   for (const auto& [from, to] : idle_) series["idle"].push_back({from, to});
   series["loops"] = Json::array();

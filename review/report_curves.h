@@ -22,6 +22,8 @@ class ReportCurves final : public TickWatcher {
 
   /// Of all ticks so far: curves over time, when the hand was not engaged, and the strokes.
   void add_to(config::Json& series) const;
+  /// The ticks that those curves are drawn through, in order of time.
+  [[nodiscard]] std::vector<judge::RunTick> ticks() const;
 
  private:
   /// A tick and the tissue's energy at it.
@@ -44,6 +46,7 @@ class ReportCurves final : public TickWatcher {
   void see_stroke(const judge::RunTick& tick);
   void see_idle(const judge::RunTick& tick);
   void end_stroke();
+  [[nodiscard]] std::vector<Point> points() const;
   [[nodiscard]] bool went_in() const { return inside_ && stroke_max_ > judge::kStrokeDepthMin; }
 
   double tissue_{};  ///< [J]

@@ -197,6 +197,14 @@ judge::MetricsConfig config_of(const SiteData& surgeon) {
 
 }  // namespace
 
+Result<std::optional<judge::TissueTable>> tissue_of(const SiteData& patient,
+                                                    const std::string& path) {
+  if (!patient.tissue_csv) return std::optional<judge::TissueTable>{};
+  auto table = judge::TissueTable::parse(*patient.tissue_csv);
+  if (!table) return fail(path, table.error());
+  return std::optional{std::move(*table)};
+}
+
 JudgedSession judge_session(const SessionPair& session,
                             const judge::TissueTable* tissue,
                             TickWatcher* watcher) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "common/config/json.h"
@@ -19,6 +21,10 @@ struct JudgedSession {
   TimePoint run_began{};                     ///< of such a session, the surgeon's time
   std::vector<judge::Excursion> excursions;  ///< of the hand
 };
+
+/// The tissue of the patient's file; nothing: it holds none. `path`: of that file, for a sentence.
+[[nodiscard]] Result<std::optional<judge::TissueTable>> tissue_of(const SiteData& patient,
+                                                                  const std::string& path);
 
 /// Sees each tick of a session, as it is judged, in order of time.
 class TickWatcher {

@@ -123,4 +123,12 @@ Result<SessionPair> pair_of(SiteData surgeon, SiteData patient) {
   return pair;
 }
 
+Result<SessionPair> load_pair(const std::string& surgeon, const std::string& patient) {
+  auto of_surgeon = load_site(surgeon, link::Role::Surgeon);
+  if (!of_surgeon) return tl::unexpected(of_surgeon.error());
+  auto of_patient = load_site(patient, link::Role::Patient);
+  if (!of_patient) return tl::unexpected(of_patient.error());
+  return pair_of(std::move(*of_surgeon), std::move(*of_patient));
+}
+
 }  // namespace palp::review

@@ -34,5 +34,7 @@ struct SessionPair {
 
 /// Fails where both files name sessions and none is the same: with the ids of both.
 [[nodiscard]] Result<SessionPair> pair_of(SiteData surgeon, SiteData patient);
+/// The same of two files, by their names.
+[[nodiscard]] Result<SessionPair> load_pair(const std::string& surgeon, const std::string& patient);
 
 }  // namespace palp::review

@@ -16,9 +16,9 @@ using std::chrono::seconds;
 constexpr std::uint64_t kScriptDraws = 0x6472'6177'6e73'6372ULL;  // "drawnscr"
 constexpr int kGestures = 6;
 
-class Draws {
+class GestureDraws {
  public:
-  explicit Draws(std::uint64_t seed) : stream_{seed, kScriptDraws} {}
+  explicit GestureDraws(std::uint64_t seed) : stream_{seed, kScriptDraws} {}
   double between(double low, double high) { return low + (high - low) * stream_.uniform(next_++); }
   Duration span(double low, double high) { return from_seconds(between(low, high)); }
   std::uint32_t count(std::uint32_t low, std::uint32_t high) {
@@ -31,56 +31,56 @@ class Draws {
   std::uint64_t next_{};
 };
 
-double depth_of(Draws& draws) { return draws.between(1, 5) * kMillimetre; }
+double drawn_depth(GestureDraws& draws) { return draws.between(1, 5) * kMillimetre; }
 
-void lift(ScriptBuilder& script, Draws& draws) {
+void add_lift(ScriptBuilder& script, GestureDraws& draws) {
   script.lift(draws.span(0.3, 1), milliseconds{1500});
 }
 
-void tap(ScriptBuilder& script, Draws& draws) {
+void add_tap(ScriptBuilder& script, GestureDraws& draws) {
   const Duration pause = draws.heads() ? draws.span(0.05, 0.5) : Duration{0};
-  const double depth = depth_of(draws);
+  const double depth = drawn_depth(draws);
   const double rate = draws.between(1, 5);  // [Hz]
   script.move(kNearPlace, milliseconds{400});
   script.taps(draws.count(2, 6), depth, from_seconds(1 / rate), pause);
-  lift(script, draws);
+  add_lift(script, draws);
 }
 
-void press(ScriptBuilder& script, Draws& draws) {
+void add_press(ScriptBuilder& script, GestureDraws& draws) {
   const Duration hold = draws.count(1, 6) == 1 ? seconds{20} : draws.span(2, 6);
-  script.press(depth_of(draws), draws.span(0.3, 1.5), hold);
-  lift(script, draws);
+  script.press(drawn_depth(draws), draws.span(0.3, 1.5), hold);
+  add_lift(script, draws);
 }
 
-void creep(ScriptBuilder& script, Draws& draws) {
+void add_creep(ScriptBuilder& script, GestureDraws& draws) {
   script.move(-kMillimetre, milliseconds{500});
-  script.press(depth_of(draws), draws.span(3, 8), draws.span(2, 4));
-  lift(script, draws);
+  script.press(drawn_depth(draws), draws.span(3, 8), draws.span(2, 4));
+  add_lift(script, draws);
 }
 
-void tap_from_within(ScriptBuilder& script, Draws& draws) {
+void add_tap_from_within(ScriptBuilder& script, GestureDraws& draws) {
   const double depth = draws.between(1, 2.5) * kMillimetre;
   script.press(depth, draws.span(0.4, 1), draws.span(1.5, 3));
   script.taps(draws.count(2, 6),
               depth + draws.between(0.5, 2.5) * kMillimetre,
               from_seconds(1 / draws.between(0.5, 3)),
               Duration{0});
-  lift(script, draws);
+  add_lift(script, draws);
 }
 
-void drag(ScriptBuilder& script, Draws& draws) {
+void add_drag(ScriptBuilder& script, GestureDraws& draws) {
   const Place to = script.place() == kSiteA ? kSiteB : kSiteA;
   const double speed = draws.between(5, 30) * kMillimetre;  // [m/s]
   script.press(draws.between(1, 3) * kMillimetre, draws.span(0.4, 1), draws.span(1.5, 4));
   script.drag(to, from_seconds(distance(script.place(), to) / speed));
-  lift(script, draws);
+  add_lift(script, draws);
 }
 
 }  // namespace
 
 GestureScript drawn_script(std::uint64_t seed, const ScriptSetting& setting) {
-  constexpr std::array kAll{tap, press, creep, tap_from_within, drag};
-  Draws draws{seed};
+  constexpr std::array kAll{add_tap, add_press, add_creep, add_tap_from_within, add_drag};
+  GestureDraws draws{seed};
   ScriptBuilder script{setting.hand_stiffness};
   script.hold(seconds{1}).air(5 * kMillimetre, 1.0, seconds{3}).hold(milliseconds{500});
   for (int i = 0; i < kGestures; ++i) {

@@ -71,7 +71,5 @@ struct DepthCase {
                                        const std::string& cases_csv);
 [[nodiscard]] std::string depth_table(const DepthStudy& study, const std::vector<DepthCase>& cases);
 [[nodiscard]] std::string depth_csv(const std::vector<DepthCase>& cases);
-/// Estimate over truth with intervals.
-[[nodiscard]] std::string depth_svg(const DepthStudy& study, const std::vector<DepthCase>& cases);
 
 }  // namespace palp::lab

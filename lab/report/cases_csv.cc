@@ -205,18 +205,10 @@ Result<std::vector<CaseResult>> read_cases_csv(const std::string& text,
 }
 
 Result<void> check_complete(const Plan& plan, const std::vector<CaseResult>& results) {
-  const auto of = [&](std::uint64_t index) {
-    return "case " + std::to_string(index) + " of " + std::to_string(plan.count);
-  };
-  if (results.empty()) return fail("there is no case in these files");
-  std::uint64_t next = 0;
-  for (const CaseResult& result : results) {
-    if (result.index < next) return fail(of(result.index) + " is given twice");
-    if (result.index > next) break;
-    ++next;
-  }
-  if (next == plan.count && results.size() == plan.count) return {};
-  return fail(of(next) + " is missing: merge the cases of all shards of one plan");
+  std::vector<std::uint64_t> indices;
+  indices.reserve(results.size());
+  for (const CaseResult& result : results) indices.push_back(result.index);
+  return check_all_there(indices, plan.count);
 }
 
 }  // namespace palp::lab

@@ -1,7 +1,5 @@
 #include "lab/report/checked_rows.h"
 
-#include <cstdint>
-
 #include "lab/run/digest.h"
 
 namespace palp::lab {
@@ -34,6 +32,22 @@ std::string sound_rows(std::string_view text) {
     text.remove_prefix(end + 1);
   }
   return sound;
+}
+
+Result<void> check_all_there(const std::vector<std::uint64_t>& indices, std::uint64_t count) {
+  if (indices.empty()) return fail("there is no case in these files");
+  const auto of = [&](std::uint64_t index) {
+    return "case " + std::to_string(index) + " of " + std::to_string(count);
+  };
+  std::uint64_t next = 0;
+  for (const std::uint64_t index : indices) {
+    if (index < next) return fail(of(index) + " is given twice");
+    if (index >= count) return fail(of(index) + " is none of them");
+    if (index > next) break;
+    ++next;
+  }
+  if (next == count) return {};
+  return fail(of(next) + " is missing: merge the cases of all shards of one plan");
 }
 
 }  // namespace palp::lab

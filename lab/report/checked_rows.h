@@ -1,9 +1,14 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
-/// Rows that say whether they are whole: the last cell of each is a check over all before it.
+#include "common/core/result.h"
+
+/// Rows that say whether they are whole: the last cell of each is a check over all before it; and
+/// whether all are there.
 namespace palp::lab {
 
 /// Name of that column.
@@ -16,5 +21,10 @@ inline constexpr std::string_view kCheckName = "check";
 
 /// The header of `text`, and of its other lines those that are whole and hold their check.
 [[nodiscard]] std::string sound_rows(std::string_view text);
+
+/// `indices`, sorted, of the rows of all shards: nothing where they are 0 to `count` - 1, each
+/// once.
+[[nodiscard]] Result<void> check_all_there(const std::vector<std::uint64_t>& indices,
+                                           std::uint64_t count);
 
 }  // namespace palp::lab

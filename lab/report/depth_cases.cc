@@ -213,17 +213,10 @@ Result<void> check_complete(DepthRows& rows) {
   std::stable_sort(rows.cases.begin(), rows.cases.end(), [](const auto& a, const auto& b) {
     return a.index < b.index;
   });
-  const auto of = [&](std::size_t index) {
-    return "case " + std::to_string(index) + " of " + std::to_string(case_count(rows.study));
-  };
-  for (std::size_t i = 0; i < rows.cases.size(); ++i) {
-    if (rows.cases[i].index < i) return fail(of(rows.cases[i].index) + " is given twice");
-    if (rows.cases[i].index > i) return fail(of(i) + " is missing");
-  }
-  const std::size_t count = rows.cases.size();
-  if (rows.known && count == case_count(rows.study)) return {};
-  return fail(count < case_count(rows.study) ? of(count) + " is missing"
-                                             : of(rows.cases.back().index) + " is none of them");
+  std::vector<std::uint64_t> indices;
+  indices.reserve(rows.cases.size());
+  for (const DepthCase& one : rows.cases) indices.push_back(one.index);
+  return check_all_there(indices, case_count(rows.study));
 }
 
 std::uint64_t digest_of(const std::vector<DepthCase>& cases) {

@@ -2,19 +2,13 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "common/config/json.h"
 #include "common/config/number.h"
-#include "common/plot/svg_text.h"
 
 namespace palp::lab {
 namespace {
-
-constexpr double kLeft = 54;     // [px]
-constexpr double kTop = 60;      // [px]
-constexpr double kAcross = 34;   // [px], a cell and its gap; "1000" fits below
-constexpr double kDown = 22;     // [px]
-constexpr double kBetween = 54;  // [px], between panels
 
 constexpr std::size_t kRowName = 20;  ///< [characters]
 
@@ -60,9 +54,17 @@ Json numbers(const std::vector<std::string>& texts) {
   return list;
 }
 
-const char* colour_of(std::optional<bool> stable) {
-  if (!stable) return "#dddddd";
-  return *stable ? "#009e73" : "#d55e00";
+/// The cells of a grip that are as `state` says.
+plot::Curve cells_where(const Map& map, std::size_t grip, std::optional<bool> state) {
+  plot::Curve cells{.mark = plot::Mark::Cells};
+  for (std::size_t s = 0; s < map.springs.size(); ++s) {
+    for (std::size_t t = 0; t < map.trips.size(); ++t) {
+      if (map.at(grip, s, t) != state) continue;
+      cells.x.push_back(static_cast<double>(t));
+      cells.y.push_back(static_cast<double>(s));
+    }
+  }
+  return cells;
 }
 
 }  // namespace
@@ -114,46 +116,31 @@ std::string map_text(const std::vector<CaseResult>& results) {
   return text;
 }
 
-std::string map_svg(const std::vector<CaseResult>& results) {
+plot::Figure map_figure(const std::vector<CaseResult>& results) {
   const Map map = map_of(results);
-  const auto rows = static_cast<double>(map.springs.size());
-  const double panel_height = kDown * rows + kBetween;
-  const double width = kLeft + 20 + kAcross * static_cast<double>(map.trips.size());
-  std::string text =
-      plot::open_picture(width, kTop + panel_height * static_cast<double>(map.grips.size()));
   const bool open = std::count(map.stable.begin(), map.stable.end(), std::nullopt) > 0;
-  plot::title(
-      text,
-      kLeft,
-      22,
-      std::string{"eq. (1): stable (green), unstable (orange)"} + (open ? ", not run (grey)" : ""));
+  plot::Figure figure{.title = "Stability of eq. (1)"};
   for (std::size_t g = 0; g < map.grips.size(); ++g) {
-    const double top = kTop + panel_height * static_cast<double>(g);
-    plot::label(text,
-                kLeft,
-                top - 8,
-                "start",
-                "grip " + map.grips[g] + ": k_p [N/m] over the round trip [ms]");
-    for (std::size_t s = 0; s < map.springs.size(); ++s) {
-      const double down = kDown * static_cast<double>(s);
-      plot::label(text, kLeft - 8, top + 15 + down, "end", map.springs[s]);
-      for (std::size_t t = 0; t < map.trips.size(); ++t) {
-        plot::append(text,
-                     "<rect x=\"%.0f\" y=\"%.0f\" width=\"32\" height=\"20\" fill=\"%s\"/>\n",
-                     kLeft + kAcross * static_cast<double>(t),
-                     top + down,
-                     colour_of(map.at(g, s, t)));
-      }
+    const bool first = g == 0;  // its legend is that of all
+    const bool last = g + 1 == map.grips.size();
+    std::vector<plot::Curve> kinds{
+        cells_where(map, g, true), cells_where(map, g, false), cells_where(map, g, std::nullopt)};
+    kinds[0].colour = plot::kBlue;
+    kinds[1].colour = plot::kOrange;
+    kinds[2].colour = plot::kGrey;
+    if (first) {
+      kinds[0].name = "stable";
+      kinds[1].name = "unstable";
+      kinds[2].name = open ? "not run" : "";
     }
-    for (std::size_t t = 0; t < map.trips.size(); ++t) {
-      plot::label(text,
-                  kLeft + 16 + kAcross * static_cast<double>(t),
-                  top + kDown * rows + 14,
-                  "middle",
-                  map.trips[t]);
-    }
+    figure.panels.push_back({.axes = {.title = "grip " + map.grips[g],
+                                      .x_name = last ? "round trip [ms]" : "",
+                                      .y_name = "k_p [N/m]",
+                                      .x_classes = map.trips,
+                                      .y_classes = map.springs},
+                             .curves = std::move(kinds)});
   }
-  return text + "</svg>\n";
+  return figure;
 }
 
 }  // namespace palp::lab

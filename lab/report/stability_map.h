@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "common/plot/figure.h"
 #include "lab/plan/batch.h"
 #include "lab/plan/plan.h"
 #include "lab/report/batch_report.h"
@@ -16,7 +17,7 @@ namespace palp::lab {
                                      const std::vector<CaseResult>& results,
                                      const BatchAccount& account);
 /// A picture: one square a run, rows of springs, columns of round trips, one panel per grip.
-[[nodiscard]] std::string map_svg(const std::vector<CaseResult>& results);
+[[nodiscard]] plot::Figure map_figure(const std::vector<CaseResult>& results);
 /// A line per grip and spring: S stable, . unstable, ? not run.
 [[nodiscard]] std::string map_text(const std::vector<CaseResult>& results);
 

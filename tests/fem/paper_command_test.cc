@@ -42,7 +42,7 @@ TEST(PaperCommandTest, TellsTheTableBesideThePapersNumbers) {
 }
 
 TEST(PaperCommandTest, ThePictureShowsBothFigures) {
-  const std::string svg = paper_svg(study());
+  const std::string svg = plot::figure_svg(paper_figure(study()), plot::kStyles.front());
   for (const char* name : {"Fig. 5", "Fig. 8", ">5 mm deep<", ">no inclusion<"}) {
     EXPECT_NE(svg.find(name), std::string::npos) << name;
   }

@@ -71,6 +71,8 @@ const std::vector<Arrow>& arrows() {
       {"common/io/net/*",
        {"common/io/process", "common/io/realtime", "common/message", "common/link"}},
       {"common/io/secure/*", {"common/io/*", "common/message", "common/link"}},
+      {"common/plot/pdf.*", {"common/io/process"}},
+      {"common/plot/picture.*", {"common/config"}},
       {"common/plot/*", {}},
       // The emulator as a program; its library sees nothing but the seam.
       {"netem/model/*", {"common/link/transport.h"}},
@@ -194,12 +196,19 @@ const std::vector<Arrow>& arrows() {
         "common/settings"}},
       {"lab/report/*",
        {"lab/run", "lab/plan", "depth", "judge", "common/message", "common/config", "common/plot"}},
-      {"lab/main.cc", {"lab/*", "common/config", "common/io/process", "site_program/build_info.h"}},
+      {"lab/main.cc",
+       {"lab/*",
+        "review/session_figure.h",
+        "common/config",
+        "common/plot",
+        "common/io/process",
+        "site_program/build_info.h"}},
       {"lab/*",
        {"lab/*",
         "judge/metric_table.h",
         "common/coupling",
         "common/config",
+        "common/plot",
         "common/io/process/process_time.h",
         "common/io/process/parallel.h"}},
       // What a site did is done again by the site's own control, and judged as the lab judges.
@@ -209,6 +218,7 @@ const std::vector<Arrow>& arrows() {
         "common/record",
         "common/coupling",
         "common/config",
+        "common/plot",
         "surgeon_site",
         "patient_site",
         "depth",
@@ -273,11 +283,11 @@ const std::vector<Fence>& fences() {
 }
 
 /// Of the system and the C library; the standard library's headers have no '.' and no '/'.
-constexpr std::array<std::string_view, 23> kSystemHeaders{
-    "sys/",       "netinet/", "arpa/",    "net/",        "linux/",     "unistd.h",
-    "fcntl.h",    "poll.h",   "malloc.h", "pthread.h",   "sched.h",    "signal.h",
-    "time.h",     "errno.h",  "dlfcn.h",  "fnmatch.h",   "termios.h",  "semaphore.h",
-    "execinfo.h", "cxxabi.h", "netdb.h",  "immintrin.h", "xmmintrin.h"};
+constexpr std::array<std::string_view, 24> kSystemHeaders{
+    "sys/",       "netinet/", "arpa/",    "net/",        "linux/",      "unistd.h",
+    "fcntl.h",    "poll.h",   "malloc.h", "pthread.h",   "sched.h",     "signal.h",
+    "time.h",     "errno.h",  "dlfcn.h",  "fnmatch.h",   "termios.h",   "semaphore.h",
+    "execinfo.h", "cxxabi.h", "netdb.h",  "immintrin.h", "xmmintrin.h", "spawn.h"};
 
 bool matches_any(std::string_view path, const std::vector<std::string_view>& patterns) {
   return std::ranges::any_of(patterns, [&](auto pattern) { return matches(path, pattern); });

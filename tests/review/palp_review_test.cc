@@ -76,6 +76,17 @@ TEST_F(PalpReviewTest, MetricsPrintsTheTapsAndWritesTheReport) {
   EXPECT_EQ(json["link"]["asked"]["rtt_ms"], 20);
 }
 
+TEST_F(PalpReviewTest, PlotDrawsForAPaperAndRefusesWhatItDoesNotKnow) {
+  const std::string files = "plot --surgeon s.mcap --patient p.mcap ";
+  EXPECT_EQ(run(files + "--svg s.svg --pdf s.pdf --style double --to 5"), 0) << text("output");
+  EXPECT_NE(text("s.svg").find(">felt by the hand<"), std::string::npos);
+  EXPECT_EQ(text("s.pdf").substr(0, 5), "%PDF-");
+  EXPECT_EQ(run(files), 2) << "no picture is asked for";
+  EXPECT_EQ(run(files + "--svg s.svg --style triple"), 2);
+  EXPECT_EQ(run(files + "--svg no/such/folder/s.svg"), 3);
+  EXPECT_EQ(run("plot --surgeon none.mcap --patient p.mcap --svg s.svg"), 3);
+}
+
 TEST_F(PalpReviewTest, MetricsWorksOnCutOffFilesAndWithoutOptionalReports) {
   cut_off("p.mcap");
   EXPECT_EQ(run("metrics --surgeon s.mcap --patient p.mcap --relay none.json --report r.json"), 0);

@@ -5,7 +5,7 @@
 namespace palp::io {
 namespace {
 
-Duration read(clockid_t clock) noexcept {
+Duration time_on(clockid_t clock) noexcept {
   timespec time{};
   ::clock_gettime(clock, &time);
   return std::chrono::seconds{time.tv_sec} + std::chrono::nanoseconds{time.tv_nsec};
@@ -14,7 +14,7 @@ Duration read(clockid_t clock) noexcept {
 }  // namespace
 
 ProcessTime process_time() noexcept {
-  return {.cpu = read(CLOCK_PROCESS_CPUTIME_ID), .wall = read(CLOCK_MONOTONIC)};
+  return {.cpu = time_on(CLOCK_PROCESS_CPUTIME_ID), .wall = time_on(CLOCK_MONOTONIC)};
 }
 
 }  // namespace palp::io

@@ -112,7 +112,7 @@ std::optional<StopCause> Terminal::wait_for_stop(Duration span) {
   }
   std::array<char, 64> typed{};
   if (!cause_ && watched[1].revents != 0) {
-    const ssize_t count = read(STDIN_FILENO, typed.data(), typed.size());
+    const ssize_t count = ::read(STDIN_FILENO, typed.data(), typed.size());
     if (count > 0) {
       const auto resets = std::count(typed.begin(), typed.begin() + count, 'r');
       const auto marks = std::count(typed.begin(), typed.begin() + count, 'm');

@@ -169,13 +169,17 @@ TEST(VerbsTest, WhatCannotBeWrittenIsRefusedBeforeTheFirstCaseIsRun) {
                               return std::pair{0.0, 0.0};
                             },
                         .watched = false};
-  for (auto path : {&BatchArguments::report, &BatchArguments::cases, &BatchArguments::svg}) {
-    BatchArguments arguments;
-    arguments.*path = "/no/such/folder/file";
+  const std::string closed = "/no/such/folder/file";
+  std::vector<BatchArguments> asked(4);
+  asked[0].report = closed;
+  asked[1].cases = closed;
+  asked[2].picture.svg = closed;
+  asked[3].picture.pdf = closed;
+  for (const BatchArguments& arguments : asked) {
     const auto exit_status = run_batch_verb("montecarlo", arguments, machine);
     ASSERT_TRUE(exit_status);
     EXPECT_EQ(exit_status->code, config::ExitCode::CannotOpen);
-    EXPECT_NE(exit_status->text.find("/no/such/folder/file"), std::string::npos);
+    EXPECT_NE(exit_status->text.find(closed), std::string::npos);
   }
   BatchArguments sweep;
   sweep.list = {"rtt_ms=20", "surgeon.hand.grip=mid,hairy"};

@@ -25,5 +25,21 @@ TEST(CheckedRowsTest, OnlySoundRowsBelowTheHeaderAreKept) {
   EXPECT_EQ(sound_rows("head,che"), "");
 }
 
+TEST(CheckedRowsTest, WhatIsMissingTwiceOrTooManyIsNamed) {
+  EXPECT_TRUE(check_all_there({0, 1, 2}, 3));
+  const auto fault = [](const std::vector<std::uint64_t>& indices) {
+    const auto whole = check_all_there(indices, 3);
+    return whole ? std::string{} : whole.error().text;
+  };
+  const std::string missing = " of 3 is missing: merge the cases of all shards of one plan";
+  EXPECT_EQ(fault({}), "there is no case in these files");
+  EXPECT_EQ(fault({1, 2}), "case 0" + missing);
+  EXPECT_EQ(fault({0, 2}), "case 1" + missing);
+  EXPECT_EQ(fault({0, 1}), "case 2" + missing);
+  EXPECT_EQ(fault({0, 1, 1, 2}), "case 1 of 3 is given twice");
+  EXPECT_EQ(fault({0, 1, 2, 2}), "case 2 of 3 is given twice");
+  EXPECT_EQ(fault({0, 1, 2, 3}), "case 3 of 3 is none of them");
+}
+
 }  // namespace
 }  // namespace palp::lab
