@@ -11,7 +11,6 @@ namespace palp::surgeon {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 constexpr std::uint64_t kScriptDraws = 0x6472'6177'6e73'6372ULL;  // "drawnscr"
 constexpr int kGestures = 6;
@@ -47,7 +46,7 @@ void add_tap(ScriptBuilder& script, GestureDraws& draws) {
 }
 
 void add_press(ScriptBuilder& script, GestureDraws& draws) {
-  const Duration hold = draws.count(1, 6) == 1 ? seconds{20} : draws.span(2, 6);
+  const Duration hold = draws.count(1, 6) == 1 ? std::chrono::seconds{20} : draws.span(2, 6);
   script.press(drawn_depth(draws), draws.span(0.3, 1.5), hold);
   add_lift(script, draws);
 }
@@ -82,7 +81,9 @@ GestureScript drawn_script(std::uint64_t seed, const ScriptSetting& setting) {
   constexpr std::array kAll{add_tap, add_press, add_creep, add_tap_from_within, add_drag};
   GestureDraws draws{seed};
   ScriptBuilder script{setting.hand_stiffness};
-  script.hold(seconds{1}).air(5 * kMillimetre, 1.0, seconds{3}).hold(milliseconds{500});
+  script.hold(std::chrono::seconds{1})
+      .air(5 * kMillimetre, 1.0, std::chrono::seconds{3})
+      .hold(milliseconds{500});
   for (int i = 0; i < kGestures; ++i) {
     script.travel(draws.heads() ? kSiteA : kSiteB);
     kAll[draws.count(0, kAll.size() - 1)](script, draws);
