@@ -2,13 +2,11 @@
 
 #include <optional>
 #include <stdexcept>
-#include <vector>
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -175,38 +173,6 @@ TEST(ServerTest, AHandIsLetGoOfWhereAnswersDoNotComeThoughMessagesDo) {
     said = frame->body;
   }
   EXPECT_THAT(said, HasSubstr("the hand was let go of: this page answers too late to hold it"));
-}
-
-double processor_seconds() {
-  rusage used{};
-  (void)::getrusage(RUSAGE_SELF, &used);
-  return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
-         1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
-}
-
-TEST(ServerTest, WhereDescriptorsHaveRunOutItWaitsAndThenServesAgain) {
-  const ServerRig rig;
-  const io::SteadyClock clock;
-  rlimit before{};
-  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
-  rlimit few = before;
-  few.rlim_cur = 64;
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
-  std::vector<int> all;
-  for (int one = 0; (one = ::open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0;) all.push_back(one);
-  ASSERT_FALSE(all.empty());
-  ::close(all.back());
-  all.pop_back();
-  // Has the last one, which each accept() takes for a moment; the server has none for it.
-  std::optional<RawClient> client{rig.port()};
-  while (!client->say("GET / HTTP/1.1\r\n")) client.emplace(rig.port());
-  const double used = processor_seconds();
-  clock.pass(std::chrono::milliseconds{500});
-  EXPECT_LT(processor_seconds() - used, 0.05) << "[s], of half a second";
-  for (const int one : all) ::close(one);
-  (void)::setrlimit(RLIMIT_NOFILE, &before);
-  (void)client->say("Host: localhost\r\n\r\n");
-  EXPECT_THAT(client->rest(), StartsWith("HTTP/1.1 200"));
 }
 
 }  // namespace
