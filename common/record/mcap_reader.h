@@ -43,14 +43,6 @@ struct McapMessage {
   std::span<const std::byte> payload;
 };
 
-struct McapAttachment {
-  std::uint64_t log_time{};     ///< [ns]
-  std::uint64_t create_time{};  ///< [ns]
-  std::string_view name;
-  std::string_view media_type;
-  std::span<const std::byte> data;
-};
-
 struct McapMetadata {
   std::string_view name;
   McapMap entries;

@@ -43,11 +43,13 @@ SessionWriter::SessionWriter(ByteSink& sink, const SessionInfo& info, const Mcap
   describe_clock(info, metadata);
   metadata.insert(metadata.end(), info.metadata.begin(), info.metadata.end());
   mcap_.add_metadata("palp", metadata);
+  const std::uint64_t opened_at = clock_.stamp(info.opened_at);
   for (const SessionAttachment& attachment : info.attachments) {
-    mcap_.add_attachment(clock_.stamp(info.opened_at),
-                         attachment.name,
-                         attachment.media_type,
-                         std::as_bytes(std::span{attachment.content}));
+    mcap_.add_attachment({.log_time = opened_at,
+                          .create_time = opened_at,
+                          .name = attachment.name,
+                          .media_type = attachment.media_type,
+                          .data = std::as_bytes(std::span{attachment.content})});
   }
   for (const TopicFormat& format : topics_of(info.site)) {
     const auto schema = mcap_.add_schema(format.schema, "protobuf", format.descriptors);
