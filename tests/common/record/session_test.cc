@@ -271,6 +271,28 @@ TEST(SessionTest, EveryTopicOfBothSitesHasItsOwnSchemaInTheFile) {
   }
 }
 
+TEST(SessionTest, AFileThatSaysNoEndOfThingsTakesNoEndOfMemory) {
+  MemorySink sink;
+  {
+    McapWriter writer{sink, {}};
+    writer.add_metadata("palp", {{"site", "surgeon"}});
+    const std::string text(1U << 20U, 'x');
+    for (int k = 0; k < 10; ++k) writer.add_metadata(std::to_string(k), {{"key", text}});
+    for (int k = 0; k < 10'000; ++k) {
+      const std::string name = std::to_string(k);
+      writer.add_attachment({.name = name, .media_type = "text/plain", .data = {}});
+    }
+  }
+  SessionReader reader{sink.bytes()};
+  while (reader.next()) {
+  }
+  EXPECT_EQ(reader.metadata("palp", "site"), "surgeon");
+  EXPECT_EQ(reader.metadata("0").size(), 1U);
+  EXPECT_TRUE(reader.metadata("9").empty());
+  EXPECT_TRUE(reader.attachment("0"));
+  EXPECT_FALSE(reader.attachment("9999"));
+}
+
 TEST(SessionTest, WriteAfterCloseIsRefused) {
   NullSink sink;
   SessionWriter writer{sink, {.site = Role::Surgeon}};
