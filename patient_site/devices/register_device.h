@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "common/core/jump_allowance.h"
 #include "common/core/time.h"
 #include "common/io/device/register_port.h"
 #include "patient_site/devices/device_profile.h"
@@ -82,17 +83,15 @@ class RegisterDevice {
   DeviceAsks asks_;  ///< as heard last
   ByPerson by_person_;
   bool position_known_{};  ///< since the start
-  AxisMotion motion_;      ///< commanded
-  AxisMotion delivered_;   ///< the last of them that arrived
+  double stood_at_{};      ///< [m], when it was ready last
+  JumpAllowance jumps_;
+  AxisMotion motion_;     ///< commanded
+  AxisMotion delivered_;  ///< the last of them that arrived
   TimePoint steered_at_{};
   std::array<std::uint16_t, 2> sent_{};  ///< last target, in words
   bool anything_sent_{};
   std::uint16_t life_{};
   TimePoint lived_at_{};
 };
-
-/// Why such a device cannot be: a field outside what is read, a range that is none. nullopt: sound.
-[[nodiscard]] std::optional<std::string> flaw_of(const DeviceProfile& profile,
-                                                 const DeviceInstallation& installation);
 
 }  // namespace palp::patient

@@ -10,7 +10,7 @@
 #include "patient_site/devices/device_reading.h"
 #include "patient_site/devices/profile_texts.h"
 #include "patient_site/settings_devices.h"
-#include "tests/patient_site/devices/fake_registers.h"
+#include "tests/common/io/device/fake_registers.h"
 
 namespace palp::patient {
 namespace {
@@ -144,7 +144,7 @@ TEST(RegisterDeviceTest, ComesBackWithoutAJump) {
   ASSERT_EQ(axis.cycles(100).state, DeviceState::Absent);
   EXPECT_EQ(axis.why(), "cannot be opened");
   EXPECT_LT(axis.port.opened, 8) << "tried now and then";
-  axis.port.words[0x9001] = 6000;
+  axis.port.words[0x9001] = 4500;
   axis.port.fault = PortFault::None;
   axis.port.openable = true;
   axis.fastest = 0;
@@ -205,6 +205,97 @@ TEST(RegisterDeviceTest, WhatComesBackByItselfDoesNotHomeByItself) {
   axis.port.fault = PortFault::None;
   axis.port.words[0x9005] = 0x3010;
   EXPECT_EQ(axis.cycles(100).state, DeviceState::Ready) << axis.why();
+}
+
+TEST(RegisterDeviceTest, WhatComesBackByItselfClearsNoAlarmAndSwitchesNoServoOn) {
+  for (const int state : {0x3410, 0x2010}) {
+    Axis axis;
+    ASSERT_EQ(axis.cycles(20).state, DeviceState::Ready);
+    axis.port.fault = PortFault::Lost;
+    ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
+    axis.port.fault = PortFault::None;
+    axis.port.words[0x9005] = static_cast<std::uint16_t>(state);
+    axis.port.coils.clear();
+    ASSERT_EQ(axis.cycles(100).state, DeviceState::Fault);
+    EXPECT_THAT(axis.why(), HasSubstr("which a reset must confirm: "));
+    EXPECT_FALSE(axis.port.coils.contains(0x403)) << "its servo is not switched on";
+    EXPECT_FALSE(axis.port.coils[0x407]) << "its alarm is not reset";
+    axis.port.fault = PortFault::Lost;
+    ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
+    axis.port.fault = PortFault::None;
+    ASSERT_EQ(axis.cycles(100).state, DeviceState::Fault) << "nor by a second line";
+    ++axis.command.asks.restarts;
+    axis.cycles(10);
+    EXPECT_TRUE(axis.port.coils[0x403] || axis.port.coils[0x407]) << "a person may";
+  }
+}
+
+TEST(RegisterDeviceTest, ADrivesOwnWatchdogIsClearedByALineThatComesBackAndNothingElseIs) {
+  for (const int errors : {0x0800, 0x0840}) {
+    Axis axis{"orca"};
+    ASSERT_EQ(axis.cycles(60).state, DeviceState::Ready) << axis.why();
+    axis.port.fault = PortFault::Lost;
+    ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
+    axis.port.fault = PortFault::None;
+    axis.port.words[432] = static_cast<std::uint16_t>(errors);
+    axis.port.written = [&](std::uint16_t address) {
+      if (address == 0 && axis.port.words[0] == 2) axis.port.words[432] = 0;
+    };
+    axis.cycles(200);
+    EXPECT_EQ(axis.port.words[432] == 0, errors == 0x0800);
+    EXPECT_EQ(axis.reading.state == DeviceState::Ready, errors == 0x0800) << axis.why();
+  }
+}
+
+TEST(RegisterDeviceTest, WhoComesBackElsewhereWaitsForAPerson) {
+  Axis axis;
+  axis.port.words[0x9001] = 5000;
+  ASSERT_EQ(axis.cycles(20).state, DeviceState::Ready);
+  axis.port.fault = PortFault::Lost;
+  ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
+  axis.port.fault = PortFault::None;
+  axis.port.words[0x9001] = 7000;  // its zero is another
+  ASSERT_EQ(axis.cycles(100).state, DeviceState::Fault);
+  EXPECT_EQ(axis.why(), "it came back elsewhere than it stood: is its zero still good?");
+  EXPECT_EQ(axis.port.words[0x9001], 7000);
+  ++axis.command.asks.restarts;
+  EXPECT_EQ(axis.cycles(30).state, DeviceState::Ready) << axis.why();
+}
+
+TEST(RegisterDeviceTest, AnErrorBesideTheWatchdogIsSeenAlsoWhereItsFirstReadingFails) {
+  Axis axis{"orca"};
+  ASSERT_EQ(axis.cycles(60).state, DeviceState::Ready) << axis.why();
+  axis.port.fault = PortFault::Lost;
+  ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
+  axis.port.fault = PortFault::None;
+  axis.port.words[432] = 0x0840;
+  axis.port.deaf_at = 432;
+  axis.cycles(102);
+  axis.port.deaf_at.reset();
+  axis.cycles(20);
+  EXPECT_EQ(axis.reading.state, DeviceState::Fault);
+  EXPECT_EQ(axis.why(), "it came back by itself, which a reset must confirm: errors of its own");
+}
+
+TEST(RegisterDeviceTest, AWeightWithoutASignHasItsSignInABit) {
+  Axis cell{"tlb4"};
+  ASSERT_EQ(cell.cycles(40).state, DeviceState::Ready) << cell.why();
+  cell.port.words[8] = 30;
+  EXPECT_NEAR(cell.cycles(1).force, 0.3, 1e-9);
+  cell.port.words[6] = 0x0080;
+  EXPECT_NEAR(cell.cycles(1).force, -0.3, 1e-9);
+  cell.port.words[6] = 0x0001;
+  EXPECT_EQ(cell.cycles(1).state, DeviceState::Fault);
+  EXPECT_EQ(cell.why(), "the device reports: load cell error");
+}
+
+TEST(RegisterDeviceTest, TheDriveIsToldTheCeilingOfItsForce) {
+  DeviceInstallation built_in = Axis::installation();
+  built_in.force_limit = 70;
+  Axis axis{"orca", built_in};
+  ASSERT_EQ(axis.cycles(60).state, DeviceState::Ready) << axis.why();
+  EXPECT_EQ(axis.port.words[140], 70'000 - 65'536) << "mN, the low word first";
+  EXPECT_EQ(axis.port.words[141], 1);
 }
 
 TEST(RegisterDeviceTest, HomesOnlyWhereItMay) {
@@ -333,19 +424,6 @@ TEST(RegisterDeviceTest, ATareOfADeviceThatIsNotReadyIsRefused) {
   EXPECT_EQ(cell.cycles(1).tare.refused, 1U);
   EXPECT_EQ(cell.reading.tare.why, "the sensor is not ready");
   EXPECT_EQ(cell.cycles(5).tare.refused, 1U) << "once";
-}
-
-TEST(DeviceFlawTest, NamesWhatIsNotRead) {
-  DeviceProfile profile = find_profile("iai").value();
-  EXPECT_FALSE(flaw_of(profile, {}));
-  profile.position->address = 0x9009;
-  EXPECT_THAT(flaw_of(profile, {}).value_or(""), HasSubstr("position"));
-  profile = find_profile("iai").value();
-  profile.healthy[0].address = 7;
-  EXPECT_THAT(flaw_of(profile, {}).value_or(""), HasSubstr("state"));
-  profile = find_profile("iai").value();
-  profile.read_count = 126;
-  EXPECT_TRUE(flaw_of(profile, {}));
 }
 
 TEST(ProfileTextsTest, ListsWhatIsBuiltIn) {
