@@ -34,7 +34,7 @@ RegisterDevice::RegisterDevice(DeviceProfile profile,
       words_{profile_.read_address, profile_.read_count},
       state_{profile_.state_address, profile_.state_count},
       load_{installation},
-      jumps_{kJumpSpeed * installation.speed_max} {
+      seen_{.jumps = JumpAllowance{kJumpSpeed * installation.speed_max}} {
   if (profile_.position && installation_.position_unit > 0) {
     profile_.position->unit = installation_.position_unit;
   }
@@ -96,8 +96,8 @@ void RegisterDevice::enter_start(TimePoint now) noexcept {
   step_sent_ = false;
   step_began_ = lived_at_ = now;
   polls_ = 0;
-  position_known_ = anything_sent_ = false;
-  jumps_.reset();
+  seen_.known = anything_sent_ = false;
+  seen_.jumps.reset();
   load_.resume();
 }
 
@@ -169,18 +169,17 @@ void RegisterDevice::take_position(TimePoint sampled_at) {
   const double position = (read - installation_.zero) * (installation_.reversed ? -1 : 1);
   const double span = seconds(sampled_at - now_.sampled_at);
   const double way = position - now_.position;
-  if (position_known_ && now_.state == DeviceState::Ready && jumps_.jumped(way, span)) {
+  if (seen_.known && now_.state == DeviceState::Ready && seen_.jumps.jumped(way, span)) {
     return fail(DeviceReason::Jumped, 0);
   }
   if (now_.state == DeviceState::Ready && !within_reach(position)) {
     return fail(DeviceReason::OutOfReach, 0);
   }
-  now_.velocity = position_known_ && span > 0
-                      ? now_.velocity + kVelocityShare * (way / span - now_.velocity)
-                      : 0;
+  now_.velocity =
+      seen_.known && span > 0 ? now_.velocity + kVelocityShare * (way / span - now_.velocity) : 0;
   now_.position = position;
-  position_known_ = true;
-  if (now_.state == DeviceState::Ready) stood_at_ = position;
+  seen_.known = true;
+  if (now_.state == DeviceState::Ready) by_person_.stood_at = position;
 }
 
 void RegisterDevice::take_force(TimePoint sampled_at) {
@@ -265,14 +264,15 @@ void RegisterDevice::proceed(TimePoint now) {
   }
   if (profile_.position && !within_reach(now_.position)) return fail(DeviceReason::OutOfReach, 0);
   if (profile_.position && !by_person_.started &&
-      std::abs(now_.position - stood_at_) > kElsewhere + kElsewhereTime * installation_.speed_max) {
+      std::abs(now_.position - by_person_.stood_at) >
+          kElsewhere + kElsewhereTime * installation_.speed_max) {
     return fail(DeviceReason::StandsElsewhere, 0);
   }
   if (profile_.force && !load_.tared()) return;
   now_.state = DeviceState::Ready;
   ++now_.starts;
   by_person_.started = false;
-  stood_at_ = now_.position;
+  by_person_.stood_at = now_.position;
   begin_motion(now);
 }
 

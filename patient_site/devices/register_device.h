@@ -40,8 +40,14 @@ class RegisterDevice {
   /// What a line that comes back by itself has no say in.
   struct ByPerson {
     bool started{true};           ///< this start; so it may home
+    double stood_at{};            ///< [m], when it was ready last
     DeviceReason held{};          ///< the fault that is not reset yet
     std::uint32_t held_detail{};  ///< by `held`
+  };
+  /// Of its place.
+  struct Seen {
+    JumpAllowance jumps;
+    bool known{};  ///< since the start
   };
   void reach(TimePoint now);
   void enter_start(TimePoint now) noexcept;
@@ -82,9 +88,7 @@ class RegisterDevice {
   TimePoint step_began_{};
   DeviceAsks asks_;  ///< as heard last
   ByPerson by_person_;
-  bool position_known_{};  ///< since the start
-  double stood_at_{};      ///< [m], when it was ready last
-  JumpAllowance jumps_;
+  Seen seen_;
   AxisMotion motion_;     ///< commanded
   AxisMotion delivered_;  ///< the last of them that arrived
   TimePoint steered_at_{};
