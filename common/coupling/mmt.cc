@@ -296,12 +296,11 @@ double MmtPatient::unfelt() const noexcept {
 
 PatientOutput MmtPatient::step(const PatientInput& in, const Lapse& lapse) noexcept {
   const double aim = target(in, lapse);
-  if (!began_) place_ = in.place;
-  began_ = true;
-  if (distance(in.place, place_) > kSamePlace) {
+  if (!began_ || distance(in.place, place_) > kSamePlace) {
     estimator_.new_place(in.place);
     place_ = in.place;
   }
+  began_ = true;
   const PairedReadings::Pair pair = paired_.step(
       in.now, in.now - in.position_age, in.position, in.now - in.force_age, in.contact_force);
   estimator_.step(pair.position, pair.force, lapse.periods);
