@@ -177,6 +177,10 @@ Result<DepthTable> start_table(const DatabaseFlags& flags) {
       return fail(name + ": " + merged.error().text + " than asked for; remove it first");
     }
     if (table.plain.empty()) table.plain = found->plain;
+    if (core > 0) continue;
+    table.checked_count = found->checked_count;  // of a whole file, which nothing is added to
+    table.checked_rms = found->checked_rms;
+    table.checked_max = found->checked_max;
   }
   if (!table.plain.empty()) return table;
   auto plain = solve_plain(table.grid);

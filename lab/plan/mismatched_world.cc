@@ -39,7 +39,7 @@ class WorldDraws {
 }
 
 std::string ball_words(const MismatchedWorld& world, const Place& axis) {
-  return formatted("; ball depth=%.6g radius=%.6g ratio=%.6g at=%.6g,%.6g",
+  return formatted("; ball depth=%.9g radius=%.9g ratio=%.9g at=%.9g,%.9g",
                    1e3 * world.depth,
                    1e3 * world.radius,
                    world.ratio,
@@ -50,12 +50,12 @@ std::string ball_words(const MismatchedWorld& world, const Place& axis) {
 /// Words of the part that is not as assumed; the rest goes into `world`.
 std::string words_of(Mismatch kind, double height, WorldDraws& draws, MismatchedWorld& world) {
   const double e_kpa = draws.between(12, 18);
-  const std::string block = formatted("block e_kpa=%.6g", e_kpa);
+  const std::string block = formatted("block e_kpa=%.9g", e_kpa);
   switch (kind) {
     case Mismatch::Stiffness: {
       const double spread = draws.between(0.05, 0.1);
       const double length = draws.log_between(6, 20);
-      return block + formatted(" varies=%.6g length=%.6g seed=%llu",
+      return block + formatted(" varies=%.9g length=%.9g seed=%llu",
                                spread,
                                length,
                                static_cast<unsigned long long>(draws.seed() >> 12));
@@ -63,14 +63,14 @@ std::string words_of(Mismatch kind, double height, WorldDraws& draws, Mismatched
     case Mismatch::Relaxing: {
       const double share = draws.between(0.05, 0.3);
       return block +
-             formatted("; relaxes share=%.6g time_s=%.6g", share, draws.log_between(0.3, 3));
+             formatted("; relaxes share=%.9g time_s=%.9g", share, draws.log_between(0.3, 3));
     }
     case Mismatch::Exponential:
       return block + " law=exponential";
     case Mismatch::Layered:
       return block + " law=layered";
     case Mismatch::ThinBlock:
-      return block + formatted(" height=%.6g", 1e3 * height);
+      return block + formatted(" height=%.9g", 1e3 * height);
     case Mismatch::TwoBalls:
       return block;
     case Mismatch::Breathing:
@@ -80,12 +80,12 @@ std::string words_of(Mismatch kind, double height, WorldDraws& draws, Mismatched
     case Mismatch::Slope: {
       const double slope = draws.between(5, 15);
       const double towards = draws.between(0, 2 * std::numbers::pi);
-      return block + formatted("; surface slope_x=%.6g slope_y=%.6g",
+      return block + formatted("; surface slope_x=%.9g slope_y=%.9g",
                                slope * std::cos(towards),
                                slope * std::sin(towards));
     }
     case Mismatch::Dome:
-      return block + formatted("; surface radius=%.6g", draws.between(40, 120));
+      return block + formatted("; surface radius=%.9g", draws.between(40, 120));
     case Mismatch::SensorPole:
       world.sensor_pole = draws.between(6, 12);
       return block;
