@@ -97,7 +97,8 @@ const std::vector<Arrow>& arrows() {
         "common/io/*",
         "monitor",
         "netem/*"}},
-      {"fem/main.cc", {"common/config", "common/io/process/process_time.h"}},
+      {"fem/main.cc",
+       {"common/config", "common/io/process/parallel.h", "common/io/process/process_time.h"}},
       {"fem/*_command.*", {"common/config", "common/plot"}},
       // How far off the database is between its points: read as the estimators read it.
       {"fem/interpolation_check.cc", {"depth/depth_database.h"}},
@@ -165,6 +166,8 @@ const std::vector<Arrow>& arrows() {
         "common/config",
         "common/settings"}},
       {"patient_site/tissue_record.*", {"common/record", "common/config/number.h"}},
+      // Closed solution of a domed surface.
+      {"patient_site/block_tissue.*", {"depth", "fem/sneddon_sphere.h"}},
       {"patient_site/*",
        {"depth", "common/message", "common/coupling", "common/link", "common/record"}},
       // What is judged of a run, offline: no site sees it, and it sees none.
