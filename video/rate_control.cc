@@ -103,7 +103,8 @@ std::size_t ParityPlan::count(std::size_t data,
   std::size_t count = std::min(lost_of_frame_, data + 1);
   if (loss > 0.0005) {
     const double known = std::min(0.3, loss);
-    const double failures = kFrozenMax / (kFps * (std::chrono::duration<double>(round_trip).count() + kRecovery));
+    const double away = std::chrono::duration<double>(round_trip).count() + kRecovery;
+    const double failures = kFrozenMax / (kFps * away);
     while (count < data + 1 && chance_of_more(data + count, count, known) > failures) ++count;
   }
   return std::min(count, kFragmentsMax - data);
