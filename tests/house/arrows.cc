@@ -11,7 +11,7 @@ namespace palp::house {
 namespace {
 
 /// Rooms, the longer name first where one lies in another.
-constexpr std::array<std::string_view, 35> kRooms{"common/core",
+constexpr std::array<std::string_view, 36> kRooms{"common/core",
                                                   "common/message",
                                                   "common/coupling",
                                                   "common/link",
@@ -25,6 +25,7 @@ constexpr std::array<std::string_view, 35> kRooms{"common/core",
                                                   "common/io/secure",
                                                   "common/io",
                                                   "common/plot",
+                                                  "video",
                                                   "monitor",
                                                   "site_program",
                                                   "netem/model",
@@ -83,10 +84,12 @@ const std::vector<Arrow>& arrows() {
       {"netem/presets_command.*", {"netem/syntax", "common/config"}},
       // A relay between sites: it has no keys, and knows nothing of couplings or impairments.
       {"relay/*", {"common/link", "common/io/*", "common/config"}},
+      // Pictures to datagrams and back: no clock, no socket, no record.
+      {"video/*", {"common/link", "common/message"}},
       // The live page: what the session file gets, for screens. It sees no site and no link.
       {"monitor/server.cc",
-       {"common/record", "common/message", "common/link", "common/io/realtime"}},
-      {"monitor/*", {"common/record", "common/message", "common/link", "common/config"}},
+       {"common/record", "common/message", "common/link", "common/io/realtime", "video"}},
+      {"monitor/*", {"common/record", "common/message", "common/link", "common/config", "video"}},
       // What the two programs of a session do alike: it puts parts together, as their main.cc does.
       {"site_program/*",
        {"common/config",
@@ -96,6 +99,7 @@ const std::vector<Arrow>& arrows() {
         "common/record",
         "common/io/*",
         "monitor",
+        "video",
         "netem/*"}},
       {"fem/main.cc",
        {"common/config", "common/io/process/parallel.h", "common/io/process/process_time.h"}},
@@ -131,8 +135,10 @@ const std::vector<Arrow>& arrows() {
         "common/config",
         "common/settings"}},
       {"surgeon_site/*", {"common/message", "common/coupling", "common/link", "common/record"}},
+      {"patient_site/drawn_camera.*", {"video"}},
       {"patient_site/main.cc",
        {"patient_site/devices",
+        "video",
         "site_program",
         "depth",
         "common/message",
@@ -245,6 +251,7 @@ const std::vector<std::string_view>& protobuf_files() {
                                                    "patient_site/settings*.cc",
                                                    "lab/plan/scenario*.cc",
                                                    "netem/syntax/timeline.cc",
+                                                   "video/camera_frame.cc",
                                                    "fem/depth_table.cc"};
   return files;
 }
@@ -256,6 +263,8 @@ const std::vector<Fence>& fences() {
       {"seccomp.h", {"common/io/process/system_call_filter.cc"}},
       {"boost/", {"common/io/net/*.cc", "common/io/secure/*.cc", "monitor/server.cc"}},
       {"google/protobuf/", protobuf_files()},
+      {"wels/", {"video/openh264_encoder.cc"}},
+      {"turbojpeg.h", {"video/jpeg_encoder.cc"}},
       {"zstd", {"common/record/mcap_*.cc"}},
       {"zlib.h", {"common/record/mcap_*.cc"}},
       // Programs without a schema of their own have flags of their own.
