@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace palp::depth {
 namespace {
@@ -72,6 +73,26 @@ const NodalCurve& node_indentations() noexcept {
 const std::array<CurveTerms, kCurveNodes>& node_terms() noexcept {
   static const std::array<CurveTerms, kCurveNodes> terms = make_terms();
   return terms;
+}
+
+LateralShare lateral_share(const DepthDatabase& database) {
+  if (!database.solved_beside()) {
+    return [](const DepthDatabase::Query& ball, double offset, double) {
+      const double s = offset / (ball.depth + ball.radius);
+      return std::pow(1 + s * s, -3);
+    };
+  }
+  struct Last {
+    DepthDatabase::Query ball;
+    LateralShape::OfBall shape;
+  };
+  return [&database, last = std::optional<Last>{}](
+             const DepthDatabase::Query& ball, double offset, double indentation) mutable {
+    const bool same = last && last->ball.depth == ball.depth && last->ball.radius == ball.radius &&
+                      last->ball.ratio == ball.ratio;
+    if (!same) last = Last{ball, database.shape(ball)};
+    return database.share(last->shape, offset, indentation);
+  };
 }
 
 BallField::BallField(const DepthDatabase& database,

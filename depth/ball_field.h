@@ -24,6 +24,10 @@ using NodalCurve = std::array<double, kCurveNodes>;
 using LateralShare =
     std::function<double(const DepthDatabase::Query& ball, double offset, double indentation)>;
 
+/// By the table of the database, which outlives it. A database without one: the closed form of a
+/// small ball in an incompressible half space, g = (1 + (offset/depth of the centre)^2)^-3.
+[[nodiscard]] LateralShare lateral_share(const DepthDatabase& database);
+
 /// The forces beside a ball, over those of the plain block, everywhere on a plane surface: the
 /// curve on its axis from the depth database, times what is left beside the axis. So dense a table
 /// that cubics (on the axis) and lines (beside it) between its points are as good as the database.

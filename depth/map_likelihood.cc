@@ -11,7 +11,7 @@ namespace palp::depth {
 namespace {
 
 constexpr std::array kSpreadShares{0.06, 0.3, 1.0};  // of the spread given,
-constexpr std::array kSpreadWeights{0.1, 0.2, 0.7};  // [-], so likely
+constexpr std::array kSpreadWeights{0.01, 0.04, 0.95};  // [-], so likely
 constexpr double kSpreadLeast = 1e-3;                // [-]
 constexpr std::size_t kMiddle = 3;                   // a node: 2.3 mm
 constexpr int kTissuePasses = 3;
