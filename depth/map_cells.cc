@@ -40,6 +40,28 @@ class CellMaker {
   }
 
  private:
+  /// A ball of some depth and radius, looked for everywhere.
+  struct Kind {
+    BallField::Ball seen;
+    double log_depth{};
+    double radius{};
+  };
+  [[nodiscard]] std::vector<Kind> kinds_of_ball(double log_ratio) const {
+    std::vector<Kind> kinds;
+    for (std::size_t i = 0; i < kScanDepths; ++i) {
+      for (std::size_t j = 0; j < kScanRadii; ++j) {
+        const double log_depth =
+            prior_.log_depth_low() + (prior_.log_depth_high() - prior_.log_depth_low()) *
+                                         (static_cast<double>(i) + 0.5) / kScanDepths;
+        const double radius = prior_.given().ball.radius_min +
+                              prior_.radius_width() * (static_cast<double>(j) + 0.5) / kScanRadii;
+        kinds.push_back(
+            {field_.at(log_depth, radius, effect_of(std::exp(log_ratio))), log_depth, radius});
+      }
+    }
+    return kinds;
+  }
+
   /// Where to begin: the best places on a grid, by each place's excess alone.
   [[nodiscard]] std::vector<BallCell> starts() const {
     const auto& places = likelihood_.places();
@@ -63,24 +85,8 @@ class CellMaker {
     };
     const int columns = along(left, right);
     const int rows = along(low, high);
-    struct Kind {
-      BallField::Ball seen;
-      double log_depth{};
-      double radius{};
-    };
-    std::vector<Kind> kinds;
     const double log_ratio = prior_.log_ratio_low() + kScanRatio * prior_.log_ratio_width();
-    for (std::size_t i = 0; i < kScanDepths; ++i) {
-      for (std::size_t j = 0; j < kScanRadii; ++j) {
-        const double log_depth =
-            prior_.log_depth_low() + (prior_.log_depth_high() - prior_.log_depth_low()) *
-                                         (static_cast<double>(i) + 0.5) / kScanDepths;
-        const double radius = prior_.given().ball.radius_min +
-                              prior_.radius_width() * (static_cast<double>(j) + 0.5) / kScanRadii;
-        kinds.push_back(
-            {field_.at(log_depth, radius, effect_of(std::exp(log_ratio))), log_depth, radius});
-      }
-    }
+    const std::vector<Kind> kinds = kinds_of_ball(log_ratio);
     for (int column = 0; column < columns; ++column) {
       for (int row = 0; row < rows; ++row) {
         const Place place{0.5 * (left + right) + (column - 0.5 * (columns - 1)) * kScanStep,

@@ -10,10 +10,10 @@
 namespace palp::depth {
 namespace {
 
-constexpr std::array kSpreadShares{0.06, 0.3, 1.0};  // of the spread given,
+constexpr std::array kSpreadShares{0.06, 0.3, 1.0};     // of the spread given,
 constexpr std::array kSpreadWeights{0.01, 0.04, 0.95};  // [-], so likely
-constexpr double kSpreadLeast = 1e-3;                // [-]
-constexpr std::size_t kMiddle = 3;                   // a node: 2.3 mm
+constexpr double kSpreadLeast = 1e-3;                   // [-]
+constexpr std::size_t kMiddle = 3;                      // a node: 2.3 mm
 constexpr int kTissuePasses = 3;
 constexpr double kStepOffset = 10e-6;  // [m], for slopes
 constexpr double kStepDepth = 1e-3;    // [-], of the logarithm
@@ -196,9 +196,10 @@ double MapLikelihood::at(const MapBall& ball) const noexcept {
       [&](const PlaceData& place) { return seen.ratio(distance(place.place, ball.place)); }));
 }
 
-MapLikelihood::Local MapLikelihood::around(const MapBall& ball) const noexcept {
+/// All places' normal equations, the tissue's unknowns first (the rate factor last of all).
+auto MapLikelihood::gather_around(const MapBall& ball) const noexcept
+    -> std::array<Normal<kTissue + kBallCoordinates>, kSpreads> {
   constexpr std::size_t kCurves = kTissue - 1 + kBallCoordinates;
-  constexpr std::size_t kAll = kCurves + 1;
   const auto seen = [&](double depth, double radius, double ratio) {
     return field_->at(
         ball.log_depth + depth, ball.radius + radius, effect_of(std::exp(ball.log_ratio + ratio)));
@@ -207,7 +208,7 @@ MapLikelihood::Local MapLikelihood::around(const MapBall& ball) const noexcept {
   const std::array<BallField::Ball, 3> beside{
       seen(kStepDepth, 0, 0), seen(0, -kStepRadius, 0), seen(0, 0, -kStepRatio)};
   constexpr std::array kSteps{kStepDepth, -kStepRadius, -kStepRatio};
-  std::array<Normal<kAll>, kSpreads> sums{};
+  std::array<Normal<kCurves + 1>, kSpreads> sums{};
   for (const PlaceData& place : places_) {
     const double offset = distance(place.place, ball.place);
     const NodalCurve ratio = here.ratio(offset);
@@ -230,6 +231,13 @@ MapLikelihood::Local MapLikelihood::around(const MapBall& ball) const noexcept {
     }
     gather(place, curves, middle_of(ratio), sums);
   }
+  return sums;
+}
+
+MapLikelihood::Local MapLikelihood::around(const MapBall& ball) const noexcept {
+  constexpr std::size_t kCurves = kTissue - 1 + kBallCoordinates;
+  constexpr std::size_t kAll = kCurves + 1;
+  auto sums = gather_around(ball);
   std::array<double, kSpreads> values{};
   std::array<Local, kSpreads> locals{};
   for (std::size_t s = 0; s < kSpreads; ++s) {

@@ -87,6 +87,8 @@ class MapLikelihood {
   void add_prior(Normal<kTissue>& to) const noexcept;
   template <class Ratio>
   [[nodiscard]] std::array<double, kSpreads> spread_values(const Ratio& ratio) const noexcept;
+  [[nodiscard]] std::array<Normal<kTissue + kBallCoordinates>, kSpreads> gather_around(
+      const MapBall& ball) const noexcept;
   void find_tissue();
   void find_excess();
 

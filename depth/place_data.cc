@@ -124,6 +124,41 @@ TouchModel expected_of(const Fit& fit, double surface) {
   return out;
 }
 
+/// The quadratic form of curve and rate factor. Shift and rate factor multiply the curve that fits,
+/// which is near enough whatever the curve turns out to be; the shift, of which the tracker says
+/// `off`, goes.
+void reduce(const NormalEquations& sums, const Fit& best, double off, PlaceData& out) {
+  const NodalEquations nodal{sums};
+  const double v = out.rate_factor;
+  constexpr std::size_t kLast = kCurveNodes;
+  // Of curve, rate factor, and the surface, which goes.
+  PlaceData::Row beside{};
+  for (std::size_t a = 0; a < kCurveNodes; ++a) {
+    for (std::size_t b = 0; b < kCurveNodes; ++b) {
+      out.information[a][b] = nodal.matrix[0][0][a][b] + v * nodal.matrix[0][2][a][b] +
+                              v * nodal.matrix[2][0][a][b] + v * v * nodal.matrix[2][2][a][b];
+      out.information[a][kLast] +=
+          (nodal.matrix[0][2][a][b] + v * nodal.matrix[2][2][a][b]) * best.curve[b];
+      beside[a] += (nodal.matrix[0][1][a][b] + v * nodal.matrix[2][1][a][b]) * best.curve[b];
+    }
+    out.pull[a] = nodal.right[0][a] + v * nodal.right[2][a];
+    out.information[kLast][a] = out.information[a][kLast];
+  }
+  out.information[kLast][kLast] = nodal.between(2, best.curve, 2, best.curve);
+  out.pull[kLast] = nodal.along(2, best.curve);
+  beside[kLast] = nodal.between(1, best.curve, 2, best.curve);
+  constexpr double kKnown = 1 / (kSurfaceSpread * kSurfaceSpread);
+  const double along = nodal.between(1, best.curve, 1, best.curve) + kKnown;
+  const double pulled = nodal.along(1, best.curve) + kKnown * off;
+  out.square = sums.squares() + kKnown * off * off - pulled * pulled / along;
+  for (std::size_t a = 0; a < PlaceData::kSize; ++a) {
+    for (std::size_t b = 0; b < PlaceData::kSize; ++b) {
+      out.information[a][b] -= beside[a] * beside[b] / along;
+    }
+    out.pull[a] -= beside[a] * pulled / along;
+  }
+}
+
 }  // namespace
 
 const std::array<NodalCurve, kTissueShapes>& tissue_shapes() noexcept {
@@ -138,8 +173,7 @@ const std::array<NodalCurve, kTissueShapes>& tissue_shapes() noexcept {
   return shapes;
 }
 
-/// The force is linear in (curve, curve * shift, curve * rate factor). Shift and rate factor
-/// multiply the curve that fits, which is near enough whatever the curve turns out to be.
+/// The force is linear in (curve, curve * shift, curve * rate factor).
 std::optional<PlaceData> place_data(const PlaceReadings& readings, const CurveBasis& basis) {
   const SensorSteps steps{readings.noise, readings.quantum};
   double surface = readings.surface;
@@ -166,42 +200,13 @@ std::optional<PlaceData> place_data(const PlaceReadings& readings, const CurveBa
     expected = expected_of(best, surface);
   }
   sums.move_to(surface);
-  const NodalEquations nodal{sums};
   PlaceData out{.place = readings.place,
                 .rate_factor = readings.stiffness.rate_factor,
                 .scale = best.scale,
                 .surface = surface,
                 .misfit = best.misfit,
                 .samples = sums.samples()};
-  const double v = out.rate_factor;
-  constexpr std::size_t kLast = kCurveNodes;
-  // Of curve, rate factor, and the surface, which goes.
-  PlaceData::Row beside{};
-  for (std::size_t a = 0; a < kCurveNodes; ++a) {
-    for (std::size_t b = 0; b < kCurveNodes; ++b) {
-      out.information[a][b] = nodal.matrix[0][0][a][b] + v * nodal.matrix[0][2][a][b] +
-                              v * nodal.matrix[2][0][a][b] + v * v * nodal.matrix[2][2][a][b];
-      out.information[a][kLast] +=
-          (nodal.matrix[0][2][a][b] + v * nodal.matrix[2][2][a][b]) * best.curve[b];
-      beside[a] += (nodal.matrix[0][1][a][b] + v * nodal.matrix[2][1][a][b]) * best.curve[b];
-    }
-    out.pull[a] = nodal.right[0][a] + v * nodal.right[2][a];
-    out.information[kLast][a] = out.information[a][kLast];
-  }
-  out.information[kLast][kLast] = nodal.between(2, best.curve, 2, best.curve);
-  out.pull[kLast] = nodal.along(2, best.curve);
-  beside[kLast] = nodal.between(1, best.curve, 2, best.curve);
-  constexpr double kKnown = 1 / (kSurfaceSpread * kSurfaceSpread);
-  const double off = readings.surface - surface;
-  const double along = nodal.between(1, best.curve, 1, best.curve) + kKnown;
-  const double pulled = nodal.along(1, best.curve) + kKnown * off;
-  out.square = sums.squares() + kKnown * off * off - pulled * pulled / along;
-  for (std::size_t a = 0; a < PlaceData::kSize; ++a) {
-    for (std::size_t b = 0; b < PlaceData::kSize; ++b) {
-      out.information[a][b] -= beside[a] * beside[b] / along;
-    }
-    out.pull[a] -= beside[a] * pulled / along;
-  }
+  reduce(sums, best, readings.surface - surface, out);
   return out;
 }
 

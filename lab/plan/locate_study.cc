@@ -12,26 +12,19 @@
 #include "patient_site/simulated_phantom.h"
 
 namespace palp::lab {
-namespace {
-
-constexpr double kStep = 20e-6;            // [m], of a place's table
-constexpr double kClearance = 10e-3;       // [m], where a tap begins
-constexpr double kSurfaceSpread = 0.2e-3;  // [m], of the surface from place to place
-constexpr double kScaleSpread = 0.1;       // [-], of Young's modulus
-constexpr double kMargin = 0.15e-3;        // [m], for the servo, before a table's end
-constexpr double kRest = 0.2;              // [s], after a tap
 
 /// What one phantom is.
-struct Truth {
+struct LocatePhantom {
   depth::DepthDatabase::Query ball;
   Place axis;
   double scale{1};  ///< [-]
 };
 
 /// Draws of one case, in a fixed order.
-class Draws {
+class LocateDraws {
  public:
-  Draws(std::uint64_t seed, std::uint32_t index) : stream_{seed, 9300 + std::uint64_t{index}} {}
+  LocateDraws(std::uint64_t seed, std::uint32_t index)
+      : stream_{seed, 9300 + std::uint64_t{index}} {}
   double uniform(double low, double high) { return low + (high - low) * stream_.uniform(next_++); }
   double normal() { return stream_.normal(next_++); }
   std::uint64_t bits() { return stream_.bits(next_++); }
@@ -41,12 +34,20 @@ class Draws {
   std::uint64_t next_{};
 };
 
+namespace {
+constexpr double kStep = 20e-6;            // [m], of a place's table
+constexpr double kClearance = 10e-3;       // [m], where a tap begins
+constexpr double kSurfaceSpread = 0.2e-3;  // [m], of the surface from place to place
+constexpr double kScaleSpread = 0.1;       // [-], of Young's modulus
+constexpr double kMargin = 0.15e-3;        // [m], for the servo, before a table's end
+constexpr double kRest = 0.2;              // [s], after a tap
+
 /// From what the estimator assumes; the axis anywhere between the outer places.
-Truth draw(const LocateStudy& study,
-           const depth::DepthPrior& prior,
-           const depth::DepthDatabase& database,
-           Draws& draws) {
-  Truth truth;
+LocatePhantom draw(const LocateStudy& study,
+                   const depth::DepthPrior& prior,
+                   const depth::DepthDatabase& database,
+                   LocateDraws& draws) {
+  LocatePhantom truth;
   do {
     truth.ball = {.shape = prior.shape,
                   .depth = draws.uniform(prior.depth_min, study.depth_max),
@@ -77,12 +78,13 @@ patient::ForceTable table_at(const depth::DepthDatabase& database,
   return *patient::ForceTable::make(std::move(rows));
 }
 
-/// One tap at one place, raised cosine, no deeper than `reach_max` [m]; `feel` takes every sample.
+/// One tap at one place, raised cosine, no deeper than `reach_max` [m]; `feel` takes every
+/// sample.
 template <class Feel>
 TimePoint tap(const patient::Phantom& phantom,
               const Place& place,
               double reach_max,
-              Draws& draws,
+              LocateDraws& draws,
               TimePoint now,
               const Feel& feel) {
   patient::SimulatedPhantomConfig config;
@@ -139,6 +141,20 @@ std::array<double, kLocated> bounds_at(const depth::MapLikelihood& likelihood,
   return out;
 }
 
+/// Medians and intervals.
+void tell(const depth::MapPosterior& posterior, std::array<Located, kLocated>& out) {
+  const std::array<const depth::Estimated*, kLocated> told{
+      &posterior.x, &posterior.y, &posterior.depth, &posterior.radius, &posterior.ratio};
+  for (std::size_t i = 0; i < kLocated; ++i) {
+    Located& one = out[i];
+    one.median = told[i]->median;
+    one.low = told[i]->low;
+    one.high = told[i]->high;
+  }
+  Located& ratio = out.back();
+  for (double* value : {&ratio.median, &ratio.low, &ratio.high}) *value = std::log(*value);
+}
+
 }  // namespace
 
 Result<LocateBench> LocateBench::make(const LocateStudy& study) {
@@ -154,15 +170,12 @@ LocateBench::LocateBench(const LocateStudy& study, depth::DepthDatabase database
       field_{database_, prior_.ball, depth::lateral_share(database_)},
       basis_{database_} {}
 
-LocateCase LocateBench::run(std::uint32_t index) const {
-  Draws draws{study_.seed, index};
-  LocateCase out;
-  out.index = index;
-  out.inclusion = index < study_.count;
-  const Truth truth = draw(study_, prior_.ball, database_, draws);
-  out.scale = truth.scale;
+/// One tap at every place of the pattern.
+std::vector<depth::PlaceData> LocateBench::touch_all(const LocatePhantom& truth,
+                                                     bool inclusion,
+                                                     LocateDraws& draws) const {
   const depth::DepthDatabase::Curve plain = database_.plain();
-  const depth::DepthDatabase::Curve curve = out.inclusion ? database_.curve(truth.ball) : plain;
+  const depth::DepthDatabase::Curve curve = inclusion ? database_.curve(truth.ball) : plain;
   // As a site's gate: what was not computed is not touched.
   const double deepest = curve.indentation_max - kMargin;
   const depth::LateralShare share = depth::lateral_share(database_);
@@ -177,7 +190,7 @@ LocateCase LocateBench::run(std::uint32_t index) const {
     const double scale = truth.scale * std::exp(study_.spread * draws.normal());
     const double offset = distance(at, truth.axis);
     const auto left = [&](double d) {
-      return out.inclusion ? share(truth.ball, offset, std::max(d, kStep)) : 0.0;
+      return inclusion ? share(truth.ball, offset, std::max(d, kStep)) : 0.0;
     };
     const patient::ForceTable table = table_at(database_, curve, scale, left);
     const patient::Phantom phantom{.name = "place",
@@ -201,6 +214,17 @@ LocateCase LocateBench::run(std::uint32_t index) const {
       if (data) places.push_back(*data);
     });
   }
+  return places;
+}
+
+LocateCase LocateBench::run(std::uint32_t index) const {
+  LocateDraws draws{study_.seed, index};
+  LocateCase out;
+  out.index = index;
+  out.inclusion = index < study_.count;
+  const LocatePhantom truth = draw(study_, prior_.ball, database_, draws);
+  out.scale = truth.scale;
+  std::vector<depth::PlaceData> places = touch_all(truth, out.inclusion, draws);
   if (places.empty()) return out;
   const depth::MapLikelihood likelihood{
       field_, {.stiffness = {}, .place_spread = study_.assumed_spread}, std::move(places)};
@@ -214,16 +238,7 @@ LocateCase LocateBench::run(std::uint32_t index) const {
   out.balls_worth = posterior.balls_worth;
   out.worst_curve = verdict.worst_curve;
   out.worst_deviation = verdict.worst_deviation;
-  const std::array<const depth::Estimated*, kLocated> told{
-      &posterior.x, &posterior.y, &posterior.depth, &posterior.radius, &posterior.ratio};
-  for (std::size_t i = 0; i < kLocated; ++i) {
-    Located& one = out.coordinates[i];
-    one.median = told[i]->median;
-    one.low = told[i]->low;
-    one.high = told[i]->high;
-  }
-  Located& ratio = out.coordinates.back();
-  for (double* value : {&ratio.median, &ratio.low, &ratio.high}) *value = std::log(*value);
+  tell(posterior, out.coordinates);
   if (!out.inclusion) return out;
   out.ratio = truth.ball.ratio;
   const std::array<double, kLocated> is{

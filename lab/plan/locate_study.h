@@ -50,6 +50,9 @@ struct LocateCase {
   double worst_deviation{};  ///< [-]
 };
 
+struct LocatePhantom;
+class LocateDraws;
+
 /// What all cases share. Immutable; any thread.
 class LocateBench {
  public:
@@ -58,6 +61,9 @@ class LocateBench {
 
  private:
   LocateBench(const LocateStudy& study, depth::DepthDatabase database);
+  [[nodiscard]] std::vector<depth::PlaceData> touch_all(const LocatePhantom& truth,
+                                                        bool inclusion,
+                                                        LocateDraws& draws) const;
 
   LocateStudy study_;
   depth::DepthDatabase database_;
