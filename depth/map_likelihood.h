@@ -43,7 +43,9 @@ class MapLikelihood {
   [[nodiscard]] double at(const MapBall& ball) const noexcept;
   [[nodiscard]] double plain() const noexcept { return plain_; }
 
-  /// The logarithm and its slopes and information by the five coordinates, the tissue unknown.
+  /// The logarithm and its slopes and information by the five coordinates, the tissue unknown. The
+  /// slopes count the force as in the tissue first found, without a ball: a tenth off where the
+  /// ball makes it another.
   struct Local {
     double value{};                                ///< [-]
     std::array<double, kBallCoordinates> slope{};  ///< [1/coordinate]

@@ -260,7 +260,8 @@ TEST_F(MapTest, OneMoreTouchNeverTellsLessThanNothingAndLessTheSecondTime) {
   EXPECT_LT(touch_gain(after, field(), map_posterior(after, field(), {}), next->place), next->gain);
 }
 
-/// The slopes that climbs and bounds are made of are those of the likelihood itself.
+/// The slopes that climbs and bounds are made of are those of the likelihood itself, but for the
+/// tissue: they take it as first found, without a ball, and with one it is a tenth softer here.
 TEST_F(MapTest, TheSlopeIsThatOfTheLikelihood) {
   const Truth truth;
   TissuePrior even = tissue(0);
@@ -278,12 +279,12 @@ TEST_F(MapTest, TheSlopeIsThatOfTheLikelihood) {
   low.place.x -= kStep;
   high.place.x += kStep;
   const double along_x = (told.at(high) - told.at(low)) / (2 * kStep);
-  EXPECT_NEAR(local.slope[0], along_x, 0.1 * std::abs(along_x));
+  EXPECT_NEAR(local.slope[0], along_x, 0.2 * std::abs(along_x));
   low = high = ball;
   low.log_depth -= 2e-3;
   high.log_depth += 2e-3;
   const double along_depth = (told.at(high) - told.at(low)) / 4e-3;
-  EXPECT_NEAR(local.slope[2], along_depth, 0.1 * std::abs(along_depth));
+  EXPECT_NEAR(local.slope[2], along_depth, 0.2 * std::abs(along_depth));
 }
 
 }  // namespace
