@@ -12,20 +12,20 @@ namespace palp::depth {
 
 /// A cell of radius and ratio, with a normal distribution of place and depth in it.
 struct BallCell {
-  double radius{};
-  double radius_width{};
-  double log_ratio{};
-  double ratio_width{};
+  double radius{};                                         ///< [m]
+  double radius_width{};                                   ///< [m]
+  double log_ratio{};                                      ///< [-]
+  double ratio_width{};                                    ///< [-]
   Vector3 best{};                                          ///< x, y [m], log depth
-  double value{-std::numeric_limits<double>::infinity()};  ///< likelihood and prior, logarithm
+  double value{-std::numeric_limits<double>::infinity()};  ///< [-], likelihood and prior, logarithm
   Matrix3 covariance{};
   Matrix3 root{};       ///< its lower triangle: covariance = root root'
   double volume{};      ///< [-], log of sqrt(det(2 pi covariance))
   Vector3 by_radius{};  ///< how the best moves
   Vector3 by_ratio{};
   double radius_reach{};  ///< [-], standard deviations to the cell's edge
-  double ratio_reach{};
-  double mass{};  ///< [-], logarithm, then share
+  double ratio_reach{};   ///< [-]
+  double mass{};          ///< [-], logarithm, then share
   std::size_t mode{};
 
   /// Of place and log depth, where the cell's best moves to.

@@ -75,9 +75,9 @@ class MapLikelihood {
   template <std::size_t N>
   struct Normal {
     std::array<std::array<double, N>, N> matrix{};
-    std::array<double, N> right{};
-    double square{};
-    double log_determinant{};
+    std::array<double, N> right{};  ///< [-]
+    double square{};                ///< [-]
+    double log_determinant{};       ///< [-]
   };
   template <std::size_t N>
   void gather(const PlaceData& place,
@@ -102,7 +102,7 @@ class MapLikelihood {
   std::array<double, kTissueShapes> shapes_{};  ///< [-]
   NodalCurve curve_{};                          ///< [-], of the plain tissue
   std::array<double, kSpreads> spreads_{};      ///< [-]
-  double plain_{};
+  double plain_{};                              ///< [-]
   std::vector<Excess> excess_;
 };
 

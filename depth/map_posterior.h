@@ -11,9 +11,9 @@ namespace palp::depth {
 /// One coordinate of the ball as the touches leave it.
 struct Estimated {
   double median{};  ///< [as the coordinate]
-  double low{};     ///< 95 % interval
-  double high{};
-  double stddev{};
+  double low{};     ///< [as the coordinate], 95 % interval
+  double high{};    ///< [as the coordinate]
+  double stddev{};  ///< [as the coordinate]
 };
 
 /// A ball that may be, and how likely it is among them.

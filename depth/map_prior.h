@@ -52,13 +52,13 @@ class BallPrior {
 
   MapPrior prior_;
   std::vector<Place> places_;
-  double log_depth_low_{};
-  double log_depth_high_{};
-  double radius_width_{};
-  double log_ratio_low_{};
-  double log_ratio_width_{};
-  double log_area_{};
-  double log_total_{};
+  double log_depth_low_{};    ///< [-]
+  double log_depth_high_{};   ///< [-]
+  double radius_width_{};     ///< [m]
+  double log_ratio_low_{};    ///< [-]
+  double log_ratio_width_{};  ///< [-]
+  double log_area_{};         ///< [-]
+  double log_total_{};        ///< [-]
 };
 
 /// Of a coordinate that is known exactly: its width, so that it has a density.

@@ -34,7 +34,7 @@ struct PlaceData {
   double scale{1};   ///< [-], of its force
   double surface{};  ///< [m]
   double misfit{};   ///< [-], sum of weighted squares
-  double samples{};  ///< so many made that sum
+  double samples{};  ///< [-]
 };
 
 /// What is known of a place before.

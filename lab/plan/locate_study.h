@@ -28,11 +28,11 @@ inline constexpr std::size_t kLocated = depth::kBallCoordinates;
 inline constexpr std::array<const char*, kLocated> kLocatedNames{
     "x_mm", "y_mm", "depth_mm", "radius_mm", "log_ratio"};
 struct Located {
-  double truth{};
-  double median{};
-  double low{};
-  double high{};
-  double bound{};  ///< Cramer-Rao, standard deviation
+  double truth{};   ///< [as the coordinate]
+  double median{};  ///< [as the coordinate]
+  double low{};     ///< [as the coordinate]
+  double high{};    ///< [as the coordinate]
+  double bound{};   ///< [as the coordinate]
 };
 
 /// One phantom and what was said of it.
