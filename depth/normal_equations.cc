@@ -152,6 +152,7 @@ void NormalEquations::add(std::span<const TouchSample> touch, const Reading& rea
     block_weight += weight;
     weights_ += weight;
     squares_ += square;
+    samples_ += 1;
     if (++count == kBlock) finish();
   }
   finish();
@@ -175,6 +176,7 @@ void NormalEquations::add(const NormalEquations& other) noexcept {
   }
   weights_ += other.weights_;
   squares_ += other.squares_;
+  samples_ += other.samples_;
 }
 
 void NormalEquations::scale(double factor) noexcept {
@@ -184,6 +186,7 @@ void NormalEquations::scale(double factor) noexcept {
   }
   weights_ *= factor;
   squares_ *= factor;
+  samples_ *= factor;
 }
 
 /// To first order the force seen from elsewhere is the force plus the step times its slope, which

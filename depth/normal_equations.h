@@ -71,6 +71,9 @@ class NormalEquations {
   [[nodiscard]] double surface() const noexcept { return surface_; }  ///< [m]
   [[nodiscard]] double weights() const noexcept { return weights_; }  ///< [1/N^2], of all samples
   [[nodiscard]] double squares() const noexcept { return squares_; }  ///< [-], of the force
+  [[nodiscard]] double samples() const noexcept {
+    return samples_;
+  }  ///< so many, those forgotten out
   /// Of unknown i: the measured force's share along the curve.
   [[nodiscard]] double along(std::size_t i, const CurveTerms& curve) const noexcept;
   /// Of unknown i and a curve: what it shares with the columns of i and of the unknowns behind.
@@ -86,6 +89,7 @@ class NormalEquations {
   double surface_;                          ///< [m]
   double weights_{};                        ///< [1/N^2]
   double squares_{};                        ///< [-]
+  double samples_{};                        ///< [-]
   std::array<Columns, kColumns> matrix_{};  ///< blocks i <= j
   Columns right_{};
 };

@@ -1,0 +1,100 @@
+#include "depth/next_touch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palp::depth {
+namespace {
+
+constexpr double kStep = 4e-3;         // [m]
+constexpr double kRound = 12e-3;       // [m], farther than that from every touch nothing is sought
+constexpr double kTouchError = 0.012;  // [-], of the force, of one touch
+constexpr std::size_t kBalls = 200;    // that stand for the posterior
+constexpr std::size_t kMiddle = 3;     // a node of the curve
+
+/// Some of the balls, each as likely as the others.
+std::vector<MapBall> even_balls(const MapPosterior& posterior) {
+  std::vector<MapBall> out;
+  double sum = 0;
+  double next = 0.5 / kBalls;
+  for (const LikelyBall& one : posterior.balls) {
+    sum += one.share;
+    for (; next < sum && out.size() < kBalls; next += 1.0 / kBalls) out.push_back(one.ball);
+  }
+  return out;
+}
+
+struct Seen {
+  BallField::Ball ball;
+  Place axis;
+};
+
+std::vector<Seen> seen_balls(const BallField& field, const MapPosterior& posterior) {
+  std::vector<Seen> out;
+  for (const MapBall& ball : even_balls(posterior)) {
+    out.push_back(
+        {field.at(ball.log_depth, ball.radius, effect_of(std::exp(ball.log_ratio))), ball.place});
+  }
+  return out;
+}
+
+/// Of a touch that comes on top of those already there: they share the place's own stiffness.
+double gain_at(const MapLikelihood& likelihood,
+               double spread,
+               const std::vector<Seen>& balls,
+               const Place& place) {
+  double mean = 0;
+  double square = 0;
+  for (const Seen& one : balls) {
+    const double told = std::log(one.ball.ratio(distance(one.axis, place))[kMiddle]);
+    mean += told;
+    square += told * told;
+  }
+  const auto count = static_cast<double>(std::max<std::size_t>(balls.size(), 1));
+  mean /= count;
+  const double variance = std::max(0.0, square / count - mean * mean);
+  // What is known of this place already, its own stiffness included, limits what more there is.
+  const bool touched = std::any_of(
+      likelihood.places().begin(), likelihood.places().end(), [&](const PlaceData& other) {
+        return distance(other.place, place) <= kSamePlace;
+      });
+  const double error = touched ? kTouchError * kTouchError + variance + spread * spread
+                               : kTouchError * kTouchError + spread * spread;
+  return 0.5 * std::log1p(variance / error);
+}
+
+}  // namespace
+
+double touch_gain(const MapLikelihood& likelihood,
+                  const BallField& field,
+                  const MapPosterior& posterior,
+                  const Place& place) {
+  const double spread = likelihood.rest(&posterior.best).spread;
+  return gain_at(likelihood, spread, seen_balls(field, posterior), place);
+}
+
+std::optional<NextTouch> next_touch(const MapLikelihood& likelihood,
+                                    const BallField& field,
+                                    const MapPosterior& posterior,
+                                    double travel) {
+  const double spread = likelihood.rest(&posterior.best).spread;
+  const std::vector<Seen> balls = seen_balls(field, posterior);
+  Place low = likelihood.places().front().place;
+  Place high = low;
+  for (const PlaceData& touched : likelihood.places()) {
+    low = {std::min(low.x, touched.place.x), std::min(low.y, touched.place.y)};
+    high = {std::max(high.x, touched.place.x), std::max(high.y, touched.place.y)};
+  }
+  std::optional<NextTouch> best;
+  for (double x = low.x - kRound; x <= high.x + kRound; x += kStep) {
+    for (double y = low.y - kRound; y <= high.y + kRound; y += kStep) {
+      if (std::abs(x) > travel || std::abs(y) > travel) continue;
+      const Place place{x, y};
+      const double gain = gain_at(likelihood, spread, balls, place);
+      if (!best || gain > best->gain) best = NextTouch{place, gain};
+    }
+  }
+  return best;
+}
+
+}  // namespace palp::depth

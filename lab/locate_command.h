@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/config/command_line.h"
+#include "common/plot/picture.h"
+#include "lab/verbs.h"
+
+namespace palp::lab {
+
+/// `palp-lab locate`, as given.
+struct LocateFlags {
+  std::uint64_t count{100};
+  std::uint64_t seed{1};
+  std::uint64_t rows{3};
+  double pitch_mm{7.5};
+  double spread{};              ///< [-]
+  double assumed_spread{0.05};  ///< [-]
+  double depth_max_mm{27};
+  std::uint64_t cores{};  ///< 0: all
+  std::string report{};
+  std::string csv{};
+  plot::PictureFlags picture{};
+};
+
+void declare_locate(config::CommandLine& line, LocateFlags& flags);
+[[nodiscard]] config::ExitStatus run_locate(const LocateFlags& flags, const Machine& machine);
+
+}  // namespace palp::lab
