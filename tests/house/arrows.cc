@@ -11,7 +11,7 @@ namespace palp::house {
 namespace {
 
 /// Rooms, the longer name first where one lies in another.
-constexpr std::array<std::string_view, 35> kRooms{"common/core",
+constexpr std::array<std::string_view, 36> kRooms{"common/core",
                                                   "common/message",
                                                   "common/coupling",
                                                   "common/link",
@@ -44,6 +44,7 @@ constexpr std::array<std::string_view, 35> kRooms{"common/core",
                                                   "lab/report",
                                                   "lab",
                                                   "review",
+                                                  "study",
                                                   "proto",
                                                   "tests"};
 
@@ -211,6 +212,8 @@ const std::vector<Arrow>& arrows() {
         "common/plot",
         "common/io/process/process_time.h",
         "common/io/process/parallel.h"}},
+      // Experiments with observers: no I/O, no clock.
+      {"study/*", {}},
       // What a site did is done again by the site's own control, and judged as the lab judges.
       {"review/*",
        {"common/message",
