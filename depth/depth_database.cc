@@ -6,8 +6,10 @@
 #include <iterator>
 #include <limits>
 
+#include "common/core/check.h"
 #include "common/core/conventions.h"
 #include "common/core/whole_file.h"
+#include "depth/axis_stencil.h"
 #include "depth/embedded_database.h"
 
 namespace palp::depth {
@@ -19,9 +21,6 @@ constexpr double kFarExponent = 1.5;  // Hertz, where the table has no rows yet
 std::size_t shape_index(fem::InclusionShape shape) {
   return shape == fem::InclusionShape::Cylinder ? 1 : 0;
 }
-
-/// What a ball of ratio k does to a uniform strain far from it, up to a constant (Eshelby, nu 0.5).
-double ratio_coordinate(double ratio) { return (ratio - 1) / (ratio + 1.5); }
 
 std::string number(double value) {
   char text[32];
@@ -85,6 +84,7 @@ DepthDatabase::DepthDatabase(const fem::DepthTable& table) : grid_{table.grid} {
     }
   }
   for (std::size_t shape = 0; shape < kShapes; ++shape) fill_gaps(shape);
+  if (table.off_axis) beside_.emplace(*table.off_axis);
 }
 
 std::size_t DepthDatabase::index(std::size_t shape,
@@ -140,38 +140,6 @@ Result<void> DepthDatabase::contains(const Query& query) const {
                      .indenter = {.radius = grid_.indenter_radius}});
 }
 
-/// Hermite cubic of the cell that holds x, slopes by the parabola through three nodes, written as
-/// weights of the four nodes round it; at the ends the parabola through the last three.
-DepthDatabase::Stencil DepthDatabase::stencil(const std::vector<double>& axis, double x) noexcept {
-  const std::size_t count = axis.size();
-  Stencil out;
-  if (count < 4) {  // a line
-    const double t = (x - axis[0]) / (axis[1] - axis[0]);
-    out.weight = {1 - t, t, 0, 0};
-    return out;
-  }
-  const auto above = std::upper_bound(axis.begin() + 1, axis.end() - 1, x);
-  const auto cell = static_cast<std::size_t>(above - axis.begin()) - 1;
-  out.first = std::min(cell == 0 ? 0 : cell - 1, count - 4);
-  const double width = axis[cell + 1] - axis[cell];
-  const double t = (x - axis[cell]) / width;
-  const auto add_slope = [&](std::size_t node, double weight) {
-    const std::size_t middle = std::clamp<std::size_t>(node, 1, count - 2);
-    const std::array<double, 3> at{axis[middle - 1], axis[middle], axis[middle + 1]};
-    for (std::size_t i = 0; i < 3; ++i) {  // derivative of Lagrange's polynomials
-      const double a = at[(i + 1) % 3];
-      const double b = at[(i + 2) % 3];
-      out.weight[middle - 1 + i - out.first] +=
-          weight * (2 * axis[node] - a - b) / ((at[i] - a) * (at[i] - b));
-    }
-  };
-  out.weight[cell - out.first] += 1 + t * t * (2 * t - 3);
-  out.weight[cell + 1 - out.first] += t * t * (3 - 2 * t);
-  add_slope(cell, width * t * (1 - t) * (1 - t));
-  add_slope(cell + 1, width * t * t * (t - 1));
-  return out;
-}
-
 DepthDatabase::Curve DepthDatabase::plain() const {
   return {.log_force = log_plain_, .indentation_max = grid_.indentations.back()};
 }
@@ -179,15 +147,15 @@ DepthDatabase::Curve DepthDatabase::plain() const {
 DepthDatabase::Curve DepthDatabase::curve(const Query& query) const {
   const std::size_t rows = indentation_axis_.size();
   const std::size_t shape = shape_index(query.shape);
-  const Stencil depth = stencil(depth_axis_, std::log(query.depth));
-  const Stencil radius = stencil(radius_axis_, std::log(query.radius));
-  const Stencil ratio = stencil(ratio_axis_, ratio_coordinate(query.ratio));
+  const AxisStencil depth = axis_stencil(depth_axis_, std::log(query.depth));
+  const AxisStencil radius = axis_stencil(radius_axis_, std::log(query.radius));
+  const AxisStencil ratio = axis_stencil(ratio_axis_, ratio_coordinate(query.ratio));
   Curve out;
   out.log_force.assign(rows, 0);
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < 4; ++j) {
+  for (std::size_t i = 0; i < depth.count; ++i) {
+    for (std::size_t j = 0; j < radius.count; ++j) {
       const std::size_t from = index(shape, depth.first + i, radius.first + j, ratio.first);
-      for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t k = 0; k < ratio.count; ++k) {
         const double weight = depth.weight[i] * radius.weight[j] * ratio.weight[k];
         const double* values = &log_excess_[(from + k) * rows];
         for (std::size_t row = 0; row < rows; ++row) out.log_force[row] += weight * values[row];
@@ -203,8 +171,8 @@ DepthDatabase::Curve DepthDatabase::curve(const Query& query) const {
   const auto cell = static_cast<std::size_t>(above - grid_.depths.begin()) - 1;
   std::size_t solved = rows;
   for (const std::size_t step : {std::size_t{0}, std::size_t{1}}) {
-    for (std::size_t j = 0; j < 4; ++j) {
-      for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t j = 0; j < radius.count; ++j) {
+      for (std::size_t k = 0; k < ratio.count; ++k) {
         const std::size_t here =
             solved_[index(shape, cell + step, radius.first + j, ratio.first + k)];
         if (here > 0) solved = std::min(solved, here);
@@ -215,16 +183,45 @@ DepthDatabase::Curve DepthDatabase::curve(const Query& query) const {
   return out;
 }
 
+double DepthDatabase::log_at(const std::vector<double>& log_force, double x) const noexcept {
+  const AxisStencil at = axis_stencil(indentation_axis_, x);
+  double sum = 0;
+  for (std::size_t i = 0; i < at.count; ++i) sum += at.weight[i] * log_force[at.first + i];
+  return sum;
+}
+
 double DepthDatabase::force(const Curve& curve, double indentation) const noexcept {
   if (!(indentation > 0)) return 0;
   const double x = std::log(indentation);
   if (x < indentation_axis_.front()) {
     return std::exp(curve.log_force.front() + kFarExponent * (x - indentation_axis_.front()));
   }
-  const Stencil at = stencil(indentation_axis_, x);
-  double sum = 0;
-  for (std::size_t i = 0; i < 4; ++i) sum += at.weight[i] * curve.log_force[at.first + i];
-  return std::exp(sum);
+  return std::exp(log_at(curve.log_force, x));
+}
+
+double DepthDatabase::log_excess(const Curve& curve, double indentation) const noexcept {
+  if (!(indentation > grid_.indentations.front()))
+    return curve.log_force.front() - log_plain_.front();
+  const double x = std::log(indentation);
+  return log_at(curve.log_force, x) - log_at(log_plain_, x);
+}
+
+LateralShape::OfBall DepthDatabase::shape(const Query& ball) const {
+  PALP_CHECK(beside_.has_value(), "solved_beside() has been asked");
+  return beside_->of(ball.depth, ball.radius, ball.ratio);
+}
+
+double DepthDatabase::share(const LateralShape::OfBall& ball,
+                            double offset,
+                            double indentation) const noexcept {
+  return beside_->share(ball, offset, indentation);
+}
+
+double DepthDatabase::log_excess(const Curve& curve,
+                                 const LateralShape::OfBall& ball,
+                                 double offset,
+                                 double indentation) const noexcept {
+  return log_excess(curve, indentation) * share(ball, offset, indentation);
 }
 
 Result<DepthDatabase> default_database() {

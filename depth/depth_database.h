@@ -1,10 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "depth/lateral_shape.h"
 #include "fem/depth_table.h"
 
 namespace palp::depth {
@@ -39,15 +40,29 @@ class DepthDatabase {
 
   /// Of the block with the grid's Young's modulus; 0 outside the tissue. [m] -> [N]
   [[nodiscard]] double force(const Curve& curve, double indentation) const noexcept;
+  /// ln(F / F_plain), on the inclusion's axis. [-] Allocates nothing; `indentation` [m].
+  [[nodiscard]] double log_excess(const Curve& curve, double indentation) const noexcept;
+
+  /// Whether it knows what a tip beside a ball's axis feels; the three below ask for it.
+  [[nodiscard]] bool solved_beside() const noexcept { return beside_.has_value(); }
+  /// What is left of this ball's effect beside its axis, over offset and indentation.
+  [[nodiscard]] LateralShape::OfBall shape(const Query& ball) const;
+  /// g, see LateralShape::share(). `offset` from the axis, on either side [m]. Allocates nothing.
+  [[nodiscard]] double share(const LateralShape::OfBall& ball,
+                             double offset,
+                             double indentation) const noexcept;
+  /// ln(F / F_plain) beside the axis: that on the axis times g. Several balls far apart add up.
+  /// [-] `curve` and `ball` of one query; allocates nothing.
+  [[nodiscard]] double log_excess(const Curve& curve,
+                                  const LateralShape::OfBall& ball,
+                                  double offset,
+                                  double indentation) const noexcept;
 
  private:
-  struct Stencil {
-    std::size_t first{};
-    std::array<double, 4> weight{};  ///< [-]
-  };
   explicit DepthDatabase(const fem::DepthTable& table);
   void fill_gaps(std::size_t shape);
-  [[nodiscard]] static Stencil stencil(const std::vector<double>& axis, double x) noexcept;
+  /// A curve's logarithm at the logarithm x of an indentation.
+  [[nodiscard]] double log_at(const std::vector<double>& log_force, double x) const noexcept;
   [[nodiscard]] std::size_t index(std::size_t shape,
                                   std::size_t depth,
                                   std::size_t radius,
@@ -61,6 +76,7 @@ class DepthDatabase {
   std::vector<double> log_plain_;         ///< [-], log of N
   std::vector<double> log_excess_;        ///< [-], by shape, depth, radius, ratio, indentation
   std::vector<std::size_t> solved_;       ///< indentations of each member that were solved
+  std::optional<LateralShape> beside_;
 };
 
 /// The database that comes with the program.

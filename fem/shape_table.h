@@ -8,8 +8,7 @@ namespace palp::fem {
 
 /// What is left of a ball's effect on the force beside its axis: g of off_axis_curve.h, on a grid.
 /// Offsets are counted in the depth of the ball's centre, over which g is nearly one curve for all
-/// balls; between them -ln(g) / offset^2 is linear in each axis (ratio: in (k - 1) / (k + 1.5);
-/// depth and radius: in their logarithms). A value. Thread: any.
+/// balls. What was solved, nothing interpolated. A value. Thread: any.
 struct ShapeTable {
   std::vector<double> depths;        ///< [m], of the ball's top, rising
   std::vector<double> radii;         ///< [m], rising
@@ -19,21 +18,6 @@ struct ShapeTable {
   /// [-], in ]0, 1[; depth runs slowest, then radius, ratio, offset, indentation.
   std::vector<float> shape;
 
-  struct Place {
-    double depth{};        ///< [m]
-    double radius{};       ///< [m]
-    double ratio{};        ///< [-]
-    double offset{};       ///< [m], either side
-    double indentation{};  ///< [m]
-  };
-  /// g there. [-] Outside of the grid as at its edge; beyond the farthest offset it falls as the
-  /// sixth power.
-  [[nodiscard]] double at(const Place& place) const;
-
-  /// Where the values of one ball begin in `shape`.
-  [[nodiscard]] std::size_t first_of(std::size_t depth,
-                                     std::size_t radius,
-                                     std::size_t ratio) const;
   /// Number of values of one ball.
   [[nodiscard]] std::size_t ball_size() const noexcept {
     return offsets.size() * indentations.size();

@@ -122,7 +122,8 @@ std::optional<Rooms::Outgoing> Rooms::join(const io::RelayMessage& message,
   places_[from.bytes()] = {.room = message.room, .seat = number};
   ++counts_.joins;
   RelayMessage joined = message;
-  joined.detail = room.seats[1 - number].address.valid() ? 1 : 0;
+  const Seat& other = room.seats[1 - number];
+  joined.detail = other.address.valid() && now - other.heard_at <= kPresentMax ? 1 : 0;
   return answer(joined, RelayMessage::Kind::Joined, from);
 }
 

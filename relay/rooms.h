@@ -42,6 +42,9 @@ class Rooms {
   static constexpr double kProofsPerHostMax = 20;  ///< [1/s]
   static constexpr double kProofsMax = 1000;       ///< [1/s]
   static constexpr Duration kIdleMax = std::chrono::seconds{60};
+  /// Who has not been heard for so long keeps the seat, but nobody is told to be in the room with
+  /// it: several times the pause between a waiting site's Joins.
+  static constexpr Duration kPresentMax = std::chrono::seconds{4};
 
   /// Where a datagram goes; `bytes` are those that came, or an answer that the next call forgets.
   struct Outgoing {

@@ -37,11 +37,10 @@ class MergeSource {
   void take(const record::McapSchema& schema) { channels_.add(schema); }
   void take(const record::McapChannel& channel) { channels_.add(channel); }
   void take(const record::McapMessage& message) { message_ = message; }
-  void take(const record::McapAttachment& attachment) {
-    writer_.add_attachment(attachment.log_time,
-                           site_ + '/' + std::string{attachment.name},
-                           attachment.media_type,
-                           attachment.data);
+  void take(record::McapAttachment attachment) {
+    const std::string name = site_ + '/' + std::string{attachment.name};
+    attachment.name = name;
+    writer_.add_attachment(attachment);
   }
   void take(const record::McapMetadata& metadata) {
     writer_.add_metadata(site_ + '/' + std::string{metadata.name}, metadata.entries);

@@ -25,10 +25,7 @@ class Copy {
     channels_.add(message, message.log_time, message.publish_time);
     count_gap(message);
   }
-  void operator()(const record::McapAttachment& attachment) {
-    writer_.add_attachment(
-        attachment.log_time, attachment.name, attachment.media_type, attachment.data);
-  }
+  void operator()(const record::McapAttachment& attachment) { writer_.add_attachment(attachment); }
   void operator()(const record::McapMetadata& metadata) {
     writer_.add_metadata(metadata.name, metadata.entries);
   }

@@ -50,6 +50,10 @@ Result<std::vector<io::MachineFinding>> CheckCommand::beyond_the_machine() const
     return tl::unexpected{error};
   }
   findings.push_back(io::judge_path(*facts));
+  if (facts->round_trips.empty()) return findings;  // nobody is there to prove anything to
+  const auto handshake = io::try_handshake(*place, **credentials);
+  if (!handshake) return fail_to_reach(handshake.error().text);
+  findings.push_back(*handshake);
   return findings;
 }
 

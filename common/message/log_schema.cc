@@ -5,6 +5,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "common/message/descriptor_builder.h"
 #include "common/message/kind.h"
 #include "common/message/text_encoding.h"
 
@@ -12,34 +13,7 @@ namespace palp::message {
 namespace {
 
 using Bytes = std::vector<std::byte>;
-
-/// Messages of descriptor.proto, as protobuf writes them. Their field numbers are protobuf's own.
-class Builder {
- public:
-  void number(unsigned field, std::uint64_t value) {
-    varint(wire_tag(field, WireType::Varint));
-    varint(value);
-  }
-  void text(unsigned field, std::string_view value) {
-    part(field, std::as_bytes(std::span{value}));
-  }
-  void part(unsigned field, std::span<const std::byte> value) {
-    varint(wire_tag(field, WireType::Part));
-    varint(value.size());
-    bytes_.insert(bytes_.end(), value.begin(), value.end());
-  }
-  [[nodiscard]] const Bytes& bytes() const noexcept { return bytes_; }
-
- private:
-  void varint(std::uint64_t value) {
-    std::array<std::byte, kVarintSizeMax> room{};
-    WireWriter writer{room};
-    writer.put_varint(value);
-    bytes_.insert(
-        bytes_.end(), room.begin(), room.begin() + static_cast<std::ptrdiff_t>(writer.size()));
-  }
-  Bytes bytes_;
-};
+using Builder = DescriptorBuilder;
 
 /// FieldDescriptorProto.Type
 template <class Item, class Value>

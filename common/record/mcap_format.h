@@ -52,6 +52,15 @@ using McapMap = std::vector<std::pair<std::string, std::string>>;
 
 using Bytes = std::vector<std::byte>;
 
+/// A file within the file. Text and data are somebody else's.
+struct McapAttachment {
+  std::uint64_t log_time{};     ///< [ns]
+  std::uint64_t create_time{};  ///< [ns]
+  std::string_view name;
+  std::string_view media_type;
+  std::span<const std::byte> data;
+};
+
 template <std::integral T>
 void append(Bytes& out, T value) {
   const std::size_t at = out.size();

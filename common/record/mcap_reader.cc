@@ -159,7 +159,9 @@ void McapReader::open_chunk(const RawRecord& record) {
   chunk_offset_ = 0;
   chunk_at_ = record.offset;
   chunk_messages_.clear();
-  chunk_places_.push_back({record.offset, kMcapPrefixSize + record.content.size()});
+  if (chunk_places_.size() < limits_.chunk_places_max) {
+    chunk_places_.push_back({record.offset, kMcapPrefixSize + record.content.size()});
+  }
   ++report_.chunks;
   ByteCursor cursor{record.content};
   const auto begin = cursor.read<std::uint64_t>();
@@ -206,16 +208,15 @@ bool McapReader::admit_unpacked(const RawRecord& record, std::uint64_t size) {
   return false;
 }
 
-bool McapReader::admit_definition(const RawRecord& record) {
-  definitions_size_ += record.content.size();
-  if (definitions_size_ > limits_.definitions_size_max) {
-    fault(record.offset, "schemas and channels take more bytes than the limit");
-    return false;
-  }
-  return true;
+/// `so_far`: what is kept already; 0 asks before the record is taken apart.
+bool McapReader::admit_definition(const RawRecord& record, std::uint64_t so_far) {
+  if (so_far + record.content.size() <= limits_.definitions_size_max) return true;
+  fault(record.offset, "schemas and channels take more bytes than the limit");
+  return false;
 }
 
 std::optional<McapItem> McapReader::read_schema(const RawRecord& record) {
+  if (!admit_definition(record, 0)) return std::nullopt;
   ByteCursor cursor{record.content};
   McapSchema schema;
   schema.id = cursor.read<std::uint16_t>();
@@ -237,13 +238,13 @@ std::optional<McapItem> McapReader::read_schema(const RawRecord& record) {
     }
     return std::nullopt;
   }
-  if (!admit_definition(record)) {
-    return std::nullopt;
-  }
+  if (!admit_definition(record, definitions_size_)) return std::nullopt;
+  definitions_size_ += record.content.size();
   return schemas_.emplace(schema.id, std::move(schema)).first->second;
 }
 
 std::optional<McapItem> McapReader::read_channel(const RawRecord& record) {
+  if (!admit_definition(record, 0)) return std::nullopt;
   ByteCursor cursor{record.content};
   McapChannel channel;
   channel.id = cursor.read<std::uint16_t>();
@@ -271,9 +272,8 @@ std::optional<McapItem> McapReader::read_channel(const RawRecord& record) {
               ", which is not there");
     return std::nullopt;
   }
-  if (!admit_definition(record)) {
-    return std::nullopt;
-  }
+  if (!admit_definition(record, definitions_size_)) return std::nullopt;
+  definitions_size_ += record.content.size();
   return channels_.emplace(channel.id, std::move(channel)).first->second;
 }
 
@@ -323,6 +323,10 @@ std::optional<McapItem> McapReader::read_attachment(const RawRecord& record) {
 }
 
 std::optional<McapItem> McapReader::read_metadata(const RawRecord& record) {
+  if (record.content.size() > limits_.metadata_size_max) {
+    fault(record.offset, "this metadata record is longer than the limit");
+    return std::nullopt;
+  }
   ByteCursor cursor{record.content};
   McapMetadata metadata;
   metadata.name = cursor.text();

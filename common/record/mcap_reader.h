@@ -43,14 +43,6 @@ struct McapMessage {
   std::span<const std::byte> payload;
 };
 
-struct McapAttachment {
-  std::uint64_t log_time{};     ///< [ns]
-  std::uint64_t create_time{};  ///< [ns]
-  std::string_view name;
-  std::string_view media_type;
-  std::span<const std::byte> data;
-};
-
 struct McapMetadata {
   std::string_view name;
   McapMap entries;
@@ -82,7 +74,9 @@ struct McapLimits {
   /// to there. Recordings of ours unpack to less than 30 times their size.
   std::uint64_t unpacked_size_free{64u << 20};  ///< [bytes]
   std::uint64_t unpacked_ratio_max{256};
-  std::uint64_t definitions_size_max{64u << 20};  ///< [bytes], of all schemas and channels
+  std::uint64_t definitions_size_max{4u << 20};         ///< [bytes], of all schemas and channels
+  std::uint64_t metadata_size_max{2u << 20};            ///< [bytes], of one metadata record
+  std::size_t chunk_places_max{std::size_t{1} << 20U};  ///< kept to be held against the index
   /// [bytes], of a schema or topic: names are compared with every message.
   std::size_t name_size_max{4096};
   std::size_t faults_max{64};  ///< kept with their text; all are counted
@@ -146,7 +140,7 @@ class McapReader {
   std::optional<McapItem> read_attachment(const RawRecord& record);
   std::optional<McapItem> read_metadata(const RawRecord& record);
   std::optional<McapItem> read_statistics(const RawRecord& record);
-  bool admit_definition(const RawRecord& record);
+  bool admit_definition(const RawRecord& record, std::uint64_t so_far);
   void check_message_index(const RawRecord& record);
   void check_chunk_index(const RawRecord& record);
   void leave_behind(std::uint64_t offset);
@@ -173,8 +167,8 @@ class McapReader {
   std::uint64_t chunk_at_{};          ///< in the file
   bool data_ended_{};
   std::map<std::uint16_t, std::uint64_t> chunk_messages_;  ///< per channel
-  std::vector<ChunkPlace> chunk_places_;
-  std::size_t chunk_indexes_{};  ///< seen so far
+  std::vector<ChunkPlace> chunk_places_;                   ///< of the first ones
+  std::size_t chunk_indexes_{};                            ///< seen so far
   std::map<std::uint16_t, McapSchema> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;
   std::uint64_t definitions_size_{};  ///< [bytes]

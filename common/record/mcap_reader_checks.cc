@@ -47,8 +47,9 @@ void McapReader::check_chunk_index(const RawRecord& record) {
   const auto offset = cursor.read<std::uint64_t>();
   const auto length = cursor.read<std::uint64_t>();
   const std::size_t number = chunk_indexes_++;
-  if (!cursor.ok() || number >= chunk_places_.size() ||
-      !(chunk_places_[number] == ChunkPlace{offset, length})) {
+  const bool kept = number < chunk_places_.size();
+  if (!cursor.ok() || number >= report_.chunks ||
+      (kept && !(chunk_places_[number] == ChunkPlace{offset, length}))) {
     fault(record.offset, "chunk index " + std::to_string(number) + " points at no such chunk");
   }
 }
@@ -125,10 +126,10 @@ void McapReader::check_footer(const RawRecord& record) {
   if (crc != 0 && crc != crc32(file_.subspan(summary_begin, covered))) {
     fault(record.offset, "the summary has a wrong CRC");
   }
-  if (chunk_indexes_ != 0 && chunk_indexes_ != chunk_places_.size()) {
+  if (chunk_indexes_ != 0 && chunk_indexes_ != report_.chunks) {
     fault(record.offset,
           std::to_string(chunk_indexes_) + " chunk indexes stand for " +
-              std::to_string(chunk_places_.size()) + " chunks");
+              std::to_string(report_.chunks) + " chunks");
   }
 }
 

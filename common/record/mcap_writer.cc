@@ -99,21 +99,18 @@ std::uint16_t McapWriter::add_channel(std::uint16_t schema,
   return id;
 }
 
-void McapWriter::add_attachment(std::uint64_t log_time,
-                                std::string_view name,
-                                std::string_view media_type,
-                                std::span<const std::byte> data) {
+void McapWriter::add_attachment(const McapAttachment& one) {
   flush();
   const std::uint64_t offset = counts_.bytes;
   output_.clear();
   {
     const RecordScope attachment{output_, McapOpcode::Attachment};
-    append(output_, log_time);
-    append(output_, log_time);
-    append(output_, name);
-    append(output_, media_type);
-    append(output_, std::uint64_t{data.size()});
-    append(output_, data);
+    append(output_, one.log_time);
+    append(output_, one.create_time);
+    append(output_, one.name);
+    append(output_, one.media_type);
+    append(output_, std::uint64_t{one.data.size()});
+    append(output_, one.data);
     append(output_, crc32(std::span{output_}.subspan(attachment.content())));
   }
   const std::uint64_t length = output_.size();
@@ -122,11 +119,11 @@ void McapWriter::add_attachment(std::uint64_t log_time,
   const RecordScope index{attachment_indexes_, McapOpcode::AttachmentIndex};
   append(attachment_indexes_, offset);
   append(attachment_indexes_, length);
-  append(attachment_indexes_, log_time);
-  append(attachment_indexes_, log_time);
-  append(attachment_indexes_, std::uint64_t{data.size()});
-  append(attachment_indexes_, name);
-  append(attachment_indexes_, media_type);
+  append(attachment_indexes_, one.log_time);
+  append(attachment_indexes_, one.create_time);
+  append(attachment_indexes_, std::uint64_t{one.data.size()});
+  append(attachment_indexes_, one.name);
+  append(attachment_indexes_, one.media_type);
 }
 
 void McapWriter::add_metadata(std::string_view name, const McapMap& entries) {

@@ -46,6 +46,7 @@ struct McapStamp {
   std::uint32_t sequence{};
   std::uint64_t log_time{};      ///< [ns]
   std::uint64_t publish_time{};  ///< [ns]
+  bool operator==(const McapStamp&) const = default;
 };
 
 struct McapWriterCounts {
@@ -74,10 +75,7 @@ class McapWriter {
                             std::string_view topic,
                             std::string_view message_encoding,
                             const McapMap& metadata = {});
-  void add_attachment(std::uint64_t log_time,
-                      std::string_view name,
-                      std::string_view media_type,
-                      std::span<const std::byte> data);
+  void add_attachment(const McapAttachment& one);
   void add_metadata(std::string_view name, const McapMap& entries);
 
   /// Room for the payload of a new message, in the chunk itself: fill all of it at once, it is

@@ -6,6 +6,7 @@
 
 #include "common/message/log_bytes.h"
 #include "common/message/log_schema.h"
+#include "common/record/log_line.h"
 #include "common/record/said_twice.h"
 
 namespace palp::record {
@@ -106,6 +107,7 @@ Verdict SessionDecoder::decode(std::string_view schema,
                                TimePoint at,
                                Parts& parts) noexcept {
   parts.clear();
+  if (schema == kLogLineSchema) return Verdict::View;
   if (!schema.starts_with(message::kLogPackage)) return Verdict::Unknown;
   std::string_view name = schema.substr(message::kLogPackage.size());
   if (name.size() < 2 || name.front() != '.') return Verdict::Unknown;

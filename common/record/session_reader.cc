@@ -12,7 +12,12 @@ std::string value_of(const McapMap& map, std::string_view key) {
   return found == map.end() ? std::string{} : found->second;
 }
 
-constexpr std::size_t kSessionsMax = 4096;  ///< kept of a file that names more
+// Kept of a file that says more.
+constexpr std::size_t kSessionsMax = 4096;
+constexpr std::size_t kAttachmentsMax = 4096;
+constexpr std::size_t kNameSizeMax = 4096;                      ///< [bytes], of an attachment
+constexpr std::size_t kMetadataSizeMax = std::size_t{4} << 20;  ///< [bytes]
+constexpr std::size_t kEntrySize = 64;  ///< [bytes], that an entry takes beside its text
 
 }  // namespace
 
@@ -25,10 +30,7 @@ std::optional<SessionEntry> SessionReader::next() {
     if (const auto* metadata = std::get_if<McapMetadata>(&*item)) {
       keep(*metadata);
     } else if (const auto* attachment = std::get_if<McapAttachment>(&*item)) {
-      // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes of a text
-      const auto* text = reinterpret_cast<const char*>(attachment->data.data());
-      attachments_.insert_or_assign(std::string{attachment->name},
-                                    std::string_view{text, attachment->data.size()});
+      keep(*attachment);
     } else if (const auto* message = std::get_if<McapMessage>(&*item)) {
       count(*message);
       if (auto entry = decode(*message)) {
@@ -43,7 +45,20 @@ void SessionReader::only_between(TimePoint from, TimePoint to) noexcept {
   mcap_.only_between(clock_.stamp(from), clock_.stamp(to));
 }
 
+void SessionReader::keep(const McapAttachment& attachment) {
+  if (attachments_.size() >= kAttachmentsMax || attachment.name.size() > kNameSizeMax) return;
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes of a text
+  const auto* text = reinterpret_cast<const char*>(attachment.data.data());
+  attachments_.insert_or_assign(std::string{attachment.name},
+                                std::string_view{text, attachment.data.size()});
+}
+
 void SessionReader::keep(const McapMetadata& metadata) {
+  metadata_size_ += kEntrySize + metadata.name.size();
+  for (const auto& [key, value] : metadata.entries) {
+    metadata_size_ += kEntrySize + key.size() + value.size();
+  }
+  if (metadata_size_ > kMetadataSizeMax) return;
   if (metadata.name == "palp.session") {
     if (sessions_.size() < kSessionsMax) {
       sessions_.push_back({.id = value_of(metadata.entries, "session_id"),

@@ -76,11 +76,13 @@ class SessionReader {
  private:
   std::optional<SessionEntry> decode(const McapMessage& message);
   void count(const McapMessage& message);
+  void keep(const McapAttachment& attachment);
   void keep(const McapMetadata& metadata);
 
   McapReader mcap_;
   std::map<std::string, TopicCount> topics_;
   std::map<std::string, McapMap, std::less<>> metadata_;
+  std::size_t metadata_size_{};  ///< [bytes]
   std::map<std::string, std::string_view, std::less<>> attachments_;
   std::vector<SessionName> sessions_;
   SessionDecoder::Parts parts_;  ///< of the newest message, still to be given

@@ -1,8 +1,10 @@
 #include "common/record/session_writer.h"
 
+#include <cstring>
 #include <numeric>
 #include <span>
 
+#include "common/record/log_line.h"
 #include "common/record/said_twice.h"
 
 namespace palp::record {
@@ -29,6 +31,7 @@ std::uint64_t SessionCounts::records() const noexcept {
 SessionCounts& SessionCounts::operator+=(const SessionCounts& other) noexcept {
   for (std::size_t type = 0; type < by_type.size(); ++type) by_type[type] += other.by_type[type];
   views += other.views;
+  log_lines += other.log_lines;
   misplaced += other.misplaced;
   return *this;
 }
@@ -43,17 +46,22 @@ SessionWriter::SessionWriter(ByteSink& sink, const SessionInfo& info, const Mcap
   describe_clock(info, metadata);
   metadata.insert(metadata.end(), info.metadata.begin(), info.metadata.end());
   mcap_.add_metadata("palp", metadata);
+  const std::uint64_t opened_at = clock_.stamp(info.opened_at);
   for (const SessionAttachment& attachment : info.attachments) {
-    mcap_.add_attachment(clock_.stamp(info.opened_at),
-                         attachment.name,
-                         attachment.media_type,
-                         std::as_bytes(std::span{attachment.content}));
+    mcap_.add_attachment({.log_time = opened_at,
+                          .create_time = opened_at,
+                          .name = attachment.name,
+                          .media_type = attachment.media_type,
+                          .data = std::as_bytes(std::span{attachment.content})});
   }
   for (const TopicFormat& format : topics_of(info.site)) {
     const auto schema = mcap_.add_schema(format.schema, "protobuf", format.descriptors);
     channels_[static_cast<std::size_t>(format.topic)].id =
         mcap_.add_channel(schema, format.name, "protobuf");
   }
+  const auto schema = mcap_.add_schema(kLogLineSchema, "protobuf", log_line_descriptors());
+  log_channel_.id =
+      mcap_.add_channel(schema, std::string{site_name(info.site)} + "/log", "protobuf");
 }
 
 SessionWriter::~SessionWriter() { close(); }
@@ -105,6 +113,7 @@ bool SessionWriter::write_alone(const Record& record) {
     return false;
   }
   ++counts_.by_type[record.index()];
+  if (prepared->topic == Topic::Event) write_log_line(record, prepared->at);
   return true;
 }
 
@@ -122,20 +131,34 @@ void SessionWriter::look_for_session(const LinkHeard& heard) {
 }
 
 bool SessionWriter::put(const Prepared& prepared) {
-  const std::uint64_t stamp = clock_.stamp(prepared.at);
   Channel& channel = channels_[static_cast<std::size_t>(prepared.topic)];
+  std::byte* place = place_for(channel, clock_.stamp(prepared.at), prepared.size);
+  if (place == nullptr) return false;
+  encoder_.store(place);
+  return true;
+}
+
+std::byte* SessionWriter::place_for(Channel& channel, std::uint64_t stamp, std::size_t size) {
   std::byte* place = mcap_.add_message({.channel = channel.id,
                                         .sequence = channel.sequence,
                                         .log_time = stamp,
                                         .publish_time = stamp},
-                                       prepared.size);
-  if (place == nullptr) {
-    return false;
-  }
+                                       size);
+  if (place == nullptr) return nullptr;
   if (mcap_.waiting() == 1) settled_ = counts_;  // all before are written
   ++channel.sequence;
-  encoder_.store(place);
-  return true;
+  return place;
+}
+
+void SessionWriter::write_log_line(const Record& event, TimePoint at) {
+  const auto line = log_line_of(event, gatherer_.site());
+  if (!line) return;
+  const std::uint64_t stamp = clock_.stamp(at);
+  const Bytes bytes = log_line_bytes(*line, stamp);
+  std::byte* place = place_for(log_channel_, stamp, bytes.size());
+  if (place == nullptr) return;
+  std::memcpy(place, bytes.data(), bytes.size());
+  ++counts_.log_lines;
 }
 
 void SessionWriter::view(const SiteTick& tick) {

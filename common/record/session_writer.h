@@ -44,15 +44,19 @@ inline constexpr const char* kReportKey = "json";
 struct SessionCounts {
   SessionCounts& operator+=(const SessionCounts& other) noexcept;
   std::array<std::uint64_t, std::variant_size_v<Record>> by_type{};  ///< in the order of Record
-  std::uint64_t views{};
+  std::uint64_t views{};                                             ///< of ticks
+  std::uint64_t log_lines{};                                         ///< of events
   std::uint64_t misplaced{};  ///< records that have no topic at this site
   [[nodiscard]] std::uint64_t records() const noexcept;
+  /// Messages of the file: records, and what says the same once more.
+  [[nodiscard]] std::uint64_t messages() const noexcept { return records() + views + log_lines; }
 };
 
 /// Writes one site's session file: each Record on its topic, stamped with its own instant on the
-/// wall clock, and the ticks once more at 50 Hz as extremes. As a session begins the metadata
-/// record `palp.session` names it. Never throws after construction; when the disk is full the
-/// recording ends and `lost()` grows. Thread: record (or the one thread of virtual time).
+/// wall clock; the ticks once more at 50 Hz as extremes, the events as foxglove.Log. As a session
+/// begins the metadata record `palp.session` names it. Never throws after construction; when the
+/// disk is full the recording ends and `lost()` grows. Thread: record (or the one thread of virtual
+/// time).
 class SessionWriter {
  public:
   /// `sink` outlives the writer.
@@ -80,8 +84,7 @@ class SessionWriter {
   [[nodiscard]] const SessionCounts& counts() const noexcept {
     return failed() ? settled_ : counts_;
   }
-  /// Messages in the file (or its waiting chunk), views included: what an independent reader
-  /// counts.
+  /// Messages in the file (or its waiting chunk), all of them: what an independent reader counts.
   [[nodiscard]] std::uint64_t messages() const noexcept { return mcap_.counts().messages; }
   [[nodiscard]] std::uint64_t lost() const noexcept { return mcap_.counts().lost; }
   [[nodiscard]] std::uint64_t size() const noexcept { return mcap_.counts().bytes; }  ///< [bytes]
@@ -94,17 +97,21 @@ class SessionWriter {
   bool put_whole(FileTick tick);
   void release_tick();
   bool put(const Prepared& prepared);
-  void view(const SiteTick& tick);
-  void write_view();
-  void look_for_session(const LinkHeard& heard);
-
-  McapWriter mcap_;
-  SessionEncoder encoder_;
   struct Channel {
     std::uint16_t id{};
     std::uint32_t sequence{};
   };
+  /// Room for a message; nullptr: the recording has ended.
+  std::byte* place_for(Channel& channel, std::uint64_t stamp, std::size_t size);
+  void view(const SiteTick& tick);
+  void write_view();
+  void write_log_line(const Record& event, TimePoint at);
+  void look_for_session(const LinkHeard& heard);
+
+  McapWriter mcap_;
+  SessionEncoder encoder_;
   std::array<Channel, kTopicCount> channels_{};
+  Channel log_channel_;
   GivenGatherer gatherer_;
   TickView view_;
   WallClock clock_;

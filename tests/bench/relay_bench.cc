@@ -159,7 +159,7 @@ void enter(const Port& port, link::Role role, const Endpoint& relay) {
                          relay,
                          static_cast<std::uint64_t>(real_now_ns())};
   const TimePoint now{std::chrono::seconds{1}};
-  port.send(*member.tick(now, true), relay);
+  port.send(*member.tick(now, io::RelayMember::SessionIs::Silent), relay);
   for (int answers = 0; answers < 2;) {  // a cookie, and that the seat is taken
     const auto heard = port.receive();
     if (!heard) continue;

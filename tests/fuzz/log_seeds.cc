@@ -112,7 +112,11 @@ Bytes session_file(const McapOptions& options) {
     channels[topic.topic] = writer.add_channel(schema, topic.name, "protobuf");
   }
   writer.add_metadata("palp", {{"program", "fuzz"}});
-  writer.add_attachment(1, "config.textproto", "text/plain", std::as_bytes(std::span{"x: 1"}));
+  writer.add_attachment({.log_time = 1,
+                         .create_time = 1,
+                         .name = "config.textproto",
+                         .media_type = "text/plain",
+                         .data = std::as_bytes(std::span{"x: 1"})});
   std::uint32_t sequence = 0;
   for (const Record& record : records()) {
     const auto prepared = encoder.prepare(record, 0);

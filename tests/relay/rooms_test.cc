@@ -34,7 +34,7 @@ struct Visitor {
 
   /// Asks, shows the cookie, hears the answer; keeps the Join it sent.
   void enter(Rooms& rooms, TimePoint now) {
-    const auto ask = member.tick(now, true);
+    const auto ask = member.tick(now, RelayMember::SessionIs::Silent);
     ASSERT_TRUE(ask);
     const auto cookie = rooms.hear(*ask, from, now);
     ASSERT_TRUE(cookie);
@@ -82,6 +82,21 @@ TEST_F(RoomsTest, TwoSitesOfARoomReachEachOther) {
   EXPECT_EQ(patient_.last->kind, RelayMessage::Kind::Joined);
   EXPECT_EQ(patient_.last->detail, 1);
   EXPECT_EQ(surgeon_.last->detail, 0) << "was alone when it came";
+}
+
+TEST_F(RoomsTest, WhoHasFallenSilentIsNotSaidToBeThereButKeepsItsSeat) {
+  meet();
+  pass(Rooms::kPresentMax);
+  surgeon_.enter(rooms_, now_);
+  EXPECT_EQ(surgeon_.last->detail, 1);
+  pass(RelayMember::kAskEveryInNeed);
+  surgeon_.enter(rooms_, now_);
+  EXPECT_EQ(surgeon_.last->detail, 0) << "the patient's site has left";
+  EXPECT_EQ(way(kSurgeon), kPatient) << "or its network pauses";
+  (void)way(kPatient);
+  pass(RelayMember::kAskEveryInNeed);
+  surgeon_.enter(rooms_, now_);
+  EXPECT_EQ(surgeon_.last->detail, 1) << "it is heard again";
 }
 
 TEST_F(RoomsTest, AnotherNameIsAnotherRoom) {
@@ -145,7 +160,7 @@ TEST_F(RoomsTest, ACookieWithoutTheRoomsKeyMovesNobody) {
 }
 
 TEST_F(RoomsTest, AnOldCookieIsNoneAndNeitherIsThatOfAnotherRelay) {
-  const auto ask = surgeon_.member.tick(now_, true);
+  const auto ask = surgeon_.member.tick(now_, RelayMember::SessionIs::Silent);
   const auto cookie = rooms_.hear(*ask, kSurgeon, now_);
   const auto join = surgeon_.member.hear(cookie->bytes, kRelay, now_);
   ASSERT_TRUE(join);

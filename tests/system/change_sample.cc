@@ -63,9 +63,7 @@ class Copy {
                                            payload.size());
     if (place != nullptr && !payload.empty()) std::memcpy(place, payload.data(), payload.size());
   }
-  void operator()(const McapAttachment& one) {
-    writer_.add_attachment(one.log_time, one.name, one.media_type, one.data);
-  }
+  void operator()(const McapAttachment& one) { writer_.add_attachment(one); }
   void operator()(const McapMetadata& one) { writer_.add_metadata(one.name, one.entries); }
   void operator()(const McapStatistics& /*one*/) {}
 

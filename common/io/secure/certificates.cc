@@ -272,12 +272,15 @@ std::string revoke(const CertificatesConfig& config, const std::string& certific
          X509_CRL_sign(list.get(), authority.key.get(), EVP_sha256()) != 0);
   const std::string text = pem([&](BIO* out) { return PEM_write_bio_X509_CRL(out, list.get()); });
   constexpr mode_t kForAll = 0644;
+  std::string lists;
   for (const char* place : {"authority", "surgeon", "patient"}) {
     if (!std::filesystem::is_directory(folder / place)) continue;
-    write_file(folder / place / "revoked.pem", text, kForAll);
+    const path list_there = folder / place / "revoked.pem";
+    write_file(list_there, text, kForAll);
+    lists += (lists.empty() ? "" : ", ") + list_there.string();
   }
-  return "revoked " + certificate + ": " + (folder / "authority" / "revoked.pem").string() +
-         " must be copied to both sites, which read it when they start";
+  return "revoked " + certificate + ": the list is now in " + lists +
+         "; copy it into the folder that each site uses, and start the site anew";
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ struct CertificatesConfig {
 
 /// Puts the certificate in file `certificate` on the authority's list of revoked ones, and the list
 /// into the folders of both sites.
+/// @returns where the lists are now, and what is to be done with them, in a sentence.
 [[nodiscard]] Result<std::string> revoke_certificate(const CertificatesConfig& config,
                                                      const std::string& certificate);
 

@@ -30,6 +30,9 @@ constexpr int kDaysToRenew = 14;
 constexpr char kCertificateFile[] = "certificate.pem";
 constexpr char kKeyFile[] = "key.pem";
 constexpr char kPeersFile[] = "peers.txt";
+constexpr char kRevokedFile[] = "revoked.pem";
+/// In the place of a list, for a service whose folder always holds all files.
+constexpr char kNothingRevoked[] = "nothing is revoked";
 constexpr char kSharedKeyFile[] = "pre_shared_key.txt";
 /// Forward secret, authenticated encryption, 256 bits: nothing else is offered or accepted.
 constexpr char kCertificateSuites[] = "ECDHE-ECDSA-AES256-GCM-SHA384:ECDHE-RSA-AES256-GCM-SHA384";
@@ -195,8 +198,8 @@ Result<bool> trust(SSL_CTX* ssl, const std::filesystem::path& folder) {
   if (SSL_CTX_load_verify_file(ssl, authority.c_str()) != 1) {
     return tl::unexpected{not_taken(authority, "certificate in PEM form")};
   }
-  const std::filesystem::path revoked = folder / "revoked.pem";
-  if (!stands_there(revoked)) return false;
+  const std::filesystem::path revoked = folder / kRevokedFile;
+  if (!stands_there(revoked) || read_whole_file(revoked.string()) == kNothingRevoked) return false;
   const Openssl<BIO> file{BIO_new_file(revoked.c_str(), "r")};
   X509_STORE* store = SSL_CTX_get_cert_store(ssl);
   int lists = 0;

@@ -15,7 +15,8 @@ namespace palp::io {
 ///     key.pem            the private key of it
 ///     authority.pem      whoever signs the certificates of both sites
 ///     peers.txt          optional: the names of the sites that it talks to, a line each
-///     revoked.pem        optional: revocation lists of that authority and of those between
+///     revoked.pem        optional: revocation lists of that authority and of those between, or the
+///                        words "nothing is revoked"
 ///
 /// or, for a bench, `pre_shared_key.txt` alone: 64 hexadecimal digits, the same at both sites.
 /// Immutable after construction. Thread: made by any, then io's.

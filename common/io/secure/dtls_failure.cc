@@ -19,6 +19,14 @@ constexpr char kTwoKinds[] =
 
 }  // namespace
 
+DtlsFailure failure_of_silence(bool certificates) {
+  return {
+      std::string{"no answer"} + (certificates ? "" : ", or another pre-shared key") +
+          ": start the patient site there and let UDP through to its port (firewall, router), or"
+          " let both sites meet at a relay (--through)",
+      false};
+}
+
 /// A table of what people can do about it. The first three are what check_peer() in credentials.cc
 /// sets.
 DtlsFailure failure_of_certificate(long verdict) {

@@ -12,6 +12,9 @@ struct DtlsFailure {
   bool hopeless{};
 };
 
+/// Nothing came back. `certificates`: else a pre-shared key, and another one is not answered
+/// either.
+[[nodiscard]] DtlsFailure failure_of_silence(bool certificates);
 /// `verdict`: an X509_V_ERR_..., but not X509_V_OK, about the peer's certificate.
 [[nodiscard]] DtlsFailure failure_of_certificate(long verdict);
 /// How our protocol names itself in a handshake (RFC 7301): `palp/` and its version. Sites whose

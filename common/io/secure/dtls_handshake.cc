@@ -220,7 +220,7 @@ void DtlsHandshake::tick() {
   ERR_clear_error();
   if (DTLSv1_handle_timeout(parts_->ssl.get()) < 0) {
     state_ = State::Failed;
-    failure_ = {parts_->certificates ? "no answer" : "no answer, or another pre-shared key", false};
+    failure_ = failure_of_silence(parts_->certificates);
     ERR_clear_error();
   }
 }

@@ -261,7 +261,9 @@ bool DtlsSession::hear_data(std::span<const std::byte> datagram,
     ++foreign_;
     return false;
   }
-  roaming_.note(header->number, from, datagram.size(), straight(now), now);
+  const auto question = roaming_.note(header->number, from, datagram.size(), straight(now), now);
+  Association* by = associations_.find(present_);
+  if (question && by != nullptr) send_path(*by, question->message, question->to);
   return true;
 }
 
@@ -273,9 +275,7 @@ void DtlsSession::send_path(Association& by, const PathMessage& message, const E
 void DtlsSession::follow(TimePoint now, SessionEndpointOutput& out) {
   Association* by = associations_.find(present_);
   if (by == nullptr) return;
-  while (const auto question = roaming_.ask(straight(now), now)) {
-    send_path(*by, question->message, question->to);
-  }
+  if (const auto question = roaming_.survey(now)) send_path(*by, question->message, question->to);
   out.moved_to = roaming_.move(straight(now), now);
   if (!out.moved_to) return;
   out.moved_from = roaming_.former();

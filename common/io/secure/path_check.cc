@@ -46,6 +46,27 @@ std::optional<std::size_t> relay_question_of(std::span<const std::byte> datagram
   return std::to_integer<std::size_t>(message->proof[0]);
 }
 
+/// Waits for one datagram, at the longest until then. Empty: none came.
+DtlsDatagram hear_one(int socket, const SteadyClock& clock, TimePoint until) {
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - clock.now()).count();
+  pollfd watched{.fd = socket, .events = POLLIN, .revents = 0};
+  if (::poll(&watched, 1, static_cast<int>(std::max<std::int64_t>(0, left))) <= 0) return {};
+  DtlsDatagram bytes(2048);
+  const ssize_t got = ::recv(socket, bytes.data(), bytes.size(), MSG_DONTWAIT);
+  bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(0, got)));
+  return bytes;
+}
+
+Result<Descriptor> connected_to(const HostAndPort& peer) {
+  const Result<Endpoint> place = resolve(peer);
+  if (!place) return fail(place.error().text);
+  Descriptor socket{::socket(place->family(), SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+  if (!socket.valid() || ::connect(socket.number(), place->address(), place->size()) != 0) {
+    return fail("cannot call " + peer.to_string() + ": " + system_text(errno));
+  }
+  return socket;
+}
+
 /// What is asked, and how answers are told apart.
 struct Asked {
   std::vector<DtlsDatagram> datagrams;
@@ -68,13 +89,8 @@ class Questions {
   }
   /// Waits for one datagram, at the longest until then.
   void listen(const SteadyClock& clock, TimePoint until) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - clock.now()).count();
-    pollfd watched{.fd = socket_, .events = POLLIN, .revents = 0};
-    if (::poll(&watched, 1, static_cast<int>(std::max<std::int64_t>(0, left))) <= 0) return;
-    std::array<std::byte, 2048> bytes{};
-    const ssize_t got = ::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
-    if (got <= 0) return;
-    const auto number = asked_.question_of(std::span{bytes}.first(static_cast<std::size_t>(got)));
+    const DtlsDatagram heard = hear_one(socket_, clock, until);
+    const auto number = asked_.question_of(heard);
     if (!number || *number >= asked_at_.size() || !asked_at_[*number]) return;
     round_trips_.push_back(clock.now() - *asked_at_[*number]);
     asked_at_[*number].reset();
@@ -91,13 +107,9 @@ class Questions {
 };
 
 Result<PathFacts> ask_all(const HostAndPort& peer, Asked asked, const PathCheckConfig& config) {
-  const Result<Endpoint> place = resolve(peer);
-  if (!place) return fail(place.error().text);
-  const Descriptor socket{::socket(place->family(), SOCK_DGRAM | SOCK_CLOEXEC, 0)};
-  if (!socket.valid() || ::connect(socket.number(), place->address(), place->size()) != 0) {
-    return fail("cannot call " + peer.to_string() + ": " + system_text(errno));
-  }
-  Questions questions{socket.number(), std::move(asked)};
+  const Result<Descriptor> socket = connected_to(peer);
+  if (!socket) return tl::unexpected{socket.error()};
+  Questions questions{socket->number(), std::move(asked)};
   const SteadyClock clock;
   TimePoint until{};
   while (questions.asked() < config.questions) {
@@ -121,6 +133,35 @@ Result<PathFacts> read_path(const HostAndPort& peer,
                             const PathCheckConfig& config) {
   return ask_all(
       peer, {DtlsHandshake{credentials}.take_datagrams(), kNumberAt, question_of}, config);
+}
+
+Result<MachineFinding> try_handshake(const HostAndPort& peer,
+                                     const Credentials& credentials,
+                                     Duration patience) {
+  const Result<Descriptor> socket = connected_to(peer);
+  if (!socket) return tl::unexpected{socket.error()};
+  const SteadyClock clock;
+  const TimePoint until = clock.now() + patience;
+  DtlsHandshake handshake{credentials};
+  const auto say = [&] {
+    for (const DtlsDatagram& one : handshake.take_datagrams()) {
+      (void)::send(socket->number(), one.data(), one.size(), MSG_DONTWAIT);
+    }
+  };
+  for (say(); handshake.state() == DtlsHandshake::State::Running && clock.now() < until; say()) {
+    const DtlsDatagram heard =
+        hear_one(socket->number(), clock, clock.now() + std::chrono::milliseconds{5});
+    if (!heard.empty()) handshake.hear(heard);
+    handshake.tick();
+  }
+  const std::string what = credentials.fingerprint().empty() ? "shared key" : "certificates";
+  if (const auto proof = handshake.take_result()) {
+    return MachineFinding{what, "both sites take each other's: " + proof->peer_name, true, ""};
+  }
+  const DtlsFailure failure = handshake.state() == DtlsHandshake::State::Failed
+                                  ? handshake.failure()
+                                  : failure_of_silence(!credentials.fingerprint().empty());
+  return MachineFinding{what, "no session would come about", false, failure.sentence};
 }
 
 Result<PathFacts> read_relay_path(const HostAndPort& relay, const PathCheckConfig& config) {

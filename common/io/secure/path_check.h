@@ -31,7 +31,14 @@ struct PathCheckConfig {
                                           const Credentials& credentials,
                                           const PathCheckConfig& config = {});
 
-/// The same of a relay: it answers everybody, and keeps nothing.
+/// Whether both sites take each other's certificates: a whole handshake with the patient site at
+/// `peer`, which no session follows; one that runs there goes on. Blocks, at the longest for
+/// `patience`. Refusal: as of read_path().
+[[nodiscard]] Result<MachineFinding> try_handshake(const HostAndPort& peer,
+                                                   const Credentials& credentials,
+                                                   Duration patience = std::chrono::seconds{10});
+
+/// As read_path() of a relay: it answers everybody, and keeps nothing.
 [[nodiscard]] Result<PathFacts> read_relay_path(const HostAndPort& relay,
                                                 const PathCheckConfig& config = {});
 

@@ -36,11 +36,11 @@ RelayMessage RelayMember::message(RelayMessage::Kind kind) const noexcept {
   return made;
 }
 
-std::optional<RelayMessage::Bytes> RelayMember::tick(TimePoint now, bool in_need) {
+std::optional<RelayMessage::Bytes> RelayMember::tick(TimePoint now, SessionIs session) {
   if (!began_at_) began_at_ = now;
   const bool seated = joined_at_ && now - *joined_at_ < kKeepEvery;
-  const bool content = seated && seat_ == Seat::Both && !in_need;
-  const Duration pause = in_need ? kAskEveryInNeed : kAskEvery;
+  const bool content = seated && seat_ == Seat::Both && session == SessionIs::Live;
+  const Duration pause = session == SessionIs::Silent ? kAskEveryInNeed : kAskEvery;
   if (content || (asked_at_ && now - *asked_at_ < pause)) return std::nullopt;
   if (!joined_at_ && now - *began_at_ > kRelaySilence) seat_ = Seat::Silent;
   if (joined_at_ && now - *joined_at_ > kKeepEvery + kRelaySilence) seat_ = Seat::Silent;

@@ -18,6 +18,7 @@ class RelayMember {
  public:
   /// A router forgets a UDP flow after 30 s at the earliest that we know.
   static constexpr Duration kKeepEvery = std::chrono::seconds{15};
+  /// Without a session: so the relay knows who is still there.
   static constexpr Duration kAskEvery = std::chrono::seconds{1};
   /// While a session that works has fallen silent: the relay may have been started anew.
   static constexpr Duration kAskEveryInNeed = std::chrono::milliseconds{200};
@@ -29,8 +30,10 @@ class RelayMember {
   RelayMember(RoomKey key, link::Role role, const Endpoint& relay, std::uint64_t entropy);
 
   [[nodiscard]] const Endpoint& relay() const noexcept { return relay_; }
-  /// Often. `in_need`: a session is silent. nullopt: nothing to send.
-  [[nodiscard]] std::optional<RelayMessage::Bytes> tick(TimePoint now, bool in_need);
+  /// What has become of the session between the two sites.
+  enum class SessionIs : std::uint8_t { None, Live, Silent };
+  /// Often. nullopt: nothing to send.
+  [[nodiscard]] std::optional<RelayMessage::Bytes> tick(TimePoint now, SessionIs session);
   /// A datagram that begins as a message of a relay does. @returns what to send back.
   [[nodiscard]] std::optional<RelayMessage::Bytes> hear(std::span<const std::byte> datagram,
                                                         const Endpoint& from,

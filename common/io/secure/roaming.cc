@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/io/process/entropy.h"
 #include "common/link/aead_protection.h"
 
 namespace palp::io {
@@ -13,25 +12,19 @@ using std::chrono::milliseconds;
 
 /// How far a sender may lie behind somebody who copies its telegrams.
 constexpr std::uint64_t kBehindMax = 256;  // [numbers]
-/// Bytes of questions to an unproven address per byte from it; to no more than three altogether,
-/// because rt sends telegrams there as well.
-constexpr std::size_t kUnprovenShare = 3 - Detour::kShare;
 constexpr std::size_t kQuestionSize =
     link::kHeaderSize + PathMessage::kSize + link::AeadProtection::kTagSize;  // [bytes]
+// A question is no longer than the telegram that draws it: with what rt sends there as well, at
+// most three bytes go to an unproven address for each byte from it.
+static_assert(Detour::kShare == 2);
 /// An address that delivers nothing for so long is not moved to.
 constexpr Duration kAlive = milliseconds{100};
 /// An answer tells of the way as it was a short while ago.
 constexpr Duration kAnswerLife = std::chrono::seconds{2};
 constexpr int kSurveys = 3;
-
-PathMessage::Nonce draw_nonce() {
-  const std::uint64_t bits = draw_entropy();
-  PathMessage::Nonce bytes{};
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    bytes[i] = static_cast<std::byte>(bits >> (8 * i) & 0xFFU);
-  }
-  return bytes;
-}
+/// An answer is known again for so long at least, and for twice as long at most: longer than any
+/// round trip that a session may have.
+constexpr Duration kQuestionLife = std::chrono::seconds{4};
 
 }  // namespace
 
@@ -61,15 +54,7 @@ std::vector<std::byte> PathMessage::framed(std::uint64_t number) const {
 void Roaming::begin(const Endpoint& peer) {
   *this = Roaming{};
   peer_ = peer;
-  survey_nonce_ = draw_nonce();
   surveys_left_ = kSurveys;
-}
-
-const Roaming::Candidate* Roaming::find(const Endpoint& address) const {
-  for (const Place& place : places_) {
-    if (place.candidate && place.candidate->address == address) return &*place.candidate;
-  }
-  return nullptr;
 }
 
 bool Roaming::is_newest(std::uint64_t number, const Straight& straight) const {
@@ -86,90 +71,94 @@ bool Roaming::counts(std::uint64_t number, const Endpoint& from, const Straight&
   const std::uint64_t newest_here = newest_.value_or(0);
   const bool elsewhere = newest_ && newest_here >= straight.newest_number;
   if (!elsewhere && !(from == former_)) return false;
-  const std::uint64_t newest = std::max(straight.newest_number, newest_here);
-  const Candidate* known = find(from);
-  return newest - number < kBehindMax && (known == nullptr || known->newest < number);
+  return std::max(straight.newest_number, newest_here) - number < kBehindMax;
 }
 
-void Roaming::note(std::uint64_t number,
-                   const Endpoint& from,
-                   std::size_t size,
-                   const Straight& straight,
-                   TimePoint now) {
-  const bool newest = is_newest(number, straight);
+std::optional<PathQuestion> Roaming::note(std::uint64_t number,
+                                          const Endpoint& from,
+                                          std::size_t size,
+                                          const Straight& straight,
+                                          TimePoint now) {
   newest_ = std::max(newest_.value_or(0), number);
-  const auto known = std::ranges::find_if(
-      places_, [&](const Place& one) { return one.candidate && one.candidate->address == from; });
-  Place& place = known != places_.end() ? *known : places_[newest ? 0 : 1];
-  if (known == places_.end()) {
-    place.candidate.emplace();
-    place.candidate->address = from;
-    place.candidate->nonce = draw_nonce();
+  for (Answered& one : answered_) {
+    if (one.address == from) one.heard_at = now;
   }
-  place.candidate->newest = number;
-  place.candidate->received += size;
-  place.candidate->heard_at = now;
+  // Where the present address delivers, nobody has to be asked anything.
+  if (now - straight.heard_at < Detour::kSilence && !came_back(from, now)) return std::nullopt;
+  if (size < kQuestionSize || !may_ask(from, now)) return std::nullopt;
+  return question(from, now);
 }
 
-bool Roaming::came_back(const Candidate& candidate, TimePoint now) const {
-  return candidate.address == former_ && moved_at_ && now - *moved_at_ >= kPause;
+bool Roaming::came_back(const Endpoint& address, TimePoint now) const {
+  return address == former_ && moved_at_ && now - *moved_at_ >= kPause;
+}
+
+/// Not too soon again. There is no limit for all addresses together: who has many would use it up.
+bool Roaming::may_ask(const Endpoint& address, TimePoint now) {
+  auto known = std::ranges::find(asked_, address, &Asked::address);
+  if (known != asked_.end() && now - known->at < kPause) return false;
+  if (known == asked_.end()) {
+    known = asked_.begin() + static_cast<std::ptrdiff_t>(asked_next_);
+    asked_next_ = (asked_next_ + 1) % asked_.size();
+  }
+  *known = {.address = address, .at = now};
+  return true;
+}
+
+/// Its random bytes are those of a cookie for the address, made at the beginning of a span of time.
+PathQuestion Roaming::question(const Endpoint& to, TimePoint now) const {
+  PathQuestion question{{.kind = PathMessage::Kind::Question, .asked = to.bytes()}, to};
+  const AddressCookie::Bytes cookie =
+      cookie_.make(to, {}, now - now.time_since_epoch() % kQuestionLife);
+  std::copy_n(cookie.end() - question.message.nonce.size(),
+              question.message.nonce.size(),
+              question.message.nonce.begin());
+  return question;
+}
+
+bool Roaming::asked(const PathMessage& answer, const Endpoint& from, TimePoint now) const {
+  return answer.nonce == question(from, now).message.nonce ||
+         answer.nonce == question(from, now - kQuestionLife).message.nonce;
 }
 
 std::optional<PathQuestion> Roaming::survey(TimePoint now) {
-  if (surveys_left_ == 0 || now < survey_at_) return std::nullopt;
+  if (!peer_.valid() || surveys_left_ == 0 || now < survey_at_) return std::nullopt;
   --surveys_left_;
   survey_at_ = now + kPause;
-  return PathQuestion{{PathMessage::Kind::Question, survey_nonce_, peer_.bytes()}, peer_};
-}
-
-std::optional<PathQuestion> Roaming::ask(const Straight& straight, TimePoint now) {
-  if (!peer_.valid()) return std::nullopt;
-  for (Place& place : places_) {
-    std::optional<Candidate>& one = place.candidate;
-    if (one && now - one->heard_at > kPause) one.reset();
-    if (!one || (place.asked_at && now - *place.asked_at < kPause)) continue;
-    // Where the present address delivers, nobody has to be asked anything.
-    if (now - straight.heard_at < Detour::kSilence && !came_back(*one, now)) continue;
-    if (one->sent + kQuestionSize > kUnprovenShare * one->received) continue;
-    place.asked_at = now;
-    one->sent += kQuestionSize;
-    return PathQuestion{{PathMessage::Kind::Question, one->nonce, one->address.bytes()},
-                        one->address};
-  }
-  return survey(now);
+  return question(peer_, now);
 }
 
 bool Roaming::answer(const PathMessage& message, const Endpoint& from, TimePoint now) {
   if (message.kind != PathMessage::Kind::Answer || message.asked != from.bytes()) return false;
-  if (from == peer_ && message.nonce == survey_nonce_) {
+  if (!asked(message, from, now)) return false;
+  if (from == peer_) {
     surveys_left_ = 0;
     return true;
   }
-  for (Place& place : places_) {
-    std::optional<Candidate>& one = place.candidate;
-    if (!one || !(one->address == from) || one->nonce != message.nonce) continue;
-    one->answered_at = now;
-    return true;
-  }
-  return false;
+  const auto known = std::ranges::find(answered_, from, &Answered::address);
+  Answered& place =
+      known != answered_.end() ? *known : *std::ranges::min_element(answered_, {}, &Answered::at);
+  place = {.address = from, .at = now, .heard_at = now};
+  return true;
 }
 
 std::optional<Endpoint> Roaming::move(const Straight& straight, TimePoint now) {
   if (moved_at_ && now - *moved_at_ < kPause) return std::nullopt;
   const bool silent = now - straight.heard_at >= kSilence;
-  for (const Place& place : places_) {
-    const std::optional<Candidate>& one = place.candidate;
-    if (!one || !one->answered_at || now - *one->answered_at > kAnswerLife) continue;
-    const bool back = came_back(*one, now);
-    if (now - one->heard_at > kAlive || !(silent || back)) continue;
-    // Whoever was followed in a gap has no claim to be followed back.
-    former_ = std::exchange(peer_, one->address);
-    if (back) former_ = {};
-    moved_at_ = now;
-    places_ = {};
-    return peer_;
+  const Answered* best = nullptr;  // heard last: the others may have been left since
+  for (const Answered& one : answered_) {
+    if (!one.address.valid() || now - one.at > kAnswerLife) continue;
+    if (now - one.heard_at > kAlive || !(silent || came_back(one.address, now))) continue;
+    if (best == nullptr || one.heard_at > best->heard_at) best = &one;
   }
-  return std::nullopt;
+  if (best == nullptr) return std::nullopt;
+  // Whoever was followed in a gap has no claim to be followed back.
+  const bool back = came_back(best->address, now);
+  former_ = std::exchange(peer_, best->address);
+  if (back) former_ = {};
+  moved_at_ = now;
+  answered_ = {};
+  return peer_;
 }
 
 std::optional<PathMessage> PathAnswers::answer(const PathMessage& question,

@@ -10,6 +10,7 @@
 #include "common/core/time.h"
 #include "common/io/net/detour.h"
 #include "common/io/net/endpoint.h"
+#include "common/io/secure/address_cookie.h"
 
 namespace palp::io {
 
@@ -35,26 +36,18 @@ struct PathQuestion {
   Endpoint to;
 };
 
-/// An address that sent something authentic.
-struct RoamingCandidate {
-  Endpoint address;
-  PathMessage::Nonce nonce{};
-  std::uint64_t newest{};  ///< number of the telegrams from there
-  std::size_t received{};  ///< [bytes] from there
-  std::size_t sent{};      ///< [bytes] to there
-  TimePoint heard_at{};
-  std::optional<TimePoint> answered_at;
-};
-
 /// The patient's: at which address the surgeon is. It moves to where telegrams come from that are
 /// newer than all, if whoever is there answers, and only when the present address has been silent
 /// for a while: somebody who copies telegrams and is faster than their sender cannot silence him.
-/// If an address that was left delivers after all, it is the peer's again. A value. Thread: io.
+/// If an address that was left delivers after all, it is the peer's again. Each telegram that
+/// counts may draw a question to where it came from, and what is asked can be known again without
+/// being kept: so nobody takes the sender's turn, from however many addresses he copies telegrams.
+/// A value. Thread: io.
 class Roaming {
  public:
   /// Without a telegram over the present address, before the peer is taken to have left.
   static constexpr Duration kSilence = std::chrono::milliseconds{50};
-  /// Between two moves, between two questions to first comers, and to second ones.
+  /// Between two moves, and between two questions to an address.
   static constexpr Duration kPause = std::chrono::seconds{1};
 
   /// What io knows of the telegrams on rt.
@@ -75,43 +68,49 @@ class Roaming {
   [[nodiscard]] bool counts(std::uint64_t number,
                             const Endpoint& from,
                             const Straight& straight) const;
-  /// It did. `size`: [bytes]
-  void note(std::uint64_t number,
-            const Endpoint& from,
-            std::size_t size,
-            const Straight& straight,
-            TimePoint now);
-  /// Often. nullopt: nothing to ask.
-  [[nodiscard]] std::optional<PathQuestion> ask(const Straight& straight, TimePoint now);
+  /// It did. `size`: [bytes]. @returns what to ask there.
+  [[nodiscard]] std::optional<PathQuestion> note(std::uint64_t number,
+                                                 const Endpoint& from,
+                                                 std::size_t size,
+                                                 const Straight& straight,
+                                                 TimePoint now);
+  /// Often. The question to the first address of a session, from which the surgeon learns whether
+  /// it is seen under its own address. nullopt: nothing to ask.
+  [[nodiscard]] std::optional<PathQuestion> survey(TimePoint now);
   /// @returns false: nobody asked for that.
   [[nodiscard]] bool answer(const PathMessage& message, const Endpoint& from, TimePoint now);
   /// Often. @returns the peer's new address, which peer() is from now on.
   [[nodiscard]] std::optional<Endpoint> move(const Straight& straight, TimePoint now);
 
  private:
-  /// Of first comers, or of second ones.
-  using Candidate = RoamingCandidate;
-  struct Place {
-    std::optional<Candidate> candidate;
-    std::optional<TimePoint> asked_at;  ///< whoever was here then
+  static constexpr std::size_t kAskedMax = 16;    ///< addresses whose last question is remembered
+  static constexpr std::size_t kAnsweredMax = 4;  ///< only keys of the session answer
+
+  struct Asked {
+    Endpoint address;
+    TimePoint at{};
+  };
+  struct Answered {
+    Endpoint address;
+    TimePoint at{};
+    TimePoint heard_at{};
   };
 
-  [[nodiscard]] const Candidate* find(const Endpoint& address) const;
   [[nodiscard]] bool is_newest(std::uint64_t number, const Straight& straight) const;
   /// The address that was left is alive after all.
-  [[nodiscard]] bool came_back(const Candidate& candidate, TimePoint now) const;
-  [[nodiscard]] std::optional<PathQuestion> survey(TimePoint now);
+  [[nodiscard]] bool came_back(const Endpoint& address, TimePoint now) const;
+  [[nodiscard]] bool may_ask(const Endpoint& address, TimePoint now);
+  [[nodiscard]] PathQuestion question(const Endpoint& to, TimePoint now) const;
+  [[nodiscard]] bool asked(const PathMessage& answer, const Endpoint& from, TimePoint now) const;
 
+  AddressCookie cookie_;
   Endpoint peer_;
   Endpoint former_;
   std::optional<TimePoint> moved_at_;
   std::optional<std::uint64_t> newest_;  ///< number of the telegrams from elsewhere
-  /// Who was the first with a telegram, and who came second: somebody may be faster than the
-  /// sender.
-  std::array<Place, 2> places_;
-  /// The question to the first address of a session, from which the surgeon learns whether it is
-  /// seen under its own address.
-  PathMessage::Nonce survey_nonce_{};
+  std::array<Asked, kAskedMax> asked_;   ///< the oldest is forgotten first, and may be asked again
+  std::size_t asked_next_{};
+  std::array<Answered, kAnsweredMax> answered_;
   int surveys_left_{};
   TimePoint survey_at_{};
 };

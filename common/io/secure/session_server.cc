@@ -258,9 +258,12 @@ void SessionServer::Io::send(std::span<const std::byte> datagram, const Endpoint
 /// A session that works is not disturbed with what the relay says.
 void SessionServer::Io::keep_seat() {
   if (!relay_) return;
+  using SessionIs = RelayMember::SessionIs;
   const bool in_session = present_.session_id != 0;
-  const bool silent = in_session && desk_.link().state != LinkState::Live;
-  if (const auto message = relay_->tick(clock_.now(), silent)) send(*message, relay_->relay());
+  const SessionIs session = !in_session                             ? SessionIs::None
+                            : desk_.link().state == LinkState::Live ? SessionIs::Live
+                                                                    : SessionIs::Silent;
+  if (const auto message = relay_->tick(clock_.now(), session)) send(*message, relay_->relay());
   const auto news = relay_->take_news();
   if (!news || in_session) return;
   tell(news->good ? SessionNews::Kind::Moved : SessionNews::Kind::Refused,

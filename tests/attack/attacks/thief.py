@@ -140,7 +140,66 @@ def flapping(bench: Bench) -> Verdict:
     return _steal(bench, lambda t: 0.02 if t % 0.006 < 0.003 else None)
 
 
+class Copier(Observer):
+    """Copies each telegram from several addresses, in turn sooner and later than the surgeon."""
+
+    LEADS_S = (0.02, 0.002, -0.002, -0.02)
+
+    def __init__(self, patient: Address) -> None:
+        super().__init__(patient, lambda _: None)
+        self.ports = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in self.LEADS_S]
+        for one in self.ports:
+            one.bind(("127.0.0.3", 0))
+
+    def _from_surgeon(self, datagram: bytes, source: Address, now: float) -> None:
+        super()._from_surgeon(datagram, source, now)
+        if not self.robs or wire.kind_of(datagram) != wire.DATA:
+            return
+        for lead, by in zip(self.LEADS_S, self.ports, strict=True):
+            self._later(now + DELAY_S - lead, by, datagram, self.patient)
+
+    def change_address(self) -> None:
+        """The surgeon is seen elsewhere; what goes to the old address is lost."""
+        self.back.close()
+        self.back = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.back.bind(("127.0.0.1", 0))
+        self.back.setblocking(False)
+        self._waiting = [
+            (due, order, self.back if by.fileno() < 0 else by, datagram, to)
+            for due, order, by, datagram, to in self._waiting
+        ]
+
+
+def ports(bench: Bench) -> Verdict:
+    """The surgeon's address changes every two seconds, beside four addresses of a copier."""
+    patient = bench.patient()
+    copier = Copier(patient.address())
+    surgeon = bench.surgeon(copier.front.getsockname(), "--master", bench.script(*SCRIPT))
+    copier.run(20, lambda: "-> ENGAGED" in surgeon.log)
+    copier.run(2)
+    copier.robs = True
+    copier.run(1)
+    late = []
+    for _ in range(int(bench.seconds / 2)):
+        moved = patient.count("address is now")
+        began = time.monotonic()
+        copier.change_address()
+        followed = copier.run(2, lambda moved=moved: patient.count("address is now") > moved)
+        took = time.monotonic() - began
+        late.append(took if followed else 2.0)
+        copier.run(max(0.0, 2 - took))
+    limit = 2 * DELAY_S + 0.2
+    good = sum(took <= limit for took in late)
+    return Verdict(
+        f"followed within {1000 * max(late):.0f} ms at most, {good} of {len(late)} within "
+        f"{1000 * limit:.0f} ms, {patient.count('address is now')} moves, "
+        f"{_holds(patient, surgeon)} holds and retractions",
+        bool(late) and good == len(late) and patient.count("address is now") == len(late),
+    )
+
+
 ATTACKS = [
+    Attack("thief-ports", "copies from four addresses while the surgeon's changes", ports, 12, 40),
     Attack("thief", "copies 0 to 20 ms sooner, and the question handed over", thief, 12, 60),
     Attack("thief-flapping", "the same, every other 3 ms", flapping, 12, 60),
 ]

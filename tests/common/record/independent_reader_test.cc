@@ -114,6 +114,10 @@ TEST_F(IndependentReaderTest, ReadsEveryMessageWithTheEmbeddedSchemas) {
   EXPECT_EQ(seen["topics"]["surgeon/arrived"], 3000);
   EXPECT_EQ(seen["topics"]["surgeon/link"], 30);
   EXPECT_EQ(seen["topics"]["surgeon/event"], 60);
+  EXPECT_EQ(seen["topics"]["surgeon/log"], 60);
+  EXPECT_EQ(seen["first"]["surgeon/log"]["level"], "INFO");
+  EXPECT_EQ(seen["first"]["surgeon/log"]["message"], "next phase of the script (2)");
+  EXPECT_EQ(seen["first"]["surgeon/log"]["name"], "surgeon");
   EXPECT_EQ(seen["topics"]["surgeon/depth"], 3);
   EXPECT_EQ(seen["attachments"], nlohmann::json::array({"config.textproto"}));
   EXPECT_EQ(seen["metadata"]["palp"]["seed"], "42");

@@ -143,7 +143,7 @@ TEST(SessionTest, StatisticsEqualTheWritersCounters) {
   }
   ASSERT_TRUE(statistics);
   EXPECT_EQ(statistics->messages, session.messages);
-  EXPECT_EQ(statistics->messages, session.counts.records() + session.counts.views);
+  EXPECT_EQ(statistics->messages, session.counts.messages());
   EXPECT_EQ(session.counts.records(), 10050u);
   EXPECT_EQ(statistics->begin, 0U) << "instant of the first sample [ns]";
   EXPECT_EQ(statistics->chunks, 10u) << "one each half second";
@@ -173,7 +173,7 @@ TEST(SessionTest, AfterAFullDiskTheCountsAreThoseOfTheFile) {
     }
     writer.close();
     ASSERT_TRUE(writer.failed());
-    EXPECT_EQ(writer.counts().records() + writer.counts().views, writer.messages());
+    EXPECT_EQ(writer.counts().messages(), writer.messages());
     EXPECT_GE(writer.messages() + writer.lost(), handed);
   }
 }
@@ -266,9 +266,31 @@ TEST(SessionTest, EveryTopicOfBothSitesHasItsOwnSchemaInTheFile) {
       }
       channels += std::holds_alternative<McapChannel>(*item) ? 1u : 0u;
     }
-    EXPECT_EQ(channels, topics_of(site).size());
+    EXPECT_EQ(channels, topics_of(site).size() + 1) << "and the log";
     EXPECT_EQ(schemas.size(), channels);
   }
+}
+
+TEST(SessionTest, AFileThatSaysNoEndOfThingsTakesNoEndOfMemory) {
+  MemorySink sink;
+  {
+    McapWriter writer{sink, {}};
+    writer.add_metadata("palp", {{"site", "surgeon"}});
+    const std::string text(1U << 20U, 'x');
+    for (int k = 0; k < 10; ++k) writer.add_metadata(std::to_string(k), {{"key", text}});
+    for (int k = 0; k < 10'000; ++k) {
+      const std::string name = std::to_string(k);
+      writer.add_attachment({.name = name, .media_type = "text/plain", .data = {}});
+    }
+  }
+  SessionReader reader{sink.bytes()};
+  while (reader.next()) {
+  }
+  EXPECT_EQ(reader.metadata("palp", "site"), "surgeon");
+  EXPECT_EQ(reader.metadata("0").size(), 1U);
+  EXPECT_TRUE(reader.metadata("9").empty());
+  EXPECT_TRUE(reader.attachment("0"));
+  EXPECT_FALSE(reader.attachment("9999"));
 }
 
 TEST(SessionTest, WriteAfterCloseIsRefused) {

@@ -66,6 +66,15 @@ TEST(CertificatesTest, ANewAuthorityDoesNotBeginBesideTheListOfAnother) {
   EXPECT_TRUE(make_certificates(keys.config()));
 }
 
+TEST(CertificatesTest, SaysWhereTheListOfRevokedOnesIs) {
+  const KeysFolder keys{"where"};
+  const auto done = revoke_certificate(keys.config(), keys.site(Role::Patient) / "certificate.pem");
+  ASSERT_TRUE(done) << done.error().text;
+  for (const char* place : {"authority", "surgeon", "patient"}) {
+    EXPECT_THAT(*done, HasSubstr((keys.path() / place / "revoked.pem").string()));
+  }
+}
+
 TEST(CertificatesTest, NewFoldersOfSitesKnowWhatWasRevoked) {
   const KeysFolder keys{"folders"};
   ASSERT_TRUE(revoke_certificate(keys.config(), keys.site(Role::Surgeon) / "certificate.pem"));
@@ -170,6 +179,35 @@ TEST(CredentialsTest, WhatIsWrongWithAFileIsSaidInWordsOfItsOwner) {
                              std::filesystem::copy_options::overwrite_existing);
   EXPECT_THAT(Credentials::read(keys.site(Role::Patient), Role::Patient).error().text,
               HasSubstr("key.pem: does not fit the certificate"));
+}
+
+TEST(CredentialsTest, TheWordsThatNothingIsRevokedStandForNoListAndNoOthersDo) {
+  const KeysFolder keys{"words"};
+  const auto file = keys.site(Role::Patient) / "revoked.pem";
+  std::ofstream{file} << "nothing is revoked";
+  EXPECT_TRUE(Credentials::read(keys.site(Role::Patient), Role::Patient));
+  for (const char* const other :
+       {"", "nothing is revoked\n-----BEGIN X509 CRL-----\n", "nothing"}) {
+    std::ofstream{file} << other;
+    EXPECT_FALSE(Credentials::read(keys.site(Role::Patient), Role::Patient)) << other;
+  }
+}
+
+/// The service reads its identity from a folder that systemd fills: what is not named in the unit
+/// is not there, and a list of revoked certificates that is missing refuses nobody.
+TEST(CredentialsTest, TheServiceIsGivenEachFileOfAnIdentity) {
+  std::ifstream in{PALP_TREE "/debian/palp-patient-site.palp-patient@.service"};
+  const std::string unit{std::istreambuf_iterator<char>{in}, {}};
+  const KeysFolder keys{"service"};
+  ASSERT_TRUE(revoke_certificate(keys.config(), keys.site(Role::Surgeon) / "certificate.pem"));
+  int files = 0;
+  for (const auto& one : std::filesystem::directory_iterator{keys.site(Role::Patient)}) {
+    const std::string name = one.path().filename();
+    EXPECT_THAT(unit, HasSubstr("\nLoadCredential=" + name + ":/etc/palp/keys/%i/" + name + "\n"));
+    ++files;
+  }
+  EXPECT_EQ(files, 5);
+  EXPECT_THAT(unit, HasSubstr("\nSetCredential=revoked.pem:nothing is revoked\n"));
 }
 
 TEST(CredentialsTest, AKeyWithAPassphraseIsRefusedWithoutAsking) {

@@ -18,24 +18,81 @@ namespace {
 using link::Role;
 using std::chrono::milliseconds;
 
+/// A patient site that waits to be called.
+class Waiting {
+ public:
+  explicit Waiting(const Credentials& patient) : server_{config_of(patient), desk_} {}
+  [[nodiscard]] HostAndPort place() const {
+    return {.host = "127.0.0.1", .port = server_.local().port()};
+  }
+  [[nodiscard]] bool news() { return server_.news().has_value(); }
+
+ private:
+  static SessionServerConfig config_of(const Credentials& patient) {
+    SessionServerConfig config;
+    config.session = {.role = Role::Patient, .settings_hash = 1, .coupling = "direct", .git = ""};
+    config.address = {.host = "127.0.0.1", .port = 0};
+    config.credentials = &patient;
+    return config;
+  }
+  LinkUpdateDesk desk_;
+  SessionServer server_;
+};
+
 TEST(PathCheckTest, APatientSiteThatRunsAnswersEachQuestionAndKeepsNothing) {
   const test::KeysFolder keys{"path"};
   const auto surgeon = keys.credentials(Role::Surgeon);
   const auto patient = keys.credentials(Role::Patient);
-  LinkUpdateDesk desk;
-  SessionServerConfig config;
-  config.session = {.role = Role::Patient, .settings_hash = 1, .coupling = "direct", .git = ""};
-  config.address = {.host = "127.0.0.1", .port = 0};
-  config.credentials = patient.get();
-  SessionServer server{config, desk};
-  const auto facts = read_path({.host = "127.0.0.1", .port = server.local().port()},
+  Waiting waiting{*patient};
+  const auto facts = read_path(waiting.place(),
                                *surgeon,
                                {.questions = 3, .pause = {}, .patience = std::chrono::seconds{10}});
   ASSERT_TRUE(facts) << facts.error().text;
   EXPECT_EQ(facts->asked, 3U);
   EXPECT_EQ(facts->round_trips.size(), 3U);
   EXPECT_TRUE(judge_path(*facts).good);
-  EXPECT_FALSE(server.news()) << "nobody is told of it";
+  EXPECT_FALSE(waiting.news()) << "nobody is told of it";
+}
+
+TEST(PathCheckTest, TriesWhetherTheSitesTakeEachOthersCertificates) {
+  const test::KeysFolder ours{"try-ours"};
+  const test::KeysFolder others{"try-others"};
+  const auto surgeon = ours.credentials(Role::Surgeon);
+  const auto patient = ours.credentials(Role::Patient);
+  const Waiting waiting{*patient};
+  const auto tried = try_handshake(waiting.place(), *surgeon);
+  ASSERT_TRUE(tried) << tried.error().text;
+  EXPECT_TRUE(tried->good) << tried->advice;
+  EXPECT_THAT(tried->found, testing::HasSubstr("test patient site"));
+
+  const auto stranger = others.credentials(Role::Surgeon);
+  const auto refused = try_handshake(waiting.place(), *stranger);
+  ASSERT_TRUE(refused);
+  EXPECT_FALSE(refused->good);
+  EXPECT_THAT(refused->advice, testing::HasSubstr("two different authorities"));
+}
+
+TEST(PathCheckTest, TellsWhenThePatientSiteRefusesThisOne) {
+  const test::KeysFolder keys{"try-revoked"};
+  const auto surgeon = keys.credentials(Role::Surgeon);
+  ASSERT_TRUE(revoke_certificate(keys.config(), keys.site(Role::Surgeon) / "certificate.pem"));
+  const auto patient = keys.credentials(Role::Patient);
+  const Waiting waiting{*patient};
+  const auto refused = try_handshake(waiting.place(), *surgeon);
+  ASSERT_TRUE(refused);
+  EXPECT_FALSE(refused->good);
+  EXPECT_THAT(refused->advice, testing::HasSubstr("revoked"));
+}
+
+TEST(PathCheckTest, WhoDoesNotAnswerIsWaitedForAndNoLonger) {
+  const test::KeysFolder keys{"try-silent"};
+  const auto surgeon = keys.credentials(Role::Surgeon);
+  const test::PlainSocket silent;
+  const auto tried = try_handshake(
+      {.host = "127.0.0.1", .port = silent.local().port()}, *surgeon, milliseconds{50});
+  ASSERT_TRUE(tried);
+  EXPECT_FALSE(tried->good);
+  EXPECT_THAT(tried->advice, testing::HasSubstr("start the patient site"));
 }
 
 TEST(PathCheckTest, SomethingElseThanACookieIsNoAnswer) {

@@ -18,6 +18,8 @@ constexpr char kRoom[] = "K7Q2-a-long-name";
 
 Endpoint place(const std::string& text) { return resolve_endpoint(text).value(); }
 
+using SessionIs = RelayMember::SessionIs;
+
 class RelayMemberTest : public testing::Test {
  protected:
   /// What the relay would say to that.
@@ -31,7 +33,7 @@ class RelayMemberTest : public testing::Test {
     return message.bytes();
   }
   void join(std::uint8_t others) {
-    const auto ask = member_.tick(now_, true);
+    const auto ask = member_.tick(now_, SessionIs::Silent);
     ASSERT_TRUE(ask);
     const auto join = member_.hear(answered(*ask, RelayMessage::Kind::Cookie), relay_, now_);
     ASSERT_TRUE(join);
@@ -44,7 +46,7 @@ class RelayMemberTest : public testing::Test {
 };
 
 TEST_F(RelayMemberTest, TheProofOfAJoinIsTheRoomsOwn) {
-  const auto ask = member_.tick(now_, false);
+  const auto ask = member_.tick(now_, SessionIs::None);
   const auto join = member_.hear(answered(*ask, RelayMessage::Kind::Cookie), relay_, now_);
   ASSERT_TRUE(join);
   RelayMessage message = *RelayMessage::parse(*join);
@@ -54,21 +56,26 @@ TEST_F(RelayMemberTest, TheProofOfAJoinIsTheRoomsOwn) {
 }
 
 TEST_F(RelayMemberTest, AskedOnceASecondAndInNeedFiveTimes) {
-  EXPECT_TRUE(member_.tick(now_, false));
-  EXPECT_FALSE(member_.tick(now_ + milliseconds{300}, false));
-  EXPECT_TRUE(member_.tick(now_ + milliseconds{300}, true));
-  EXPECT_TRUE(member_.tick(now_ + milliseconds{1300}, false));
+  EXPECT_TRUE(member_.tick(now_, SessionIs::None));
+  EXPECT_FALSE(member_.tick(now_ + milliseconds{300}, SessionIs::None));
+  EXPECT_TRUE(member_.tick(now_ + milliseconds{300}, SessionIs::Silent));
+  EXPECT_TRUE(member_.tick(now_ + milliseconds{1300}, SessionIs::None));
 }
 
-TEST_F(RelayMemberTest, WhoSitsAsksAgainAfterAQuarterOfAMinute) {
+TEST_F(RelayMemberTest, WhoIsInASessionAsksAgainAfterAQuarterOfAMinute) {
   join(1);
   EXPECT_TRUE(member_.take_news()->good);
-  EXPECT_FALSE(member_.tick(now_ + RelayMember::kKeepEvery - milliseconds{1}, false));
-  EXPECT_TRUE(member_.tick(now_ + RelayMember::kKeepEvery, false));
+  EXPECT_FALSE(member_.tick(now_ + RelayMember::kKeepEvery - milliseconds{1}, SessionIs::Live));
+  EXPECT_TRUE(member_.tick(now_ + RelayMember::kKeepEvery, SessionIs::Live));
+}
+
+TEST_F(RelayMemberTest, WhoWaitsForASessionShowsEachSecondThatItIsThere) {
+  join(1);
+  EXPECT_TRUE(member_.tick(now_ + RelayMember::kAskEvery, SessionIs::None));
 }
 
 TEST_F(RelayMemberTest, WhoDoesNotSeeOurWordsIsNotBelieved) {
-  const auto ask = member_.tick(now_, false);
+  const auto ask = member_.tick(now_, SessionIs::None);
   auto guessed = answered(*ask, RelayMessage::Kind::Cookie);
   guessed.back() ^= std::byte{1};
   EXPECT_FALSE(member_.hear(guessed, relay_, now_)) << "another nonce";
@@ -85,7 +92,7 @@ TEST_F(RelayMemberTest, PeopleAreToldOnceOfEachChange) {
   EXPECT_THAT(member_.take_news()->sentence, HasSubstr("nobody else is in the room"));
   EXPECT_FALSE(member_.take_news());
   now_ += seconds{60};
-  (void)member_.tick(now_, false);
+  (void)member_.tick(now_, SessionIs::None);
   EXPECT_THAT(member_.take_news()->sentence, HasSubstr("does not answer"));
 }
 

@@ -299,6 +299,49 @@ TEST(ThiefTest, InGapsOfTheStraightWayHeIsAskedOnceASecondAndTheSurgeonIsFollowe
   }
 }
 
+/// Sends copies of each of the surgeon's telegrams from many addresses, in turn sooner and later
+/// than the surgeon itself.
+struct Copier {
+  Copier(World& the_world, int its_addresses, std::vector<int> its_leads_ms)
+      : world{the_world}, leads_ms{std::move(its_leads_ms)} {
+    for (int i = 0; i < its_addresses; ++i) {
+      addresses.push_back(*resolve_endpoint("127.0.0.3:" + std::to_string(1000 + i)));
+    }
+    world.observer = [this](const Parcel& parcel) { see(parcel); };
+  }
+  void see(const Parcel& parcel) {
+    if (!(parcel.from == world.surgeon_seen_at) || parcel.letter) return;
+    for (std::size_t i = 0; i < addresses.size(); ++i) {
+      const TimePoint due =
+          std::max(world.now, parcel.due - milliseconds{leads_ms[i % leads_ms.size()]});
+      world.throw_in({due, false, kPatientAt, addresses[i], parcel.bytes});
+    }
+  }
+
+  World& world;
+  std::vector<int> leads_ms;
+  std::vector<Endpoint> addresses;
+};
+
+/// Within a round trip and 0.2 s of each change everything goes on.
+TEST(ThiefTest, WhoCopiesEachTelegramFromManyAddressesKeepsNobodyFromFollowingTheSurgeon) {
+  for (const int addresses : {4, 20}) {
+    const int changes = addresses == 4 ? 20 : 5;
+    World world{"copier"};
+    begin(world, true);
+    Copier copier{world, addresses, {20, 5, 1, 0, -1, -5, -20}};
+    for (int i = 0; i < changes; ++i) {
+      world.surgeon_seen_at = *resolve_endpoint("127.0.0.1:" + std::to_string(3000 + i));
+      world.run(2 * world.way + milliseconds{200});
+      EXPECT_TRUE(world.live()) << addresses << " addresses, change " << i;
+      EXPECT_TRUE(world.patient->hears == world.surgeon_seen_at) << i;
+      world.run(seconds{1});
+    }
+    EXPECT_EQ(world.patient->moved_to.size(), static_cast<std::size_t>(changes));
+    EXPECT_EQ(world.patient->established.size(), 1U);
+  }
+}
+
 TEST(ThiefTest, ASurgeonThatIsSeenUnderItsOwnAddressAnswersForNoOther) {
   World world{"untranslated"};
   begin(world, false);
@@ -361,19 +404,22 @@ TEST(PathMessageTest, IsReadAsItWasWrittenAndInNoOtherSize) {
   EXPECT_FALSE(PathMessage::parse(std::span{other}.subspan(link::kHeaderSize)));
 }
 
+PathMessage answer_to(const PathQuestion& question) {
+  PathMessage answer = question.message;
+  answer.kind = PathMessage::Kind::Answer;
+  return answer;
+}
+
 TEST(RoamingTest, AnAnswerCountsOnlyFromTheAddressThatItNames) {
   const TimePoint now{seconds{1}};
   Roaming roaming;
   roaming.begin(kSurgeonAt);
-  (void)roaming.ask(kSilent, now);  // of the first address
-  roaming.note(11, kElsewhere, 20, kSilent, now);
-  EXPECT_FALSE(roaming.ask(kSilent, now)) << "longer than what came from there";
-  roaming.note(12, kElsewhere, 200, kSilent, now);
-  auto question = roaming.ask(kSilent, now);
+  EXPECT_FALSE(roaming.note(11, kElsewhere, 20, kSilent, now))
+      << "longer than what came from there";
+  const auto question = roaming.note(12, kElsewhere, 200, kSilent, now);
   ASSERT_TRUE(question);
   ASSERT_TRUE(question->to == kElsewhere);
-  PathMessage answer = question->message;
-  answer.kind = PathMessage::Kind::Answer;
+  PathMessage answer = answer_to(*question);
   EXPECT_FALSE(roaming.answer(answer, kSurgeonAt, now));
   EXPECT_FALSE(roaming.move(kSilent, now));
   answer.asked = kSurgeonAt.bytes();
@@ -384,6 +430,44 @@ TEST(RoamingTest, AnAnswerCountsOnlyFromTheAddressThatItNames) {
   EXPECT_TRUE(roaming.answer(answer, kElsewhere, now));
   EXPECT_FALSE(roaming.move({.newest_number = 10, .heard_at = now - milliseconds{49}}, now));
   EXPECT_TRUE(roaming.move(kSilent, now));
+}
+
+TEST(RoamingTest, AnAnswerIsGoodForSomeSecondsAndForNoOtherSession) {
+  for (const int asked_ms : {12'000, 12'001, 15'999, 16'000}) {
+    const TimePoint asked_at{milliseconds{asked_ms}};
+    Roaming roaming;
+    roaming.begin(kSurgeonAt);
+    const auto question = roaming.note(11, kElsewhere, 200, kSilent, asked_at);
+    ASSERT_TRUE(question);
+    const PathMessage answer = answer_to(*question);
+    Roaming later = roaming;
+    EXPECT_TRUE(later.answer(answer, kElsewhere, asked_at + seconds{4}));
+    EXPECT_FALSE(later.answer(answer, kElsewhere, asked_at + seconds{8}));
+    later.begin(kSurgeonAt);
+    EXPECT_FALSE(later.answer(answer, kElsewhere, asked_at));
+  }
+}
+
+TEST(RoamingTest, ManyAddressesTakeNobodysTurnToBeAsked) {
+  Roaming roaming;
+  roaming.begin(kSurgeonAt);
+  TimePoint now{seconds{1}};
+  std::uint64_t number = 20;
+  const auto from_others = [&] {
+    for (int port = 0; port < 500; ++port) {
+      const Endpoint other = *resolve_endpoint("127.0.0.3:" + std::to_string(1000 + port));
+      (void)roaming.note(number, other, 200, kSilent, now);
+    }
+  };
+  from_others();
+  const auto question = roaming.note(++number, kElsewhere, 200, kSilent, now);
+  ASSERT_TRUE(question);
+  from_others();
+  EXPECT_TRUE(roaming.answer(answer_to(*question), kElsewhere, now + milliseconds{75}));
+  from_others();
+  const auto moved = roaming.move(kSilent, now + milliseconds{75});
+  ASSERT_TRUE(moved);
+  EXPECT_TRUE(*moved == kElsewhere);
 }
 
 }  // namespace

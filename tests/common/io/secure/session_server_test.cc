@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/io/secure/path_check.h"
 #include "common/link/codec_wire.h"
 #include "tests/common/io/net/loopback.h"
 #include "tests/common/io/secure/keys_folder.h"
@@ -190,6 +191,29 @@ TEST(SessionServerTest, OrderlyCloseIsToldAndEndsTheLink) {
   surgeon = std::make_unique<Site>(Role::Surgeon, patient.server.local().port());
   EXPECT_TRUE(meet(*surgeon, patient));
   EXPECT_EQ(patient.count(SessionNews::Kind::Established), 2);
+}
+
+TEST(SessionServerTest, WhoOnlyTriesTheCertificatesDisturbsNoSession) {
+  const test::KeysFolder keys{"try"};
+  const auto surgeons = keys.credentials(Role::Surgeon);
+  const auto patients = keys.credentials(Role::Patient);
+  SessionServerConfig config = config_of(Role::Patient, 0, "direct");
+  config.credentials = patients.get();
+  Site patient{config};
+  const std::uint16_t port = patient.server.local().port();
+  config = config_of(Role::Surgeon, port, "direct");
+  config.credentials = surgeons.get();
+  Site surgeon{config};
+  ASSERT_TRUE(meet(surgeon, patient));
+  const std::uint64_t session = patient.link.health(SteadyClock{}.now()).session_id;
+  const auto tried = try_handshake({.host = "127.0.0.1", .port = port}, *surgeons);
+  ASSERT_TRUE(tried);
+  EXPECT_TRUE(tried->good) << tried->advice;
+  const SteadyClock clock;
+  const TimePoint later = clock.now() + milliseconds{300};
+  ASSERT_TRUE(run_until({&surgeon, &patient}, nullptr, [&] { return clock.now() > later; }));
+  EXPECT_EQ(patient.link.health(clock.now()).session_id, session);
+  EXPECT_EQ(patient.count(SessionNews::Kind::Established), 1);
 }
 
 TEST(SessionServerTest, ManySessionsInARowUseUpNothing) {
