@@ -213,6 +213,9 @@ const std::vector<Arrow>& arrows() {
         "common/io/process/process_time.h",
         "common/io/process/parallel.h"}},
       // Experiments with observers: no I/O, no clock.
+      {"study/main.cc", {"common/config", "common/io/process/parallel.h"}},
+      {"study/*_command.*", {"common/config"}},
+      {"study/answers_file.*", {"common/config/number.h"}},
       {"study/*", {}},
       // What a site did is done again by the site's own control, and judged as the lab judges.
       {"review/*",
