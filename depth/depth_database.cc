@@ -16,6 +16,7 @@ namespace palp::depth {
 namespace {
 
 constexpr std::size_t kShapes = 2;
+constexpr double kAnyRatio = 10;      // whether an inclusion fits does not depend on it
 constexpr double kFarExponent = 1.5;  // Hertz, where the table has no rows yet
 
 std::size_t shape_index(fem::InclusionShape shape) {
@@ -26,6 +27,17 @@ std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", value);
   return text;
+}
+
+fem::Specimen specimen_of(const fem::DepthGrid& grid, const DepthDatabase::Query& query) {
+  return {.block = grid.block,
+          .inclusion = {.shape = query.shape,
+                        .depth = query.depth,
+                        .radius = query.radius,
+                        .height = fem::kCylinderHeightOverRadius * query.radius,
+                        .ratio = query.ratio,
+                        .poisson = grid.inclusion_poisson},
+          .indenter = {.radius = grid.indenter_radius}};
 }
 
 Result<void> in_range(const char* name,
@@ -42,16 +54,20 @@ Result<void> in_range(const char* name,
 }  // namespace
 
 Result<DepthDatabase> DepthDatabase::make(const fem::DepthTable& table) {
-  const std::size_t wanted =
-      table.grid.depths.size() * table.grid.radii.size() * table.grid.ratios.size();
   for (const fem::InclusionShape shape :
        {fem::InclusionShape::Ball, fem::InclusionShape::Cylinder}) {
-    const auto count = std::count_if(
+    std::size_t wanted = 0;  // what does not fit into the block is missing, and no more
+    for (const double depth : table.grid.depths) {
+      for (const double radius : table.grid.radii) {
+        const Query query{.shape = shape, .depth = depth, .radius = radius, .ratio = kAnyRatio};
+        if (fem::check(specimen_of(table.grid, query))) wanted += table.grid.ratios.size();
+      }
+    }
+    const auto count = static_cast<std::size_t>(std::count_if(
         table.members.begin(), table.members.end(), [&](const fem::DepthMember& member) {
           return member.shape == shape;
-        });
-    // What does not fit into the block is missing, and no more.
-    if (static_cast<double>(count) < 0.8 * static_cast<double>(wanted)) {
+        }));
+    if (count < wanted) {
       return fail("the depth database is unfinished: " + std::to_string(count) + " of " +
                   std::to_string(wanted) + " members of shape " + std::string{to_string(shape)});
     }
@@ -130,14 +146,7 @@ Result<void> DepthDatabase::contains(const Query& query) const {
         in_range("the stiffness ratio", query.ratio, grid_.ratios, 1, "")}) {
     if (!ok) return ok;
   }
-  return fem::check({.block = grid_.block,
-                     .inclusion = {.shape = query.shape,
-                                   .depth = query.depth,
-                                   .radius = query.radius,
-                                   .height = fem::kCylinderHeightOverRadius * query.radius,
-                                   .ratio = query.ratio,
-                                   .poisson = grid_.inclusion_poisson},
-                     .indenter = {.radius = grid_.indenter_radius}});
+  return fem::check(specimen_of(grid_, query));
 }
 
 DepthDatabase::Curve DepthDatabase::plain() const {

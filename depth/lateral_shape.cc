@@ -9,6 +9,11 @@
 namespace palp::depth {
 namespace {
 
+// Far from a ball less than a thousandth of its effect is left, which drowns in the noise of the
+// solver's cells; there it falls at least so fast. The limit far away is the sixth power.
+constexpr double kFarFrom = 1.6;  // [-], offset over the depth of the centre
+constexpr double kFarPower = 4;
+
 std::vector<double> log_of(const std::vector<double>& values) {
   std::vector<double> out;
   for (const double value : values) out.push_back(std::log(value));
@@ -29,9 +34,17 @@ LateralShape::LateralShape(const fem::ShapeTable& table)
       indentation_axis_{table.indentations} {
   for (const double ratio : table.ratios) ratio_axis_.push_back(ratio_coordinate(ratio));
   fall_.reserve(table.shape.size());
+  const std::size_t rows = indentation_axis_.size();
+  std::vector<double> logs;
   for (std::size_t i = 0; i < table.shape.size(); ++i) {
-    const double offset = offset_axis_[i / indentation_axis_.size() % offset_axis_.size()];
-    fall_.push_back(-std::log(static_cast<double>(table.shape[i])) / (offset * offset));
+    const std::size_t at = i / rows % offset_axis_.size();
+    const double offset = offset_axis_[at];
+    double log = -std::log(static_cast<double>(table.shape[i]));
+    if (offset > kFarFrom && at > 0) {
+      log = std::max(log, logs[i - rows] + kFarPower * std::log(offset / offset_axis_[at - 1]));
+    }
+    logs.push_back(log);
+    fall_.push_back(log / (offset * offset));
   }
 }
 

@@ -24,9 +24,9 @@ class LateralShape {
   [[nodiscard]] OfBall of(double depth, double radius, double ratio) const;
 
   /// g: ln(F / F_plain) at `offset` [m] from the axis, on either side, over that on the axis, both
-  /// at `indentation` [m]. [-] 1 on the axis; falls all the way; 0 from kReach on, where the
-  /// table's last share has faded. Beyond the table's offsets it goes as the inverse sixth power.
-  /// Allocates nothing.
+  /// at `indentation` [m]. [-] 1 on the axis; falls all the way, to a thousandth; 0 from kReach on,
+  /// where the table's last share has faded. Beyond the table's offsets it goes as the inverse
+  /// sixth power. Allocates nothing.
   [[nodiscard]] double share(const OfBall& ball, double offset, double indentation) const noexcept;
 
   static constexpr double kFadesFrom = 35e-3;  ///< [m]; farther no tip was computed

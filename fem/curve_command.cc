@@ -18,6 +18,9 @@ using config::ExitCode;
 using config::ExitStatus;
 
 constexpr std::size_t kRowsMax = 1000;
+// What can be solved is for check() to say, in one place; flags only are numbers.
+const config::NumberRange kAnyLength{.min = -1e6, .max = 1e6, .unit = "mm"};
+const config::NumberRange kAnyNumber{.min = -1e9, .max = 1e9};
 
 std::vector<std::string> split(const std::string& text, char mark) {
   std::vector<std::string> parts(1);
@@ -33,28 +36,31 @@ std::vector<std::string> split(const std::string& text, char mark) {
 
 }  // namespace
 
+void declare_block(config::CommandLine& line, CurveFlags& flags) {
+  line.number("--inclusion-poisson", flags.inclusion_poisson, kAnyNumber, "below 0.5");
+  line.number("--youngs-modulus-kpa",
+              flags.youngs_modulus_kpa,
+              {.min = -1e12, .max = 1e12, .unit = "kPa"},
+              "of the block");
+  line.number("--poisson", flags.poisson, kAnyNumber, "of the block, below 0.5");
+  line.number("--half-width-mm", flags.half_width_mm, kAnyLength, "of the block");
+  line.number("--height-mm", flags.height_mm, kAnyLength, "of the block, bonded at its base");
+  line.number("--indenter-radius-mm", flags.indenter_radius_mm, kAnyLength, "of the rigid sphere");
+}
+
 void declare_curve(config::CommandLine& line, CurveFlags& flags) {
-  // What can be solved is for check() to say, in one place; flags only are numbers.
   const auto length = [&](const char* flag, double& value, const char* meaning) {
-    line.number(flag, value, {.min = -1e6, .max = 1e6, .unit = "mm"}, meaning);
-  };
-  const auto plain = [&](const char* flag, double& value, const char* meaning) {
-    line.number(flag, value, {.min = -1e9, .max = 1e9}, meaning);
+    line.number(flag, value, kAnyLength, meaning);
   };
   line.choice("--shape", flags.shape, {"ball", "cylinder", "column", "none"}, "of the inclusion");
   length("--depth-mm", flags.depth_mm, "of the inclusion's top below the surface");
   length("--radius-mm", flags.radius_mm, "of the inclusion");
   length("--cylinder-height-mm", flags.cylinder_height_mm, "of a cylinder");
-  plain("--ratio", flags.ratio, "Young's modulus of the inclusion over that of the block");
-  plain("--inclusion-poisson", flags.inclusion_poisson, "below 0.5");
-  line.number("--youngs-modulus-kpa",
-              flags.youngs_modulus_kpa,
-              {.min = -1e12, .max = 1e12, .unit = "kPa"},
-              "of the block");
-  plain("--poisson", flags.poisson, "of the block, below 0.5");
-  length("--half-width-mm", flags.half_width_mm, "of the block");
-  length("--height-mm", flags.height_mm, "of the block, bonded at its base");
-  length("--indenter-radius-mm", flags.indenter_radius_mm, "of the rigid sphere");
+  line.number("--ratio",
+              flags.ratio,
+              kAnyNumber,
+              "Young's modulus of the inclusion over that of the block");
+  declare_block(line, flags);
   length("--offset-mm", flags.offset_mm, "of the tip's axis from that of the ball");
   line.number("--tilt-deg",
               flags.tilt_deg,

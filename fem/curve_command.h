@@ -31,6 +31,8 @@ struct CurveFlags {
   std::string vtu{};
 };
 
+/// Of them those of block, tip and inclusion's material.
+void declare_block(config::CommandLine& line, CurveFlags& flags);
 void declare_curve(config::CommandLine& line, CurveFlags& flags);
 [[nodiscard]] config::ExitStatus run_curve(const CurveFlags& flags);
 

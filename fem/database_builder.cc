@@ -85,12 +85,14 @@ double indentation_limit(const DepthGrid& grid, double depth) {
   return std::min(kSqueeze * depth * (1 + 1e-9), grid.indentations.back());
 }
 
-std::vector<DepthMember> solve_cell(const DepthGrid& grid, const GridCell& cell) {
+std::vector<DepthMember> solve_cell(const DepthGrid& grid,
+                                    const GridCell& cell,
+                                    Accuracy accuracy) {
   const double depth = grid.depths[cell.depth];
   const double limit = indentation_limit(grid, depth);
   Specimen specimen = specimen_of(grid, cell.shape, depth, grid.radii[cell.radius], 1);
   specimen.inclusion.poisson = grid.block.poisson;
-  const Mesh mesh = make_mesh(specimen, Accuracy::Coarse);
+  const Mesh mesh = make_mesh(specimen, accuracy);
   const std::vector<double> plain = forces(mesh, specimen, grid.indentations, limit);
   specimen.inclusion.poisson = grid.inclusion_poisson;
   std::vector<DepthMember> members;

@@ -25,7 +25,9 @@ struct GridCell {
 [[nodiscard]] double indentation_limit(const DepthGrid& grid, double depth);
 
 /// Members of one cell, one per ratio. Model N.
-[[nodiscard]] std::vector<DepthMember> solve_cell(const DepthGrid& grid, const GridCell& cell);
+[[nodiscard]] std::vector<DepthMember> solve_cell(const DepthGrid& grid,
+                                                  const GridCell& cell,
+                                                  Accuracy accuracy = Accuracy::Coarse);
 
 /// Force of the plain block at the grid's indentations, on a fine mesh. [N]
 [[nodiscard]] Result<std::vector<double>> solve_plain(const DepthGrid& grid);

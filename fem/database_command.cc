@@ -21,6 +21,7 @@
 #include "common/core/printable.h"
 #include "common/core/whole_file.h"
 #include "fem/database_builder.h"
+#include "fem/database_grid.h"
 #include "fem/depth_table.h"
 #include "fem/interpolation_check.h"
 #include "fem/shape_builder.h"
@@ -98,10 +99,35 @@ class ShownProgress {
   double began_;  ///< [s]
 };
 
+Detail detail_of(const DatabaseFlags& flags) {
+  return flags.accuracy == "coarse" ? Detail::Coarse
+         : flags.accuracy == "fine" ? Detail::Fine
+                                    : Detail::Normal;
+}
+
+/// The grid that was asked for, if it can be solved.
+Result<DepthGrid> asked_grid(const DatabaseFlags& flags) {
+  const auto request = curve_request(flags.block);
+  if (!request) return tl::unexpected<Error>(request.error());
+  const Specimen& specimen = request->specimen;
+  DepthGrid grid = grid_for(
+      specimen.block, specimen.indenter.radius, specimen.inclusion.poisson, detail_of(flags));
+  if (!flags.grid.empty()) {
+    const auto text = read_whole_file(flags.grid);
+    if (!text) return tl::unexpected<Error>(text.error());
+    auto axes = with_axes(std::move(grid), *text);
+    if (!axes) return fail(flags.grid + ", " + axes.error().text);
+    grid = std::move(*axes);
+  }
+  if (auto ok = check(grid); !ok) return tl::unexpected<Error>(ok.error());
+  return grid;
+}
+
 /// One process: the cells of its share that `table` lacks. `wall`: null shows no progress.
 Result<void> solve_share(DepthTable table,
                          const Shard& shard,
                          const std::string& path,
+                         Accuracy mesh,
                          const std::function<double()>* wall) {
   std::set<std::tuple<InclusionShape, std::uint32_t, std::uint32_t>> have;
   for (const DepthMember& member : table.members) {
@@ -117,7 +143,7 @@ Result<void> solve_share(DepthTable table,
   if (wall != nullptr) shown.emplace(first, mine.size(), *wall);
   int unsaved = 0;
   for (std::size_t i = first; i < mine.size(); ++i) {
-    for (DepthMember& member : solve_cell(table.grid, mine[i])) {
+    for (DepthMember& member : solve_cell(table.grid, mine[i], mesh)) {
       table.members.push_back(std::move(member));
     }
     if (shown) shown->show(i + 1);
@@ -137,8 +163,11 @@ std::string part_name(const std::string& out, std::size_t core) {
 /// Everything found so far: the file itself and what the processes of an earlier run left.
 Result<DepthTable> start_table(const DatabaseFlags& flags) {
   DepthTable table;
-  table.grid = default_grid();
-  table.made_by = "palp-fem database, model neo, coarse mesh relative to its own plain block";
+  auto grid = asked_grid(flags);
+  if (!grid) return tl::unexpected<Error>(grid.error());
+  table.grid = std::move(*grid);
+  table.made_by = "palp-fem database, model neo, accuracy " + flags.accuracy +
+                  ", each mesh relative to its own plain block";
   for (std::size_t core = 0; core <= flags.cores; ++core) {
     const std::string name = core == 0 ? flags.out : part_name(flags.out, core - 1);
     if (::access(name.c_str(), F_OK) != 0) continue;
@@ -148,6 +177,10 @@ Result<DepthTable> start_table(const DatabaseFlags& flags) {
       return fail(name + ": " + merged.error().text + " than asked for; remove it first");
     }
     if (table.plain.empty()) table.plain = found->plain;
+    if (core > 0) continue;
+    table.checked_count = found->checked_count;  // of a whole file, which nothing is added to
+    table.checked_rms = found->checked_rms;
+    table.checked_max = found->checked_max;
   }
   if (!table.plain.empty()) return table;
   auto plain = solve_plain(table.grid);
@@ -160,6 +193,7 @@ Result<DepthTable> start_table(const DatabaseFlags& flags) {
 struct Share {
   Shard cells;
   std::string part;
+  Accuracy mesh{};
   const std::function<double()>* wall{};  ///< of the one that shows progress
   pid_t process{};
   int starts{};
@@ -173,7 +207,7 @@ struct Share {
       static_cast<void>(merge_table(table, *part));
     }
   }
-  const auto done = solve_share(std::move(table), share.cells, share.part, share.wall);
+  const auto done = solve_share(std::move(table), share.cells, share.part, share.mesh, share.wall);
   if (!done) std::fprintf(stderr, "palp-fem: %s\n", done.error().text.c_str());
   std::_Exit(done ? 0 : kRefused);
 }
@@ -203,6 +237,7 @@ Result<void> solve_on_all_cores(const DepthTable& table,
   for (std::size_t core = 0; core < flags.cores; ++core) {
     shares.push_back({.cells = {shard.index + shard.count * core, shard.count * flags.cores},
                       .part = part_name(flags.out, core),
+                      .mesh = member_mesh(detail_of(flags)),
                       .wall = core == 0 && flags.wall ? &flags.wall : nullptr});
     if (auto started = start(table, shares.back()); !started) return started;
   }
@@ -274,14 +309,20 @@ ExitStatus tell(const DepthTable& table, const std::string& report) {
 /// States how far the interpolation is off, of a grid that is whole.
 Result<void> check_if_asked(DepthTable& table, const DatabaseFlags& flags) {
   if (flags.check == 0 || table.members.size() != wanted_members(table.grid)) return {};
-  return check_interpolation(table, static_cast<std::uint32_t>(flags.check), kCheckSeed);
+  return check_interpolation(
+      table, static_cast<std::uint32_t>(flags.check), kCheckSeed, member_mesh(detail_of(flags)));
 }
 
 /// The shape beside the axis, of a grid that is whole.
 Result<void> add_shape_if_asked(DepthTable& table, const DatabaseFlags& flags) {
   const bool whole = table.members.size() == wanted_members(table.grid);
   if (!flags.off_axis || !whole || table.off_axis) return {};
-  auto shape = solve_shape_table(table.grid, shape_axes(), Accuracy::Normal);
+  const Detail detail = detail_of(flags);
+  const ForEach on_all_cores = [&](std::size_t count, const auto& work) {
+    flags.for_each_index(count, flags.cores, work);
+  };
+  auto shape = solve_shape_table(
+      table.grid, shape_axes(table.grid, detail), shape_mesh(detail), on_all_cores);
   if (!shape) return tl::unexpected<Error>(shape.error());
   table.off_axis = std::move(*shape);
   return {};
@@ -301,6 +342,7 @@ void declare_of_whole(config::CommandLine& line, DatabaseFlags& flags) {
              {.min = 0, .max = 10'000},
              "phantoms between the grid's points, solved to state the interpolation's error");
   line.toggle("--off-axis", flags.off_axis, "adds what is left of a ball's effect beside its axis");
+  line.choice("--accuracy", flags.accuracy, {"coarse", "normal", "fine"}, "of grid and meshes");
 }
 
 }  // namespace
@@ -309,6 +351,8 @@ void declare_database(config::CommandLine& line, DatabaseFlags& flags) {
   line.text("--out", flags.out, "FILE", "the database; an unfinished one is completed");
   line.text("--shard", flags.shard, "i/n", "one share of the grid; merge puts them together");
   line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "processes at a time");
+  declare_block(line, flags.block);
+  line.text("--grid", flags.grid, "FILE", "lines depth_mm, radius_mm, ratio, indentation_mm: axes");
   declare_of_whole(line, flags);
   line.report(flags.report, kSchema);
   config::declare_submission(line, flags.submission);
@@ -332,6 +376,10 @@ ExitStatus run_database(const DatabaseFlags& flags) {
   if (!shard) return bad_input(shard.error().text);
   auto table = start_table(flags);
   if (!table) return refused(table.error());
+  if (table->members.size() < wanted_members(table->grid)) {
+    const Forecast ahead = forecast(table->grid, detail_of(flags), flags.off_axis);
+    std::fprintf(stderr, "palp-fem: %s\n", forecast_text(ahead, flags.cores).c_str());
+  }
   if (const auto done = solve_on_all_cores(*table, *shard, flags); !done) {
     return cannot_open(done.error().text);
   }

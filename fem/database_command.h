@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "common/config/command_line.h"
 #include "common/config/submission.h"
+#include "fem/curve_command.h"
 
 namespace palp::fem {
 
@@ -15,6 +17,9 @@ struct DatabaseFlags {
   std::string out{"depth_database.bin"};
   std::string shard{};  ///< "i/n"; empty: all of it
   std::uint64_t cores{2};
+  CurveFlags block{};  ///< what curve knows of block, tip and inclusion's material
+  std::string grid{};  ///< file with axes of its own; empty: the default's, as far as they fit
+  std::string accuracy{"normal"};
   bool off_axis{};        ///< solves the shape beside the axis as well, once the grid is whole
   std::uint64_t check{};  ///< phantoms between the grid's points, solved after the grid is whole
   std::string report{};
@@ -25,9 +30,13 @@ struct DatabaseFlags {
                .part_flag = "--out",
                .part_ending = ".bin",
                .first = 1,
-               .of_merge = {"--out", "--report", "--check", "--off-axis"}}};  ///< of database
+               .of_merge = {
+                   "--out", "--report", "--check", "--off-axis", "--accuracy"}}};  ///< of database
   /// [s] since some instant; empty: nobody watches. main() knows clocks and terminals.
   std::function<double()> wall{};
+  /// Work on so many threads, as io::for_each_index() does.
+  std::function<void(std::size_t, std::size_t, const std::function<void(std::size_t)>&)>
+      for_each_index{};
 };
 
 void declare_database(config::CommandLine& line, DatabaseFlags& flags);

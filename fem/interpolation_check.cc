@@ -14,7 +14,10 @@ constexpr std::uint64_t kCheckStream = 7;  // of the random numbers
 
 }  // namespace
 
-Result<void> check_interpolation(DepthTable& table, std::uint32_t count, std::uint64_t seed) {
+Result<void> check_interpolation(DepthTable& table,
+                                 std::uint32_t count,
+                                 std::uint64_t seed,
+                                 Accuracy mesh) {
   const auto database = depth::DepthDatabase::make(table);
   if (!database) return tl::unexpected<Error>(database.error());
   const DepthGrid& grid = table.grid;
@@ -40,7 +43,7 @@ Result<void> check_interpolation(DepthTable& table, std::uint32_t count, std::ui
     single.depths = {query.depth};
     single.radii = {query.radius};
     single.ratios = {query.ratio};
-    const auto solved = solve_cell(single, {query.shape, 0, 0});
+    const auto solved = solve_cell(single, {query.shape, 0, 0}, mesh);
     const depth::DepthDatabase::Curve curve = database->curve(query);
     const std::vector<float>& excess = solved.at(0).excess;
     for (std::size_t i = 0; i < excess.size(); ++i) {

@@ -6,6 +6,7 @@
 #include "common/config/command_line.h"
 #include "common/config/program_run.h"
 #include "common/config/submission.h"
+#include "common/io/process/parallel.h"
 #include "common/io/process/process_time.h"
 #include "fem/curve_command.h"
 #include "fem/database_command.h"
@@ -23,6 +24,7 @@ int run(int argc, char** argv) {
   if (::isatty(STDERR_FILENO) != 0) {
     database.wall = [] { return seconds(io::process_time().wall); };
   }
+  database.for_each_index = io::for_each_index;
   declare_database(line.verb("database", "solve the depth database"), database);
   declare_merge(line.verb("merge", "put databases of one grid together"), database);
   declare_info(line.verb("info", "what a database holds"), database);

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <vector>
 
-#include "common/core/conventions.h"
 #include "fem/off_axis_contact.h"
 
 namespace palp::fem {
@@ -26,19 +25,6 @@ Specimen ball_in(const DepthGrid& grid, double depth, double radius, double rati
 }
 
 }  // namespace
-
-ShapeTable shape_axes() {
-  ShapeTable axes;
-  constexpr int kDepths = 12;
-  for (int i = 0; i < kDepths; ++i) axes.depths.push_back(3e-3 * std::pow(9.0, i / 11.0));
-  for (const double mm : {3.0, 4.0, 5.2, 6.8, 8.8, 11.0, 13.5, 16.0}) {
-    axes.radii.push_back(mm * kMillimetre);
-  }
-  axes.ratios = {3, 20, 900};
-  axes.offsets = {0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1, 1.25, 1.5, 2, 2.5, 3};
-  axes.indentations = {0.5e-3, 1.5e-3, 3e-3, 5e-3};
-  return axes;
-}
 
 Result<std::vector<float>> solve_shape(const DepthGrid& grid,
                                        const ShapeTable& axes,
@@ -74,16 +60,22 @@ Result<std::vector<float>> solve_shape(const DepthGrid& grid,
   return out;
 }
 
-Result<ShapeTable> solve_shape_table(const DepthGrid& grid, ShapeTable axes, Accuracy accuracy) {
+Result<ShapeTable> solve_shape_table(const DepthGrid& grid,
+                                     ShapeTable axes,
+                                     Accuracy accuracy,
+                                     const ForEach& for_each) {
+  const std::size_t ratios = axes.ratios.size();
+  std::vector<Result<std::vector<float>>> balls(axes.depths.size() * axes.radii.size() * ratios);
+  for_each(balls.size(), [&](std::size_t i) {
+    const std::size_t geometry = i / ratios;
+    const std::size_t depth = geometry / axes.radii.size();
+    const std::size_t radius = geometry % axes.radii.size();
+    balls[i] = solve_shape(grid, axes, depth, radius, i % ratios, accuracy);
+  });
   axes.shape.clear();
-  for (std::size_t i = 0; i < axes.depths.size(); ++i) {
-    for (std::size_t j = 0; j < axes.radii.size(); ++j) {
-      for (std::size_t k = 0; k < axes.ratios.size(); ++k) {
-        const auto values = solve_shape(grid, axes, i, j, k, accuracy);
-        if (!values) return tl::unexpected<Error>(values.error());
-        axes.shape.insert(axes.shape.end(), values->begin(), values->end());
-      }
-    }
+  for (const Result<std::vector<float>>& ball : balls) {
+    if (!ball) return tl::unexpected<Error>(ball.error());
+    axes.shape.insert(axes.shape.end(), ball->begin(), ball->end());
   }
   return axes;
 }

@@ -1,15 +1,14 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
+
 #include "common/core/result.h"
 #include "fem/depth_table.h"
 #include "fem/mesh.h"
 #include "fem/shape_table.h"
 
 namespace palp::fem {
-
-/// The axes of the shape table over those of the depth database: depth 3 to 27 mm, radius 3 to
-/// 16 mm, ratio 3 to 900, offset to 3, indentation to 5 mm; no values.
-[[nodiscard]] ShapeTable shape_axes();
 
 /// All values of one ball, model L1. Where the tip would come near the block's side the shape goes
 /// on as -ln(g) / offset^2 did last; where it would come near a stiff ball it is that of less
@@ -21,9 +20,13 @@ namespace palp::fem {
                                                      std::size_t ratio,
                                                      Accuracy accuracy);
 
-/// The whole table. Minutes.
+/// Calls its second argument once with every index below the first, in any order, on any threads.
+using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t)>&)>;
+
+/// The whole table; a second or two of one core for a ball and ratio.
 [[nodiscard]] Result<ShapeTable> solve_shape_table(const DepthGrid& grid,
                                                    ShapeTable axes,
-                                                   Accuracy accuracy);
+                                                   Accuracy accuracy,
+                                                   const ForEach& for_each);
 
 }  // namespace palp::fem

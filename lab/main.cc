@@ -62,7 +62,11 @@ Result<Scenario> scenario_of(const Arguments& arguments) {
   }
   if (auto checked = document->check(); !checked) return tl::unexpected(checked.error());
   auto scenario = make_scenario(arguments.scenario, *document);
-  if (scenario) scenario->bare = arguments.bare;
+  if (!scenario) return scenario;
+  scenario->bare = arguments.bare;
+  if (!scenario->phantom.caution.empty()) {
+    std::fprintf(stderr, "palp-lab: warning: %s\n", scenario->phantom.caution.c_str());
+  }
   return scenario;
 }
 

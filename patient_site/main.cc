@@ -116,6 +116,10 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   const SimulatedPhantomConfig& simulation = settings->simulation;
   const bool tissue_known = !*devices || !(*devices)->phantom.empty();
   if (!*devices) {
+    if (const auto same = check_tip(*settings, *phantom); !same) return bad(same.error());
+    if (!phantom->caution.empty()) {
+      std::fprintf(stderr, "palp-patient: warning: %s\n", phantom->caution.c_str());
+    }
     settings->node.gate = within_tables(settings->node.gate,
                                         simulation.surface_offset - simulation.breathing_amplitude,
                                         phantom->depth_max());

@@ -1,8 +1,10 @@
 #include "patient_site/settings.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/config/document.h"
+#include "common/core/number_text.h"
 #include "common/settings/units.h"
 #include "proto/config.pb.h"
 
@@ -14,6 +16,23 @@ using settings::from_milli;
 
 /// The stage's servo runs past its target, and rounds to its encoder.
 constexpr double kTableMargin = 0.1e-3;  // [m]
+
+constexpr double kSameTip = 1e-3;  // [-], of tip radii
+
+bool same_tip(double a, double b) noexcept { return std::abs(a - b) <= kSameTip * a; }
+
+/// The forces of a database are those of one tip. The paper's formula is for its own.
+Result<void> check_database(const Settings& made) {
+  constexpr double kBuiltInTip = 5e-3;  // [m], of the database in the program
+  const double solved =
+      made.estimator.database ? made.estimator.database->grid().indenter_radius : kBuiltInTip;
+  if (same_tip(made.tip_radius, solved)) return {};
+  return fail(
+      (made.estimator.database ? "the depth database" : "the depth database in the program") +
+      number_text(" is of a tip of radius ", solved * 1e3, 2, " mm") +
+      number_text(", this site's is of ", made.tip_radius * 1e3, 2, " mm (tip_radius_mm)") +
+      ": set estimator.database to one of palp-fem database --indenter-radius-mm");
+}
 
 /// A simulated sensor feels nothing of a real stage, nor the other way round.
 Result<void> check_devices(const proto::config::PatientConfig& message) {
@@ -141,6 +160,8 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
   made.node.watch.force_limit = made.node.gate.force_limit;
   made.estimator_kind = message.estimator().kind();
   made.estimator = *estimator;
+  made.tip_radius = from_milli(message.tip_radius_mm());
+  if (const auto same = check_database(made); !same) return fail(same.error().text);
   made.impairment = settings::make_impairment(message.impairment());
   made.record = *record;
   made.monitor = settings::make_monitor(message.monitor());
@@ -151,6 +172,14 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
 
 Result<Settings> make_settings(const config::Document& document) {
   return make_settings(document.as<proto::config::PatientConfig>());
+}
+
+Result<void> check_tip(const Settings& settings, const Phantom& phantom) {
+  if (!phantom.tip_radius || same_tip(settings.tip_radius, *phantom.tip_radius)) return {};
+  return fail(
+      "phantom '" + phantom.name + "'" +
+      number_text(" is of a tip of radius ", *phantom.tip_radius * 1e3, 2, " mm") +
+      number_text(", this site's is of ", settings.tip_radius * 1e3, 2, " mm (tip_radius_mm)"));
 }
 
 MotionGateConfig within_tables(MotionGateConfig gate,

@@ -32,6 +32,7 @@ struct Settings {
   std::string devices;  ///< file; empty: none needed
   std::string phantom{"paper-10mm"};
   SimulatedPhantomConfig simulation;
+  double tip_radius{5e-3};  ///< [m]
   std::string estimator_kind{"bayes"};
   depth::DepthEstimatorConfig estimator;
   settings::LoopSettings loop;
@@ -45,6 +46,9 @@ struct Settings {
 /// The document must have passed its check(). The sentence names what does not exist.
 [[nodiscard]] Result<Settings> make_settings(const config::Document& document);
 [[nodiscard]] Result<Settings> make_settings(const proto::config::PatientConfig& message);
+
+/// Whether the phantom's forces are those of the site's tip.
+[[nodiscard]] Result<void> check_tip(const Settings& settings, const Phantom& phantom);
 
 /// `gate` for a simulated tissue whose surface truly lies at `surface_offset` [m] and whose tables
 /// end `depth_max` [m] below it: the tip stops short of what nobody computed.

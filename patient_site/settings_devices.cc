@@ -9,8 +9,8 @@
 #include "common/config/settings_text.h"
 #include "common/core/whole_file.h"
 #include "common/settings/units.h"
+#include "patient_site/devices/profile_flaw.h"
 #include "patient_site/devices/profile_texts.h"
-#include "patient_site/devices/register_device.h"
 #include "proto/devices.pb.h"
 
 namespace palp::patient {
@@ -31,12 +31,6 @@ WordKind kind_of(const std::string& name) {
 
 std::uint16_t word_of(std::uint32_t value) { return static_cast<std::uint16_t>(value); }
 
-RegisterField make_field(const RegisterProfile::Quantity& message) {
-  return {.address = word_of(message.address()),
-          .kind = kind_of(message.kind()),
-          .unit = settings::from_micro(message.micro_per_count())};
-}
-
 RegisterCondition make_condition(const RegisterProfile::Condition& message) {
   return {.address = word_of(message.address()),
           .mask = word_of(message.mask()),
@@ -44,10 +38,19 @@ RegisterCondition make_condition(const RegisterProfile::Condition& message) {
           .means = message.means()};
 }
 
+RegisterField make_field(const RegisterProfile::Quantity& message) {
+  RegisterField field{.address = word_of(message.address()),
+                      .kind = kind_of(message.kind()),
+                      .unit = settings::from_micro(message.micro_per_count())};
+  if (message.has_negative()) field.negative = make_condition(message.negative());
+  return field;
+}
+
 ValueSource source_of(const std::string& name) {
   if (name == "target") return ValueSource::Position;
   if (name == "here") return ValueSource::Here;
   if (name == "speed") return ValueSource::Speed;
+  if (name == "force limit") return ValueSource::ForceLimit;
   return name == "acceleration" ? ValueSource::Acceleration : ValueSource::Constant;
 }
 
@@ -75,6 +78,7 @@ StartStep make_step(const RegisterProfile::Step& message) {
   if (message.has_until()) step.until = make_condition(message.until());
   step.wait_max = from_seconds(message.wait_max_s());
   step.moves = message.moves();
+  if (message.has_unasked()) step.unasked = make_condition(message.unasked());
   return step;
 }
 
@@ -97,6 +101,7 @@ DeviceProfile make_profile(const RegisterProfile& message) {
   for (const auto& one : message.healthy()) profile.healthy.push_back(make_condition(one));
   if (message.life_ms() > 0) profile.life = word_of(message.life_address());
   profile.life_within = from_milliseconds(message.life_ms());
+  profile.stuck_after = from_milliseconds(message.stuck_ms());
   for (const auto& one : message.start()) profile.start.push_back(make_step(one));
   if (message.has_move()) profile.move = make_write(message.move());
   if (message.has_stop()) profile.stop = make_write(message.stop());
@@ -114,6 +119,7 @@ DeviceInstallation make_installation(const ModbusDevice& message) {
   built_in.force_reversed = message.force_reversed();
   built_in.speed_max = message.speed_max_m_per_s();
   built_in.acceleration_max = message.acceleration_max_m_per_s2();
+  built_in.force_limit = message.force_limit_n();
   built_in.travel_min = from_milli(message.travel_min_mm());
   built_in.travel_max = from_milli(message.travel_max_mm());
   built_in.may_home = message.may_home();
@@ -136,8 +142,10 @@ Result<DevicePlan> make_plan(const ModbusDevice& message, const std::string& whe
   address->baud = message.baud() > 0 ? message.baud() : profile->baud;
   address->parity = profile->parity;
   address->reply_delay = profile->reply_delay;
+  fit_to_line(*profile, *address);
   if (message.silence_ms() > 0) profile->silence = from_milliseconds(message.silence_ms());
-  const DeviceInstallation built_in = make_installation(message);
+  DeviceInstallation built_in = make_installation(message);
+  if (message.stuck_after_s() == 0) built_in.stuck_after = profile->stuck_after;
   if (const auto flaw = flaw_of(*profile, built_in)) return wrong(Error{*flaw});
   DevicePlan plan;
   plan.profile = std::move(*profile);

@@ -51,7 +51,7 @@ SimulatedPhantom::SimulatedPhantom(const Phantom& phantom, const SimulatedPhanto
       target_{config.start_position, config.start_place},
       position_{config.start_position},
       place_{config.start_place},
-      surface_{config.surface_offset},
+      surface_{config.surface_offset + field_->surface(config.start_place)},
       relaxing_{phantom.relaxation} {
   PALP_CHECK(config.servo_frequency > 0 && config.sensor_cut_off > 0, "frequencies are positive");
   const double omega = 2 * std::numbers::pi * config.servo_frequency;
@@ -112,11 +112,12 @@ void SimulatedPhantom::integrate_step() noexcept {
   place_ = {step_towards(place_.x, there.x, way_max), step_towards(place_.y, there.y, way_max)};
   ++steps_;
 
+  surface_ = config_.surface_offset + field_->surface(place_);
   double surface_rate = 0;
   if (config_.breathing_amplitude > 0) {
     const double omega = 2 * std::numbers::pi * config_.breathing_frequency;
     const double phase = omega * kStepSeconds * static_cast<double>(steps_);
-    surface_ = config_.surface_offset + config_.breathing_amplitude * std::sin(phase);
+    surface_ += config_.breathing_amplitude * std::sin(phase);
     surface_rate = config_.breathing_amplitude * omega * std::cos(phase);
   }
   const double elastic =

@@ -39,7 +39,7 @@ struct PhantomTruth {
   double position{};  ///< [m], tip
   double velocity{};  ///< [m/s]
   Place place{};
-  double surface{};        ///< [m], where the surface is now (breathing)
+  double surface{};        ///< [m], where it is now below the tip (slope, breathing)
   double contact_force{};  ///< [N]
   double noisy_force{};    ///< [N], the transducer's last reading before its rounding
   double tissue_energy{};  ///< [J], integral of F_c dx_s since the start

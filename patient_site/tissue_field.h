@@ -6,8 +6,8 @@
 #include "common/core/place.h"
 #include "patient_site/force_table.h"
 
-/// A tissue as a field: what force a tip meets anywhere on it. Until a database in three dimensions
-/// says so, by laws between curves that were computed or measured at single places.
+/// A tissue as a field: what force a tip meets anywhere on it. Here by laws between curves that
+/// were computed or measured at single places; of balls in a block: block_tissue.h.
 namespace palp::patient {
 
 /// Answers for a whole tissue. Immutable; any thread. Allocates nothing after it was made.
@@ -25,6 +25,9 @@ class TissueField {
   /// [N/m], how that force grows with the indentation.
   [[nodiscard]] virtual double stiffness(const Place& place, double indentation) const noexcept = 0;
 
+  /// [m], where the tip touches the undeformed surface: > 0 deeper than the plane of the stage.
+  [[nodiscard]] virtual double surface(const Place& /*place*/) const noexcept { return 0; }
+
   /// [N] >= 0, of a tip that sinks in at `rate` [m/s].
   [[nodiscard]] double force(const Place& place, double indentation, double rate) const noexcept {
     const double moving = elastic_force(place, indentation) * growth(rate);
@@ -41,12 +44,10 @@ class TissueField {
 /// (1 - (distance/R)^2)^3 with R = kInclusionReach, 0 beyond. 1 on the axis, falling all the way,
 /// with continuous slope and curvature.
 ///
-/// A stand-in, stated: what finite elements give for a ball falls more slowly and never ends. For a
-/// ball of 5 mm radius 5 mm deep they have 0.87, 0.58, 0.15 and 0.01 at 2.5, 5, 10 and 20 mm, this
-/// has 0.92, 0.70, 0.17 and 0; for the paper's, 15 mm of radius 10 mm deep, they have 0.97, 0.89,
-/// 0.63 and 0.19. There it is 0.45 too little at 10 mm, which is 9 % of the force 2 mm deep. It
-/// ends on purpose before site A, 20 mm from B, which so stays the plain reference of all that is
-/// compared with it.
+/// A stand-in, for the paper's phantoms and cylinders: what finite elements give for a ball
+/// (block_tissue.h) falls more slowly. For the paper's, 15 mm of radius 10 mm deep, they have 0.97,
+/// 0.89, 0.63 and 0.19 at 2.5, 5, 10 and 20 mm, this 0.92, 0.70, 0.17 and 0. It ends on purpose
+/// before site A, 20 mm from B, which so stays the plain reference that the paper compares with.
 [[nodiscard]] double inclusion_share(double distance) noexcept;
 inline constexpr double kInclusionReach = 15e-3;  ///< [m]
 

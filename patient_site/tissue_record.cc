@@ -21,6 +21,9 @@ void describe_tissue(const Phantom& phantom,
   info.metadata.emplace_back("phantom_ratio", optional_text(phantom.ratio, 1));
   info.metadata.emplace_back("phantom_shape", phantom.shape);
   info.attachments.push_back({"tissue.csv", "text/csv", tissue_csv(phantom)});
+  if (!phantom.words.empty()) {
+    info.attachments.push_back({"tissue.txt", "text/plain", phantom.words});
+  }
 }
 
 }  // namespace palp::patient

@@ -1,6 +1,7 @@
 #include "surgeon_site/devices_command.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -9,6 +10,7 @@
 #include "common/config/report.h"
 #include "common/core/whole_file.h"
 #include "common/io/device/hid_port.h"
+#include "common/io/device/modbus_port.h"
 #include "common/io/realtime/steady_clock.h"
 #include "surgeon_site/devices/master_plan.h"
 #include "surgeon_site/devices/master_rig.h"
@@ -20,11 +22,30 @@ namespace palp::surgeon {
 using config::ExitCode;
 using site_program::ExitStatus;
 
+namespace {
+
+/// Of a motor at a Modbus line, which nobody finds but by its file. Reads, and writes nothing.
+io::HidLook look_at_shaft(const io::ModbusAddress& line) {
+  const KnownMaster* const motor = master_named("orca");
+  io::ModbusPort port{line};
+  std::array<std::uint16_t, 2> place{};
+  io::PortFault fault = port.open();
+  if (fault == io::PortFault::None) fault = port.read(ShaftMotor::kPlaceAt, place, false);
+  io::HidLook look{.product = std::string{motor->name},
+                   .address = line.line.empty() ? "tcp:" + line.host : "serial:" + line.line,
+                   .usable = fault == io::PortFault::None,
+                   .found = std::string{io::to_string(fault)}};
+  if (look.usable) look.found = "answers";
+  return look;
+}
+
+}  // namespace
+
 DevicesCommand::DevicesCommand(config::CommandLine& line) {
   config::CommandLine& verb =
       line.verb("devices", "Lists the haptic masters: what is there, what can be used, why not.");
   verb.argument("test", what_, "instead of the list: a guided check that writes a calibration");
-  verb.argument("NAME", name_, "of the master to check: openffboard, paddle, spacemouse");
+  verb.argument("NAME", name_, "of the master to check: openffboard, paddle, spacemouse, orca");
   verb.text("--devices", file_, "FILE", "how it is built in, as far as that is known");
   verb.text("--write", write_, "FILE", "where its calibration goes: a new file");
   verb.toggle("--json", json_, "as JSON, schema palp.devices/1");
@@ -40,7 +61,7 @@ ExitStatus DevicesCommand::test() const {
   const KnownMaster* const master = master_named(name_);
   if (master == nullptr) {
     return site_program::bad_input("devices test knows no master '" + name_ +
-                                   "'; there are: openffboard, paddle, spacemouse");
+                                   "'; there are: openffboard, paddle, spacemouse, orca");
   }
   if (write_.empty()) return site_program::bad_input("devices test needs --write FILE");
   if (std::filesystem::exists(write_)) {
@@ -54,10 +75,10 @@ ExitStatus DevicesCommand::test() const {
   if (const auto writes = config::can_write_file(write_); !writes) {
     return site_program::exit_status_of(writes.error());
   }
-  io::HidPort port{address_of(*plan)};
+  const std::unique_ptr<io::ReportPort> port = make_port(*plan);
   const io::SteadyClock clock;
   site_program::Dialogue talk{std::cin, std::cout};
-  MasterCheck check{*plan, port, clock, [&](Duration span) { clock.pass(span); }, talk};
+  MasterCheck check{*plan, *port, clock, [&](Duration span) { clock.pass(span); }, talk};
   const auto found = check.run();
   if (!found) return {ExitCode::Missed, "not usable", found.error().text};
   const auto calibrated = calibrated_text(*text, name, *found);
@@ -72,9 +93,17 @@ ExitStatus DevicesCommand::test() const {
 ExitStatus DevicesCommand::list() const {
   std::vector<io::HidProduct> products;
   for (const KnownMaster& one : known_masters()) {
+    if (addresses_of(one.kind).empty()) continue;  // its line is not looked for
     products.push_back({std::string{one.name}, addresses_of(one.kind)});
   }
-  const std::vector<io::HidLook> looks = io::look_for_hid(products);
+  std::vector<io::HidLook> looks = io::look_for_hid(products);
+  if (!file_.empty()) {
+    const auto text = read_whole_file(file_);
+    if (!text) return site_program::exit_status_of(text.error());
+    const auto line = line_in(*text, file_);
+    if (!line) return site_program::exit_status_of(line.error());
+    if (*line) looks.push_back(look_at_shaft(**line));
+  }
   std::fputs((json_ ? devices_json(looks) : devices_text(looks)).c_str(), stdout);
   if (std::ranges::any_of(looks, &io::HidLook::usable)) return {ExitCode::Done, "completed", ""};
   return {ExitCode::Missed, "not usable", "no master can be used"};

@@ -60,7 +60,7 @@ Result<GestureScript> load_script(const std::string& source, const ScriptSetting
     return fail("unknown master '" + printable(source) + "'" +
                 ", expected script:standard, script:demo, script:breath, script:long, "
                 "script:random:SEED, script:FILE, replay:FILE or recording:FILE, or a device: "
-                "openffboard, paddle, spacemouse");
+                "openffboard, paddle, spacemouse, orca");
   }
   const std::string path = source.substr(replay ? kReplay.size() : kScript.size());
   const Result<std::string> text = read_file(path);

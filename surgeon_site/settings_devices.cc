@@ -29,6 +29,9 @@ MasterDefaults defaults_of(MasterKind kind) {
     return {Paddle::kPositionUnit, Paddle::kForceUnit, std::chrono::milliseconds{5}};
   }
   if (kind == MasterKind::Board) return {0, 0, std::chrono::milliseconds{200}};
+  if (kind == MasterKind::ShaftMotor) {
+    return {ShaftMotor::kPositionUnit, ShaftMotor::kForceUnit, std::chrono::milliseconds{30}};
+  }
   return {SpaceMouse::kPositionUnit, 0, Duration{0}};
 }
 
@@ -50,11 +53,7 @@ MasterInstallation make_master_installation(const HidMasterDevice& message,
   return built_in;
 }
 
-}  // namespace
-
-Result<MasterPlan> make_master_plan(const KnownMaster& master,
-                                    std::string_view text,
-                                    const std::string& name) {
+Result<proto::config::SurgeonDeviceFile> parse(std::string_view text, const std::string& name) {
   proto::config::SurgeonDeviceFile message;
   if (const auto merged = config::merge_text(text, name, message); !merged) {
     return tl::unexpected{merged.error()};
@@ -62,7 +61,49 @@ Result<MasterPlan> make_master_plan(const KnownMaster& master,
   if (const auto checked = config::check_settings(message); !checked) {
     return fail(name, checked.error());
   }
-  const HidMasterDevice& told = message.master();
+  return message;
+}
+
+Result<io::ModbusAddress> make_line(const HidMasterDevice& told) {
+  auto line = io::parse_modbus_address(told.address());
+  if (!line) return line;
+  line->station = static_cast<std::uint8_t>(told.station());
+  line->baud = told.baud();
+  line->parity = ShaftMotor::kParity;
+  line->reply_delay = ShaftMotor::kReplyDelay;
+  return line;
+}
+
+/// Where a master that is no device on USB is, and how fast its line makes it.
+Result<void> enter_line(const HidMasterDevice& told, MasterPlan& plan) {
+  auto line = make_line(told);
+  if (!line) return tl::unexpected{line.error()};
+  plan.line = std::move(*line);
+  const proto::config::HidPedal& pedal = told.pedal();
+  if (pedal.vendor() == 0) return fail("it has no button: a pedal is missing");
+  plan.pedal.vendor = static_cast<std::uint16_t>(pedal.vendor());
+  plan.pedal.product = static_cast<std::uint16_t>(pedal.product());
+  plan.pedal.interface_number = static_cast<int>(pedal.interface());
+  plan.pedal.serial = pedal.serial();
+  plan.pedal_bit = {pedal.byte(), static_cast<std::uint8_t>(pedal.mask())};
+  const Duration usual = plan.installation.period;
+  plan.installation.period = std::max(usual, ShaftMotor::time_of_exchange(plan.line));
+  plan.facts.rate = 1 / seconds(plan.installation.period);
+  if (told.silence_ms() > 0) return {};
+  constexpr int kExchanges = 6;  // that may fail in a row
+  plan.installation.silence =
+      std::max(plan.installation.silence, kExchanges * plan.installation.period);
+  return {};
+}
+
+}  // namespace
+
+Result<MasterPlan> make_master_plan(const KnownMaster& master,
+                                    std::string_view text,
+                                    const std::string& name) {
+  const auto message = parse(text, name);
+  if (!message) return tl::unexpected{message.error()};
+  const HidMasterDevice& told = message->master();
   MasterPlan plan;
   plan.product = &master;
   plan.installation = make_master_installation(told, defaults_of(master.kind));
@@ -86,7 +127,20 @@ Result<MasterPlan> make_master_plan(const KnownMaster& master,
   plan.facts.force_peak = told.force_max_n();
   plan.facts.force_continuous = told.force_continuous_n();
   plan.facts.lag = from_milli(told.lag_ms());
+  if (master.kind != MasterKind::ShaftMotor) return plan;
+  if (const auto entered = enter_line(told, plan); !entered) {
+    return fail(name + ": " + std::string{master.name}, entered.error());
+  }
   return plan;
+}
+
+Result<std::optional<io::ModbusAddress>> line_in(std::string_view text, const std::string& name) {
+  const auto message = parse(text, name);
+  if (!message) return tl::unexpected{message.error()};
+  if (message->master().address().empty()) return std::optional<io::ModbusAddress>{};
+  auto line = make_line(message->master());
+  if (!line) return fail(name, line.error());
+  return std::optional{std::move(*line)};
 }
 
 Result<MasterPlan> read_master_plan(const KnownMaster& master, const std::string& path) {

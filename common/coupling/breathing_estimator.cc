@@ -265,6 +265,10 @@ void BreathingEstimator::judge() noexcept {
   judged_ = time_;
 }
 
+bool BreathingEstimator::settled() const noexcept {
+  return still_ || (first_seen_ >= 0 && time_ - first_seen_ >= kSeenFor);
+}
+
 double BreathingEstimator::surface() const noexcept { return guesses_[best_].here.surface; }
 
 const std::array<double, BreathingEstimator::kShapes>& BreathingEstimator::shapes() const noexcept {

@@ -42,6 +42,8 @@ class BreathingEstimator {
   [[nodiscard]] bool believed() const noexcept { return believed_; }
   [[nodiscard]] double surface() const noexcept;                             ///< [m], mean
   [[nodiscard]] const std::array<double, kShapes>& shapes() const noexcept;  ///< [N]
+  /// Seen for long enough to say whether it breathes.
+  [[nodiscard]] bool settled() const noexcept;
   /// Seen for long enough to say that it does not breathe.
   [[nodiscard]] bool still() const noexcept { return still_; }
 

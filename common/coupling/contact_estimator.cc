@@ -26,18 +26,11 @@ constexpr double kDoubtRetreat = 0.1e-3;     // [m], a tip that went farther out
 constexpr std::size_t kNear = 4;             // candidates around the best that are always judged
 constexpr std::size_t kStride = 12;          // of the others, one in so many
 constexpr std::size_t kEdge = 3;             // so near the grid's end it is moved
+constexpr double kSplineAbove = 2e-3;        // [m], over the grid's middle: where it begins
+constexpr std::uint32_t kSplineEvery = 4;    // equations
+constexpr double kSplineNoise = 3e-3;        // [N], of an equation at least
 constexpr double kAstray = 3e-3;             // [m], a surface above where the tip felt nothing
 constexpr std::int64_t kFollowed = 64;       // periods, in which all that is short settles
-/// [m], where the force is `force` [N]; 8 mm at most.
-double depth_of(const ContactModel& model, double force) noexcept {
-  double depth = 0;
-  double step = 8e-3;
-  for (int i = 0; i < 14; ++i) {
-    step *= 0.5;
-    if (model.force(depth + step) < force) depth += step;
-  }
-  return depth;
-}
 
 }  // namespace
 
@@ -59,6 +52,7 @@ void ContactEstimator::place_grid(double centre) noexcept {
   for (Lane& lane : right_) lane.fill(0);
   for (Lane& lane : box_.terms) lane.fill(0);
   for (Lane& lane : normal_) lane.fill(0);
+  spline_.begin(centre - kSplineAbove, sensed_.tip.value());
   square_ = 0;
   box_.force = 0;
   box_.count = 0;
@@ -74,18 +68,6 @@ void ContactEstimator::place_grid(double centre) noexcept {
   placed_ = true;
 }
 
-void ContactEstimator::new_place() noexcept {
-  swing_.new_place();
-  here_.contact = false;
-  here_.deepest = -1;
-  here_.deepest_in_air = -1;
-  if (!placed_) return;
-  std::copy(model_.c.begin(), model_.c.end(), expected_.begin());
-  std::copy(model_.relaxing.begin(), model_.relaxing.end(), expected_.begin() + kModelTerms);
-  here_.expected = expected_;
-  place_grid(model_.surface);
-}
-
 /// A wrong breath and a wrong tissue confirm each other, and the surface walks away. Then both are
 /// forgotten.
 void ContactEstimator::begin_again() noexcept {
@@ -95,7 +77,7 @@ void ContactEstimator::begin_again() noexcept {
   sensed_.tip_mean = sensed_.raw_tip_mean;
   ContactModel believed{0, {}, kModelDepthMax};
   std::copy_n(expected_.begin(), kModelTerms, believed.c.begin());
-  place_grid(sensed_.tip_mean - depth_of(believed, sensed_.force_mean));
+  place_grid(sensed_.tip_mean - believed.depth(sensed_.force_mean));
 }
 
 /// What passed for a contact was noise: there is no tissue here.
@@ -105,6 +87,7 @@ void ContactEstimator::withdraw() noexcept {
   expected_ = here_.expected;
   ++model_.version;
   model_.c = {};
+  model_.stiffness = {};
   model_.relaxing = {};
 }
 
@@ -171,6 +154,7 @@ void ContactEstimator::collect(double force) noexcept {
   if (box_.count == 0) {
     for (Lane& lane : box_.terms) lane.fill(0);
     box_.force = 0;
+    spline_.begin_equation();
   }
   for (std::size_t term = 0; term < kModelTerms; ++term) {
     for (std::size_t i = 0; i < kCandidates; ++i) box_.terms[term][i] += shapes_[term][i];
@@ -209,6 +193,11 @@ void ContactEstimator::absorb() noexcept {
   for (Lane& lane : box_.terms) {
     for (double& shape : lane) shape *= scale;
   }
+  SplineEstimator::Met met{force};
+  for (std::size_t k = 0; k < SplineEstimator::kBeside; ++k) {
+    met[1 + k] = box_.terms[kModelTerms + k][best_];
+  }
+  spline_.add(met, weight, keep);
   square_ = keep * square_ + weight * force * force;
   std::size_t at = 0;
   for (std::size_t row = 0; row < kTerms; ++row) {
@@ -244,22 +233,41 @@ void ContactEstimator::search() noexcept {
   }
   ++turn_;
   best_ = won;
+  if (turn_ % kSplineEvery == 0) fit_spline();
   publish(winner);
   if (surface_of(best_) < here_.deepest_in_air - kAstray) return begin_again();
   if (best_ < kEdge || best_ + kEdge >= kCandidates) {
     expected_ = winner.c;
+    const KnotStiffness stiffness = spline_.stiffness();
+    const double share = spline_.share();
     place_grid(surface_of(best_));
+    spline_.expect(stiffness, share);
   }
+}
+
+/// Where the surface breathes, and where it may, heights say nothing of depths.
+void ContactEstimator::fit_spline() noexcept {
+  if (swing_.believed() || !swing_.settled()) return spline_.drop();
+  ContactModel smooth{.surface = surface_of(best_)};
+  std::copy_n(found_[best_].begin(), kModelTerms, smooth.c.begin());
+  smooth.reach = std::max(0.0, here_.deepest - smooth.surface) + kModelReachBeyond;
+  SplineEstimator::Factors beside{};
+  std::copy(found_[best_].begin() + kModelTerms, found_[best_].end(), beside.begin());
+  spline_.fit(smooth, beside, std::max(equation_noise(), kSplineNoise * kSplineNoise));
 }
 
 void ContactEstimator::publish(const Solution& solution) noexcept {
   ++model_.version;
   std::copy_n(solution.c.begin(), kModelTerms, model_.c.begin());
   std::copy_n(solution.c.begin() + kModelTerms, model_.relaxing.size(), model_.relaxing.begin());
+  for (double& coefficient : model_.c) coefficient *= 1 - spline_.share();
+  model_.stiffness = spline_.stiffness();
+  for (double& stiffness : model_.stiffness) stiffness *= spline_.share();
   model_.surface = surface_of(best_);
   if (swing_.believed()) {
     // What was found together with the swing: the rest was learned before it was known.
     model_.c = {};
+    model_.stiffness = {};
     std::copy(swing_.shapes().begin(), swing_.shapes().end(), model_.c.begin() + 1);
     model_.relaxing = {};
     model_.surface = swing_.surface();
@@ -330,6 +338,7 @@ void ContactEstimator::follow(double position, double force, std::int64_t period
         sense(sensed_.position_before + position_step, sensed_.force_before + force_step);
     if (!placed_) continue;
     filter_shapes(halfway);
+    spline_.follow(halfway, gain_);
     relax();
   }
 }
@@ -377,6 +386,7 @@ void ContactEstimator::step(double position, double force, std::int64_t periods)
     here_.deepest = std::max(here_.deepest, sensed_.tip.value());
   }
   filter_shapes(halfway);
+  spline_.follow(halfway, gain_);
   relax();
   collect(force);
   if (model_.version > 0) model_.residual = force - predicted();

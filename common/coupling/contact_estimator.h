@@ -6,9 +6,11 @@
 
 #include "common/core/device_facts.h"
 #include "common/core/filters.h"
+#include "common/core/place.h"
 #include "common/core/time.h"
 #include "common/coupling/breathing_estimator.h"
 #include "common/coupling/sensor_noise.h"
+#include "common/coupling/spline_estimator.h"
 #include "common/message/port_sample.h"
 
 /// The patient's half of `mmt` at work: finds the contact model behind positions and forces.
@@ -37,8 +39,9 @@ class ContactEstimator {
   /// Once per control period, or where a tick came late, `periods` after the last. `force` [N] as
   /// measured, noise may make it negative.
   void step(double position, double force, std::int64_t periods = 1) noexcept;
-  /// Another place along the surface: what was learned becomes what is expected.
-  void new_place() noexcept;
+  /// Another place along the surface: what was learned there, or if nothing was, at the last one,
+  /// becomes what is expected.
+  void new_place(const Place& place) noexcept;
 
   [[nodiscard]] const ModelPayload& model() const noexcept { return model_; }
 
@@ -76,6 +79,20 @@ class ContactEstimator {
   void relax() noexcept;
   [[nodiscard]] double elastic() const noexcept;
   [[nodiscard]] double predicted() const noexcept;
+  void fit_spline() noexcept;
+
+  /// What was learned at a place.
+  struct Known {
+    Place place;
+    Terms c{};                  ///< [N]
+    double surface{};           ///< [m]
+    KnotStiffness stiffness{};  ///< [N/m]
+    double spline_share{};      ///< [-]
+    double deepest{};           ///< [m], tip in contact
+  };
+  static constexpr std::size_t kPlaces = 32;
+  void remember() noexcept;
+  [[nodiscard]] const Known* known_at(const Place& place) const noexcept;
 
   /// What is sensed, in a frame that moves with the surface and, `raw`, in one that does not.
   struct Sensed {
@@ -132,6 +149,7 @@ class ContactEstimator {
   alignas(64) std::array<Lane, kTerms> right_{};   ///< [N]
   double square_{};                                ///< [N^2]
   Beside beside_;
+  SplineEstimator spline_;
 
   // What is known.
   std::array<Terms, kCandidates> found_{};  ///< the last solution of each
@@ -142,6 +160,9 @@ class ContactEstimator {
   ModelPayload model_;
   BreathingEstimator swing_;
   Here here_;
+  Place place_;
+  std::array<Known, kPlaces> known_{};  ///< the oldest gives way
+  std::size_t known_count_{};           ///< that were ever written
 };
 
 }  // namespace palp::coupling

@@ -5,6 +5,7 @@
 
 #include "common/core/small_solver.h"
 #include "common/coupling/contact_estimator.h"
+#include "common/coupling/nonnegative.h"
 
 namespace palp::coupling {
 namespace {
@@ -23,66 +24,6 @@ constexpr Terms kSpread{0.02, 0.03, 0.02, 0.004, 1e-4, 0.02, 0.02, 1};
 constexpr std::size_t pair(std::size_t terms, std::size_t row, std::size_t column) noexcept {
   if (row > column) std::swap(row, column);
   return row * terms - row * (row + 1) / 2 + column;
-}
-
-/// Moves `c` towards `least` as far as no term becomes negative. @returns the term that is then 0
-/// and leaves; kTerms: none.
-std::size_t approach(Terms& c, const Terms& least, const std::array<bool, kTerms>& used) noexcept {
-  double way = 1;
-  std::size_t leaves = kTerms;
-  for (std::size_t row = 0; row < kTerms; ++row) {
-    if (!used[row] || least[row] > 0) continue;
-    const double share = c[row] > 0 ? c[row] / (c[row] - least[row]) : 0;
-    if (share <= way) {
-      way = share;
-      leaves = row;
-    }
-  }
-  for (std::size_t row = 0; row < kTerms; ++row) {
-    if (used[row]) c[row] += way * (least[row] - c[row]);
-  }
-  return leaves;
-}
-
-/// The term out of use that would help most; kTerms: none would.
-std::size_t steepest_of(const SmallSystem<kTerms>& system,
-                        const Terms& c,
-                        const std::array<bool, kTerms>& used) noexcept {
-  double steepest = 1e-12;
-  std::size_t joins = kTerms;
-  for (std::size_t row = 0; row < kTerms; ++row) {
-    if (used[row]) continue;
-    double gain = system.right[row];
-    for (std::size_t column = 0; column < kTerms; ++column) {
-      gain -= system.matrix[row][column] * c[column];
-    }
-    const double relative = gain * kSpread[row];
-    if (relative > steepest) {
-      steepest = relative;
-      joins = row;
-    }
-  }
-  return joins;
-}
-
-/// Coefficients >= 0 of least cost: an active set that starts from `c` and grows or shrinks by one
-/// term at a time (Lawson and Hanson, NNLS), at most 16 times.
-void improve(const SmallSystem<kTerms>& system, Terms& c) noexcept {
-  std::array<bool, kTerms> used{};
-  for (std::size_t row = 0; row < kTerms; ++row) used[row] = c[row] > 0;
-  for (int round = 0; round < 16; ++round) {
-    const SmallSolution<kTerms> least = solve(system, used);
-    if (!least.regular) return;
-    const std::size_t leaves = approach(c, least.x, used);
-    if (leaves < kTerms) {
-      c[leaves] = 0;
-      used[leaves] = false;
-      continue;
-    }
-    const std::size_t joins = steepest_of(system, c, used);
-    if (joins == kTerms) return;
-    used[joins] = true;
-  }
 }
 
 }  // namespace
@@ -106,7 +47,7 @@ ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate) noexce
   }
 
   Terms& c = found_[candidate];
-  improve(system, c);
+  Nonnegative{system, kSpread}.improve(c);
   double cost = square_;
   for (std::size_t row = 0; row < kTerms; ++row) {
     double product = 0;

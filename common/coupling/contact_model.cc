@@ -6,11 +6,11 @@
 namespace palp::coupling {
 namespace {
 
-constexpr double kSwingMax = 5e-3;    // [m]
-constexpr double kSwingRateMax = 10;  // [rad/s]
-constexpr double kOnsetMax = 20e-3;   // [m], deeper than any model was pressed
-constexpr int kOnsetHalvings = 24;    // to 1.2 nm
-constexpr double kSoundDepth = 5e-3;  // [m], where the slope of a received model is judged
+constexpr double kSwingMax = 5e-3;     // [m]
+constexpr double kSwingRateMax = 10;   // [rad/s]
+constexpr double kOnsetMax = 20e-3;    // [m], deeper than any model was pressed
+constexpr double kDepthStep = 0.5e-6;  // [m]
+constexpr int kOnsetHalvings = 24;     // to 1.2 nm
 
 double sum(const std::array<double, kModelTerms>& c,
            const std::array<double, kModelTerms>& shapes) noexcept {
@@ -42,6 +42,30 @@ double bent_energy(double xi) noexcept {
           0.75 * kModelBend * kModelBend * std::asinh(std::sqrt(xi / kModelBend)));
 }
 
+/// What the stiffness at the knots comes to at a depth [m].
+struct Spline {
+  double slope{};   ///< [N/m]
+  double force{};   ///< [N]
+  double energy{};  ///< [J]
+};
+Spline spline_at(const KnotStiffness& stiffness, double depth) noexcept {
+  Spline at{.slope = stiffness[0]};
+  for (std::size_t k = 0; k + 1 < stiffness.size(); ++k) {
+    const double from = kModelKnots[k] * kModelDepthScale;
+    if (!(depth > from)) return at;
+    const double whole = (kModelKnots[k + 1] - kModelKnots[k]) * kModelDepthScale;
+    const double span = std::min(depth - from, whole);
+    const double bend = (stiffness[k + 1] - stiffness[k]) / whole;  // [N/m^2]
+    at.energy += span * (at.force + span * (stiffness[k] / 2 + span * bend / 6));
+    at.force += span * (stiffness[k] + span * bend / 2);
+    at.slope = stiffness[k] + span * bend;
+  }
+  const double beyond = std::max(0.0, depth - kModelKnots.back() * kModelDepthScale);
+  at.energy += beyond * (at.force + beyond * at.slope / 2);
+  at.force += beyond * at.slope;
+  return at;
+}
+
 /// Integrals of the shapes from 0.
 std::array<double, kModelTerms> shape_energies(double xi) noexcept {
   const double square = xi * xi;
@@ -57,28 +81,46 @@ std::array<double, kModelTerms> model_shapes(double xi) noexcept {
   return {xi, xi * std::sqrt(xi / (1 + xi / kModelBend)), square, cube, cube * square};
 }
 
+double knot_ramp(std::size_t knot, double depth) noexcept {
+  KnotStiffness alone{};
+  alone[knot] = 1;
+  return spline_at(alone, depth).force;
+}
+
 double ContactModel::force(double depth) const noexcept {
   if (!(depth > 0)) return 0;
-  const double inside = std::min(depth, reach) / kModelDepthScale;
-  const double beyond = std::max(0.0, depth - reach) / kModelDepthScale;
-  const double within = sum(c, model_shapes(inside));
-  return beyond > 0 ? within + beyond * rise(c, inside) : within;
+  const double inside = std::min(depth, reach);
+  const double xi = inside / kModelDepthScale;
+  const Spline spline = spline_at(stiffness, inside);
+  const double within = sum(c, model_shapes(xi)) + spline.force;
+  if (depth <= inside) return within;
+  return within + (depth - inside) * (rise(c, xi) / kModelDepthScale + spline.slope);
 }
 
 double ContactModel::energy(double depth) const noexcept {
   if (!(depth > 0)) return 0;
-  const double inside = std::min(depth, reach) / kModelDepthScale;
-  const double beyond = std::max(0.0, depth - reach) / kModelDepthScale;
-  double scaled = sum(c, shape_energies(inside));
-  if (beyond > 0) {
-    scaled += beyond * (sum(c, model_shapes(inside)) + 0.5 * beyond * rise(c, inside));
-  }
-  return kModelDepthScale * scaled;
+  const double inside = std::min(depth, reach);
+  const double xi = inside / kModelDepthScale;
+  const Spline spline = spline_at(stiffness, inside);
+  const double within = kModelDepthScale * sum(c, shape_energies(xi)) + spline.energy;
+  if (depth <= inside) return within;
+  const double beyond = depth - inside;
+  const double force = sum(c, model_shapes(xi)) + spline.force;
+  return within + beyond * (force + beyond * (rise(c, xi) / kModelDepthScale + spline.slope) / 2);
 }
 
 double ContactModel::slope(double depth) const noexcept {
   if (!(depth > 0)) return 0;
-  return rise(c, std::min(depth, reach) / kModelDepthScale) / kModelDepthScale;
+  const double inside = std::min(depth, reach);
+  return rise(c, inside / kModelDepthScale) / kModelDepthScale + spline_at(stiffness, inside).slope;
+}
+
+double ContactModel::depth(double wanted) const noexcept {
+  double found = 0;
+  for (double step = kModelDepthMax / 2; step > kDepthStep; step /= 2) {
+    if (force(found + step) < wanted) found += step;
+  }
+  return found;
 }
 
 void RelaxingContact::become(const ContactModel& elastic, const Shares& relaxing) noexcept {
@@ -144,25 +186,48 @@ double RelaxingContact::energy(double depth) const noexcept {
 
 ContactModel contact_model(const ModelPayload& model) noexcept {
   const double deepest = std::clamp(model.depth_max, 0.0, kModelDepthMax);
-  return {model.surface, model.c, deepest + kModelReachBeyond};
+  return {model.surface, model.c, deepest + kModelReachBeyond, model.stiffness};
 }
 
-bool is_sound(const ModelPayload& model, double travel, double slope_max) noexcept {
-  if (!std::isfinite(model.depth_max) || !(std::abs(model.surface) <= travel)) return false;
-  for (const double coefficient : model.c) {
-    if (!(coefficient >= 0) || !std::isfinite(coefficient)) return false;
-  }
+double quick_gain(const ModelPayload& model) noexcept {
   double gain = 1;
-  for (const double share : model.relaxing) {
-    if (!(share >= 0 && share <= 1)) return false;
-    gain += share;
+  for (const double share : model.relaxing) gain += share;
+  return gain;
+}
+
+ContactModel no_steeper(const ContactModel& model, double slope_max) noexcept {
+  ContactModel smooth = model;
+  smooth.stiffness = {};
+  ContactModel limited = model;
+  // The smooth shapes become steeper all the way.
+  if (smooth.slope(smooth.reach) > slope_max) {
+    double low = 0;
+    double high = smooth.reach;
+    for (int i = 0; i < kOnsetHalvings; ++i) {
+      const double middle = 0.5 * (low + high);
+      (smooth.slope(middle) <= slope_max ? low : high) = middle;
+    }
+    // A first term that is too steep is so from the surface on.
+    limited.c[0] = std::min(limited.c[0], slope_max * kModelDepthScale);
+    smooth.reach = limited.reach = low;
   }
-  const bool swings = std::abs(model.swing) <= kSwingMax &&
-                      std::abs(model.swing_quadrature) <= kSwingMax &&
-                      std::abs(model.swing_rate) <= kSwingRateMax;
-  if (!swings) return false;
-  const ContactModel contact{model.surface, model.c, kSoundDepth};
-  return gain * contact.slope(kSoundDepth) <= slope_max;
+  for (std::size_t k = 0; k < kModelKnots.size(); ++k) {
+    // As far as a straight line from this knot goes.
+    const double until = kModelKnots[std::min(k + 1, kModelKnots.size() - 1)];
+    const double left = slope_max - smooth.slope(until * kModelDepthScale);
+    limited.stiffness[k] = std::clamp(limited.stiffness[k], 0.0, std::max(0.0, left));
+  }
+  return limited;
+}
+
+bool is_sound(const ModelPayload& model, double travel) noexcept {
+  if (!std::isfinite(model.depth_max) || !(std::abs(model.surface) <= travel)) return false;
+  const auto is_amount = [](double x) { return x >= 0 && std::isfinite(x); };
+  if (!std::ranges::all_of(model.c, is_amount)) return false;
+  if (!std::ranges::all_of(model.stiffness, is_amount)) return false;
+  if (!std::ranges::all_of(model.relaxing, [](double x) { return x >= 0 && x <= 1; })) return false;
+  return std::abs(model.swing) <= kSwingMax && std::abs(model.swing_quadrature) <= kSwingMax &&
+         std::abs(model.swing_rate) <= kSwingRateMax;
 }
 
 }  // namespace palp::coupling

@@ -49,6 +49,7 @@ void MmtSurgeon::drop_model() noexcept {
   brake_ = 0;
   ContactModel nothing = shown_.elastic();
   nothing.c = {};
+  nothing.stiffness = {};
   shown_.become(nothing, {});
   shown_.forget();
 }
@@ -58,13 +59,13 @@ void MmtSurgeon::hear(std::span<const Incoming> arrived, Duration round_trip) no
   if (last == nullptr) return;
   const auto* model = std::get_if<ModelPayload>(&last->sample.payload);
   if (model == nullptr || model->version < version_) return;
-  if (!is_sound(*model, config_.travel, config_.slope_max)) {
+  if (!is_sound(*model, config_.travel)) {
     ++refused_;
     return;
   }
   version_ = model->version;
   if (model->version == 0) return;
-  candidate_ = contact_model(*model);
+  candidate_ = no_steeper(contact_model(*model), config_.slope_max / quick_gain(*model));
   candidate_relaxing_ = model->relaxing;
   // Another swing than was foreseen is a change of the model, not a motion of the surface.
   const double foreseen = swing_.after(swing_age_);
@@ -79,7 +80,9 @@ void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& 
   const double passed = seconds(lapse.passed());
   if (!candidate_) return shown_.age(depth, passed);
   ContactModel aim = *candidate_;
-  for (double& coefficient : aim.c) coefficient *= presence_.value() * device_.share();
+  const double given = presence_.value() * device_.share();
+  for (double& coefficient : aim.c) coefficient *= given;
+  for (double& stiffness : aim.stiffness) stiffness *= given;
   // The surface swings on by itself; what is blended is the rest.
   const double swung = swing_.after(swing_age_);
   ContactModel elastic = shown_.elastic();
@@ -96,6 +99,9 @@ void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& 
   elastic.reach += share * (aim.reach - elastic.reach);
   for (std::size_t term = 0; term < kModelTerms; ++term) {
     elastic.c[term] += share * (aim.c[term] - elastic.c[term]);
+  }
+  for (std::size_t knot = 0; knot < kModelKnots.size(); ++knot) {
+    elastic.stiffness[knot] += share * (aim.stiffness[knot] - elastic.stiffness[knot]);
   }
   RelaxingContact::Shares relaxing = shown_.relaxing();
   for (std::size_t k = 0; k < relaxing.size(); ++k) {
@@ -257,6 +263,7 @@ MmtPatient::MmtPatient(const MmtConfig& config, const PatientDevices& devices) n
 void MmtPatient::begin_epoch(double position) noexcept {
   hand_ = position;
   hand_velocity_ = 0;
+  hand_force_ = 0;
   lead_velocity_.reset(0);
 }
 
@@ -266,21 +273,34 @@ double MmtPatient::target(const PatientInput& in, const Lapse& lapse) noexcept {
   if (last != nullptr) {
     hand_ = last->sample.position;
     hand_velocity_ = last->sample.velocity;
+    hand_force_ = finite_or(last->sample.force, 0);
     heard_at_ = in.now;
   }
   if (in.now - heard_at_ > kStale) hand_velocity_ = 0;
   const double lead = std::min(config_.lead_max, stage_lead_ + 0.5 * seconds(in.round_trip));
-  return hand_ + lead * lead_velocity_.step(finite_or(hand_velocity_, 0), lapse.periods);
+  return hand_ + lead * lead_velocity_.step(finite_or(hand_velocity_, 0), lapse.periods) - unfelt();
+}
+
+/// A finger that goes into a tissue feels it at once; a hand over a long path goes on as if there
+/// was none. The tip does not go with it: it waits where it presses little harder than the hand
+/// has felt so far. @returns how far behind the hand that is [m].
+double MmtPatient::unfelt() const noexcept {
+  const ModelPayload& found = estimator_.model();
+  if (found.version == 0) return 0;
+  const ContactModel model = contact_model(found);
+  const double depth = hand_ - model.surface - found.swing;
+  const double allowed = config_.unfelt + (1 + config_.unfelt_share) * std::max(0.0, hand_force_);
+  if (!(model.force(depth) > allowed)) return 0;
+  return depth - model.depth(allowed);
 }
 
 PatientOutput MmtPatient::step(const PatientInput& in, const Lapse& lapse) noexcept {
   const double aim = target(in, lapse);
-  if (!began_) place_ = in.place;
-  began_ = true;
-  if (distance(in.place, place_) > kSamePlace) {
-    estimator_.new_place();
+  if (!began_ || distance(in.place, place_) > kSamePlace) {
+    estimator_.new_place(in.place);
     place_ = in.place;
   }
+  began_ = true;
   const PairedReadings::Pair pair = paired_.step(
       in.now, in.now - in.position_age, in.position, in.now - in.force_age, in.contact_force);
   estimator_.step(pair.position, pair.force, lapse.periods);

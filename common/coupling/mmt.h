@@ -49,8 +49,12 @@ struct MmtConfig {
   double period{1e-3};          ///< [s]
   double lead_max{25e-3};       ///< [s], most that the target runs ahead of the hand's position
   double lead_cut_off{15};      ///< [Hz], of the velocity it runs ahead with
-  double travel{60e-3};         ///< [m], a surface farther from 0 is not believed
-  double slope_max{2000};       ///< [N/m], a stiffer tissue is not believed
+  /// [N], so much harder than the hand is told may the tip press, and `unfelt_share` of what it is
+  /// told.
+  double unfelt{0.8};
+  double unfelt_share{0.3};  ///< [-]
+  double travel{60e-3};      ///< [m], a surface farther from 0 is not believed
+  double slope_max{1500};    ///< [N/m], of a stiffer tissue no more is shown
   ContactEstimatorConfig estimator;
 };
 
@@ -120,6 +124,7 @@ class MmtPatient {
 
  private:
   [[nodiscard]] double target(const PatientInput& in, const Lapse& lapse) noexcept;
+  [[nodiscard]] double unfelt() const noexcept;
 
   MmtConfig config_;
   double stage_lead_;  ///< [s], what the servo takes away, in whole ticks
@@ -127,6 +132,7 @@ class MmtPatient {
   ContactEstimator estimator_;
   double hand_{};           ///< [m], newest
   double hand_velocity_{};  ///< [m/s], newest
+  double hand_force_{};     ///< [N], newest
   TimePoint heard_at_{};
   LowPass lead_velocity_;  ///< [m/s]
   Place place_;

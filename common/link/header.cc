@@ -32,10 +32,15 @@ Unsigned take(std::span<const std::byte> in) noexcept {
   return take<Unsigned>(in, std::make_index_sequence<sizeof(Unsigned)>{});
 }
 
+constexpr bool is_ours(unsigned type) noexcept {
+  return type <= static_cast<unsigned>(PacketType::Close) ||
+         type == static_cast<unsigned>(PacketType::Media);
+}
+
 }  // namespace
 
 void pack_header(const Header& header, std::span<std::byte, kHeaderSize> out) noexcept {
-  PALP_CHECK(header.type <= PacketType::Close, "a packet type of ours");
+  PALP_CHECK(is_ours(static_cast<unsigned>(header.type)), "a packet type of ours");
   PALP_CHECK(header.key <= kKeyMax, "a key id has two bits");
   PALP_CHECK(header.number <= message::kNumberMax, "packet numbers never wrap");
   out[0] = static_cast<std::byte>(kHeaderVersion << 4U | static_cast<unsigned>(header.type));
@@ -50,7 +55,7 @@ std::optional<Header> parse_clear_part(std::span<const std::byte> datagram) noex
   const auto first = std::to_integer<unsigned>(datagram[0]);
   const auto second = std::to_integer<unsigned>(datagram[1]);
   if (first >> 4U != kHeaderVersion) return std::nullopt;
-  if ((first & 0x0FU) > static_cast<unsigned>(PacketType::Close)) return std::nullopt;
+  if (!is_ours(first & 0x0FU)) return std::nullopt;
   if ((second & 0x3FU) != 0) return std::nullopt;  // flags: all reserved
   const Header header{.type = static_cast<PacketType>(first & 0x0FU),
                       .key = static_cast<std::uint8_t>(second >> 6U),

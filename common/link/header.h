@@ -14,7 +14,8 @@ inline constexpr std::size_t kClearSize = 4;       ///< [bytes], of them: never 
 inline constexpr std::uint8_t kHeaderVersion = 8;  ///< 1 would look like a DTLS record
 inline constexpr std::uint8_t kKeyMax = 3;         ///< two bits
 
-enum class PacketType : std::uint8_t { Data, Control, Path, Close };
+/// 4 marks what goes to and from a relay, which is none of these.
+enum class PacketType : std::uint8_t { Data, Control, Path, Close, Media = 5 };
 
 struct Header {
   PacketType type{};

@@ -55,4 +55,19 @@ SessionKeys SessionKeys::from_exported(std::span<const std::byte, kExportedSize>
   return keys;
 }
 
+PlaneKeys PlaneKeys::from_exported(std::span<const std::byte, kExportedSize> bytes,
+                                   Role role) noexcept {
+  Cutter cutter{bytes};
+  PlaneKeys plane;
+  plane.keys.send = cutter.key();  // from surgeon to patient
+  plane.keys.receive = cutter.key();
+  plane.send_connection = cutter.connection();
+  plane.receive_connection = cutter.connection();
+  if (role == Role::Patient) {
+    std::swap(plane.keys.send, plane.keys.receive);
+    std::swap(plane.send_connection, plane.receive_connection);
+  }
+  return plane;
+}
+
 }  // namespace palp::link

@@ -48,8 +48,23 @@ struct TrafficKeys {
   AeadKey receive;
 };
 
-/// All that a handshake leaves behind: keys for the two planes, one counted by rt, the other by
-/// io, and a connection id for each direction of the control plane.
+/// A plane of its own, with a connection id for each direction.
+struct PlaneKeys {
+  /// [bytes] to be exported: two directions, two ids.
+  static constexpr std::size_t kExportedSize =
+      2 * (2 * AeadKey::kKeySize + AeadKey::kSaltSize) + 2 * sizeof(std::uint32_t);
+
+  TrafficKeys keys;
+  std::uint32_t send_connection{};     ///< never 0
+  std::uint32_t receive_connection{};  ///< never 0
+
+  /// As SessionKeys.
+  [[nodiscard]] static PlaneKeys from_exported(std::span<const std::byte, kExportedSize> bytes,
+                                               Role role) noexcept;
+};
+
+/// What a handshake leaves behind for force and for control: keys for the two planes, one counted
+/// by rt, the other by io, and a connection id for each direction of the control plane.
 struct SessionKeys {
   /// [bytes] to be exported from a handshake: two planes, two directions, two ids.
   static constexpr std::size_t kExportedSize =

@@ -30,11 +30,14 @@ inline constexpr double kModelDepthScale = 1e-3;  ///< [m], L0: a constant of th
 /// less new tissue than Hertz's parabola: its force grows more slowly than xi^1.5.
 inline constexpr double kModelBend = 10;
 inline constexpr std::size_t kModelTerms = 5;
+/// [L0]: where the stiffness of a tissue is told that none of the five terms describes.
+inline constexpr std::array<double, 12> kModelKnots{0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6.5, 8};
 /// [s]: what tissues relax by within seconds, as shares of two times (a Prony series).
 inline constexpr std::array<double, 2> kModelTimes{0.5, 2.5};
 
 /// mmt, patient to surgeon: f = c1*xi + c2*xi^1.5/sqrt(1 + xi/10) + c3*xi^2 + c4*xi^3 + c5*xi^5
-/// [N], xi = max(0, d)/L0.
+/// [N], xi = max(0, d)/L0, and the integral of a stiffness that goes in straight lines from knot to
+/// knot: five numbers where they suffice, and a spline for what softens or has kinks.
 struct ModelPayload {
   std::uint32_t version{};              ///< 0: none yet
   std::array<double, kModelTerms> c{};  ///< [N], each >= 0
@@ -48,7 +51,8 @@ struct ModelPayload {
   double swing_rate{};        ///< [rad/s]
   /// Tissue that relaxes answers f + sum of share (f - z), z' = (f - z)/time, never below 0: f is
   /// what it comes to.
-  std::array<double, kModelTimes.size()> relaxing{};  ///< [-], the shares, each >= 0
+  std::array<double, kModelTimes.size()> relaxing{};   ///< [-], the shares, each >= 0
+  std::array<double, kModelKnots.size()> stiffness{};  ///< [N/m], at the knots, each >= 0
 };
 
 using CouplingPayload = std::variant<std::monostate, WavePayload, TdpaPayload, ModelPayload>;
@@ -100,7 +104,19 @@ inline constexpr auto fields<S> =
          field<11, &S::swing_quadrature>("swing_quadrature_m", narrow<float>, limit(kLengthMax)),
          field<12, &S::swing_rate>("swing_rad_per_s", narrow<float>, limit(kSpeedMax)),
          field<13, &S::relaxing, 0>("relaxing_fast", narrow<float>, limit(kForceMax)),
-         field<14, &S::relaxing, 1>("relaxing_slow", narrow<float>, limit(kForceMax)));
+         field<14, &S::relaxing, 1>("relaxing_slow", narrow<float>, limit(kForceMax)),
+         field<15, &S::stiffness, 0>("stiffness1_n_per_m", narrow<float>, limit(kForceMax)),
+         field<16, &S::stiffness, 1>("stiffness2_n_per_m", narrow<float>, limit(kForceMax)),
+         field<17, &S::stiffness, 2>("stiffness3_n_per_m", narrow<float>, limit(kForceMax)),
+         field<18, &S::stiffness, 3>("stiffness4_n_per_m", narrow<float>, limit(kForceMax)),
+         field<19, &S::stiffness, 4>("stiffness5_n_per_m", narrow<float>, limit(kForceMax)),
+         field<20, &S::stiffness, 5>("stiffness6_n_per_m", narrow<float>, limit(kForceMax)),
+         field<21, &S::stiffness, 6>("stiffness7_n_per_m", narrow<float>, limit(kForceMax)),
+         field<22, &S::stiffness, 7>("stiffness8_n_per_m", narrow<float>, limit(kForceMax)),
+         field<23, &S::stiffness, 8>("stiffness9_n_per_m", narrow<float>, limit(kForceMax)),
+         field<24, &S::stiffness, 9>("stiffness10_n_per_m", narrow<float>, limit(kForceMax)),
+         field<25, &S::stiffness, 10>("stiffness11_n_per_m", narrow<float>, limit(kForceMax)),
+         field<26, &S::stiffness, 11>("stiffness12_n_per_m", narrow<float>, limit(kForceMax)));
 
 template <std::same_as<PortSample> S>
 inline constexpr auto fields<S> =

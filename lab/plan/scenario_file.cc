@@ -91,6 +91,9 @@ Result<Scenario> make_scenario(const std::string& name, const config::Document& 
   }
   auto phantom = patient::make_phantom(patient->phantom);
   if (!phantom) return tl::unexpected(phantom.error());
+  if (const auto same = patient::check_tip(*patient, *phantom); !same) {
+    return tl::unexpected(same.error());
+  }
   auto up = make_path(message.up());
   if (!up) return tl::unexpected(up.error());
   auto down = make_path(message.down());

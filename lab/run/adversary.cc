@@ -12,6 +12,7 @@ constexpr std::uint64_t kLieStream = 0x6c69'6500'0000ULL;  // "lie"
 constexpr Duration kLieLength = std::chrono::milliseconds{50};
 constexpr double kSurfaceMax = 3e-3;                                            // [m]
 constexpr std::array<double, kModelTerms> kTermMax{0.1, 0.3, 0.1, 0.02, 1e-4};  // [N]
+constexpr double kStiffnessMax = 600;                                           // [N/m], at a knot
 constexpr double kShareMax = 0.3;        // [-], of what relaxes
 constexpr double kForceMax = 3;          // [N]
 constexpr double kWaveMax = 1;           // [sqrt(W)], of either sign: forces of some newtons
@@ -38,6 +39,10 @@ ModelPayload LyingCodec::model(std::uint64_t lie) const noexcept {
   }
   for (std::size_t k = 0; k < model.relaxing.size(); ++k) {
     model.relaxing[k] = kShareMax * uniform(1 + kModelTerms + k);
+  }
+  // Every other one rises and falls.
+  for (std::size_t k = 0; k < kModelKnots.size() && lie % 2 == 0; ++k) {
+    model.stiffness[k] = kStiffnessMax * uniform(20 + k);
   }
   model.depth_max = 5e-3;
   return model;

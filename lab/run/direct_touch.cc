@@ -25,7 +25,7 @@ double direct_touch_force(const Scenario& scenario) {
     const surgeon::Intent end = script.at(at + kStep);
     hand.advance({begin.position, begin.velocity}, {end.position, end.velocity}, force, kStep);
     const double phase = 2 * std::numbers::pi * tissue.breathing_frequency * seconds(at + kStep);
-    const double surface = tissue.breathing_amplitude * std::sin(phase);
+    const double surface = field->surface(end.place) + tissue.breathing_amplitude * std::sin(phase);
     const double before = depth;
     depth = hand.position() - surface;
     const double rate = (depth - before) / seconds(kStep);

@@ -6,6 +6,41 @@
 
 namespace palp::patient {
 
+namespace {
+
+// Bytes of request and reply together, beside their words: functions 3, 16 and 23.
+constexpr std::size_t kReadFrame = 13;
+constexpr std::size_t kWriteFrame = 17;
+constexpr std::size_t kExchangeFrame = 18;
+
+std::size_t words_of(const RegisterWrite& write) noexcept {
+  std::size_t words = 0;
+  for (const WriteValue& one : write.values) words += words_in(one.kind);
+  return words;
+}
+
+/// What one period has on the line, the device's own delays included.
+Duration time_of_period(const DeviceProfile& profile, const io::ModbusAddress& address) noexcept {
+  const std::size_t moved = profile.move ? words_of(*profile.move) : 0;
+  const bool two = profile.move && !profile.exchange;
+  std::size_t bytes = (profile.exchange ? kExchangeFrame : kReadFrame) + 2 * profile.read_count;
+  bytes += 2 * moved + (two ? kWriteFrame : 0);
+  const double bits = address.parity == 'N' ? 10 : 11;
+  return from_seconds(bits * static_cast<double>(bytes) / address.baud) +
+         (two ? 2 : 1) * profile.reply_delay;
+}
+
+}  // namespace
+
+void fit_to_line(DeviceProfile& profile, const io::ModbusAddress& address) noexcept {
+  if (address.line.empty()) return;
+  const Duration needed = time_of_period(profile, address);
+  if (needed <= profile.period) return;
+  const double slower = seconds(needed) / seconds(profile.period);
+  profile.period = needed;
+  profile.silence = from_seconds(seconds(profile.silence) * slower);
+}
+
 StageFacts stage_facts_of(const DevicePlans& plans) noexcept {
   StageFacts facts;
   const DeviceInstallation& normal = plans.normal->installation;

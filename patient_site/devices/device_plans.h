@@ -39,6 +39,9 @@ struct DevicePlans {
   std::string text;                ///< of the file itself, calibrations included
 };
 
+/// A line that is slower than the profile's makes the device slower: its period, and its silence
+/// with it, become what one reading and one write take there.
+void fit_to_line(DeviceProfile& profile, const io::ModbusAddress& address) noexcept;
 /// Of a stage put together from these; `normal` is there.
 [[nodiscard]] StageFacts stage_facts_of(const DevicePlans& plans) noexcept;
 /// Of what feels the force: the cell, or the normal axis.

@@ -18,21 +18,14 @@ enum class WordOrder : std::uint8_t { HighFirst, LowFirst };  ///< of values of 
   return kind == WordKind::U16 || kind == WordKind::I16 ? 1 : 2;
 }
 
-/// A quantity in registers.
-struct RegisterField {
-  std::uint16_t address{};
-  WordKind kind{WordKind::I32};
-  double unit{1};  ///< [m, N, m/s or m/s^2 per count]
-};
-
 /// Where a value to write comes from.
-enum class ValueSource : std::uint8_t { Constant, Position, Here, Speed, Acceleration };
+enum class ValueSource : std::uint8_t { Constant, Position, Here, Speed, Acceleration, ForceLimit };
 
 struct WriteValue {
   ValueSource source{};
   double number{};  ///< [counts], of a constant
   WordKind kind{WordKind::U16};
-  double unit{};  ///< [m, m/s or m/s^2 per count]; 0: that of the position
+  double unit{};  ///< [m, m/s, m/s^2 or N per count]; 0: that of the position
 };
 
 enum class WriteKind : std::uint8_t { Registers, OneRegister, Coil };
@@ -52,6 +45,14 @@ struct RegisterCondition {
   std::string means;  ///< what is wrong when it does not hold: "emergency stop"
 };
 
+/// A quantity in registers.
+struct RegisterField {
+  std::uint16_t address{};
+  WordKind kind{WordKind::I32};
+  double unit{1};                               ///< [m, N, m/s or m/s^2 per count]
+  std::optional<RegisterCondition> negative{};  ///< holds: the counts, which have no sign, are < 0
+};
+
 struct StartStep {
   std::string means;  ///< "servo on"
   RegisterWrite write;
@@ -59,6 +60,8 @@ struct StartStep {
   std::optional<RegisterCondition> until;   ///< waited for
   Duration wait_max{std::chrono::seconds{2}};
   bool moves{};  ///< homing: only where the installation permits it
+  /// Of a device that comes back by itself: where it does not hold, the step waits for a person.
+  std::optional<RegisterCondition> unasked{};
 };
 
 struct DeviceProfile {
@@ -81,6 +84,7 @@ struct DeviceProfile {
   std::vector<RegisterCondition> healthy;
   std::optional<std::uint16_t> life;  ///< a word that changes while the device works
   Duration life_within{};
+  Duration stuck_after{};  ///< no force stays the same for so long; 0: it may
   std::vector<StartStep> start;
   std::optional<RegisterWrite> move;  ///< an axis
   std::optional<RegisterWrite> stop;
@@ -97,6 +101,7 @@ struct DeviceInstallation {
   bool force_reversed{};       ///< its positive force is the site's negative one
   double speed_max{0.1};       ///< [m/s], above 0
   double acceleration_max{1};  ///< [m/s^2], above 0
+  double force_limit{20};      ///< [N], of the drive itself, where it can be told
   double travel_min{-0.1};     ///< [m], of the site
   double travel_max{0.1};      ///< [m]
   bool may_home{};             ///< the steps that move are done
@@ -105,7 +110,7 @@ struct DeviceInstallation {
   double tare_within{0.5};     ///< [N], ... but for so much, or something touches it
   double tare_noise{0.1};      ///< [N], rms; more than quiet air
   Duration tare_time{std::chrono::seconds{1}};
-  Duration stuck_after{};  ///< the same reading for so long; 0: never
+  Duration stuck_after{};  ///< the same force for so long; 0: never
 };
 
 }  // namespace palp::patient

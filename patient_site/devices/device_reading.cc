@@ -37,6 +37,13 @@ std::string describe_reason(const DeviceReading& reading, const DeviceProfile& p
     case DeviceReason::MovesWhenAsked:
       return "it must move, which begins with a reset: " +
              (index < profile.start.size() ? profile.start[index].means : std::string{"?"});
+    case DeviceReason::CameBackOther:
+      return "it came back by itself, which a reset must confirm: " +
+             (index < profile.start.size() && profile.start[index].unasked
+                  ? profile.start[index].unasked->means
+                  : std::string{"?"});
+    case DeviceReason::StandsElsewhere:
+      return "it came back elsewhere than it stood: is its zero still good?";
     case DeviceReason::NoLife:
       return "it answers, but its sign of life stands still";
     case DeviceReason::NotFinite:

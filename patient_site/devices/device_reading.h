@@ -19,12 +19,14 @@ enum class DeviceState : std::uint8_t {
 
 enum class DeviceReason : std::uint8_t {
   None,
-  Port,            ///< detail: io::PortFault
-  NotHealthy,      ///< detail: index of the condition
-  StartFailed,     ///< detail: index of the step
-  MayNotMove,      ///< detail: index of the step that the installation forbids
-  MovesWhenAsked,  ///< detail: index of the step; it came back by itself
-  NoLife,          ///< answers, and its life word stands still
+  Port,             ///< detail: io::PortFault
+  NotHealthy,       ///< detail: index of the condition
+  StartFailed,      ///< detail: index of the step
+  MayNotMove,       ///< detail: index of the step that the installation forbids
+  MovesWhenAsked,   ///< detail: index of the step; it came back by itself
+  CameBackOther,    ///< the same, and what the step asks for then does not hold
+  StandsElsewhere,  ///< than before its line was lost: its zero may be another
+  NoLife,           ///< answers, and its life word stands still
   NotFinite,
   Stuck,
   Jumped,      ///< a position that no motion leads to

@@ -14,10 +14,11 @@ using io::PortFault;
 constexpr Duration kReopenPause = std::chrono::milliseconds{500};
 constexpr Duration kHealthWait = std::chrono::seconds{1};  // after the last step of the start
 constexpr std::uint32_t kRetriesMax = 3;
-constexpr double kJumpFree = 2e-3;      // [m], more than any rounding or late stamp
 constexpr double kJumpSpeed = 3;        // [-], times the speed of the axis
 constexpr double kReach = 0.1;          // [m], beyond its travel an axis may stand
 constexpr double kVelocityShare = 0.5;  // of the newest difference
+constexpr double kElsewhere = 5e-3;     // [m], and ...
+constexpr double kElsewhereTime = 0.1;  // [s], at its speed: no axis goes further on its own
 constexpr std::int64_t kStallPeriods = 5;
 constexpr std::uint64_t kStateEvery = 10;  // readings
 constexpr std::size_t kWriteWordsMax = 121;
@@ -32,7 +33,8 @@ RegisterDevice::RegisterDevice(DeviceProfile profile,
       port_{port},
       words_{profile_.read_address, profile_.read_count},
       state_{profile_.state_address, profile_.state_count},
-      load_{installation} {
+      load_{installation},
+      seen_{.jumps = JumpAllowance{kJumpSpeed * installation.speed_max}} {
   if (profile_.position && installation_.position_unit > 0) {
     profile_.position->unit = installation_.position_unit;
   }
@@ -94,7 +96,8 @@ void RegisterDevice::enter_start(TimePoint now) noexcept {
   step_sent_ = false;
   step_began_ = lived_at_ = now;
   polls_ = 0;
-  position_known_ = anything_sent_ = false;
+  seen_.known = anything_sent_ = false;
+  seen_.jumps.reset();
   load_.resume();
 }
 
@@ -112,9 +115,10 @@ bool RegisterDevice::poll(const Clock& clock) {
     fault = port_.read(profile_.read_address, words_.words(), profile_.input_registers);
   }
   const TimePoint ended = clock.now();
-  if (fault == PortFault::None && profile_.state_count > 0 && polls_++ % kStateEvery == 0) {
+  if (fault == PortFault::None && profile_.state_count > 0 && polls_ % kStateEvery == 0) {
     fault = port_.read(profile_.state_address, state_.words(), profile_.input_registers);
   }
+  if (fault == PortFault::None) ++polls_;
   note_transfer(fault, ended);
   if (fault != PortFault::None) {
     motion_ = delivered_;  // what did not arrive is not made up for
@@ -165,19 +169,17 @@ void RegisterDevice::take_position(TimePoint sampled_at) {
   const double position = (read - installation_.zero) * (installation_.reversed ? -1 : 1);
   const double span = seconds(sampled_at - now_.sampled_at);
   const double way = position - now_.position;
-  if (position_known_ && now_.state == DeviceState::Ready &&
-      std::abs(way) > kJumpFree + kJumpSpeed * installation_.speed_max * span) {
-    fail(DeviceReason::Jumped, 0);
-    return;
+  if (seen_.known && now_.state == DeviceState::Ready && seen_.jumps.jumped(way, span)) {
+    return fail(DeviceReason::Jumped, 0);
   }
   if (now_.state == DeviceState::Ready && !within_reach(position)) {
     return fail(DeviceReason::OutOfReach, 0);
   }
-  now_.velocity = position_known_ && span > 0
-                      ? now_.velocity + kVelocityShare * (way / span - now_.velocity)
-                      : 0;
+  now_.velocity =
+      seen_.known && span > 0 ? now_.velocity + kVelocityShare * (way / span - now_.velocity) : 0;
   now_.position = position;
-  position_known_ = true;
+  seen_.known = true;
+  if (now_.state == DeviceState::Ready) by_person_.stood_at = position;
 }
 
 void RegisterDevice::take_force(TimePoint sampled_at) {
@@ -242,6 +244,9 @@ void RegisterDevice::proceed(TimePoint now) {
     if (!step_sent_) {
       if (step.moves && !installation_.may_home) return fail(DeviceReason::MayNotMove, index);
       if (step.moves && !by_person_.started) return fail(DeviceReason::MovesWhenAsked, index);
+      if (step.unasked && !by_person_.started && !meets(*step.unasked)) {
+        return fail(DeviceReason::CameBackOther, index);
+      }
       const PortFault fault = send(step.write);
       if (fault == PortFault::Refused) return fail(DeviceReason::StartFailed, index);
       note_transfer(fault, now);
@@ -258,10 +263,16 @@ void RegisterDevice::proceed(TimePoint now) {
     return;
   }
   if (profile_.position && !within_reach(now_.position)) return fail(DeviceReason::OutOfReach, 0);
+  if (profile_.position && !by_person_.started &&
+      std::abs(now_.position - by_person_.stood_at) >
+          kElsewhere + kElsewhereTime * installation_.speed_max) {
+    return fail(DeviceReason::StandsElsewhere, 0);
+  }
   if (profile_.force && !load_.tared()) return;
   now_.state = DeviceState::Ready;
   ++now_.starts;
   by_person_.started = false;
+  by_person_.stood_at = now_.position;
   begin_motion(now);
 }
 
@@ -315,6 +326,7 @@ std::size_t RegisterDevice::words_of(const RegisterWrite& write,
     if (value.source == ValueSource::Here) counts = raw_position(now_.position) / place;
     if (value.source == ValueSource::Speed) counts = installation_.speed_max / unit;
     if (value.source == ValueSource::Acceleration) counts = installation_.acceleration_max / unit;
+    if (value.source == ValueSource::ForceLimit) counts = installation_.force_limit / unit;
     const auto pair = to_words(counts, value.kind, profile_.order);
     for (std::size_t i = 0; i < words_in(value.kind) && count < words.size(); ++i) {
       words[count++] = pair[i];
@@ -354,43 +366,6 @@ void RegisterDevice::fail(DeviceReason reason, std::uint32_t detail) {
   now_.detail = by_person_.held_detail = detail;
   now_.velocity = 0;
   if (profile_.stop) (void)send(*profile_.stop);
-}
-
-std::optional<std::string> flaw_of(const DeviceProfile& profile,
-                                   const DeviceInstallation& installation) {
-  if (profile.read_count == 0 || profile.read_count > ReadWords::kCountMax) {
-    return profile.name + " reads 1 to 125 registers";
-  }
-  if (profile.state_count > ReadWords::kCountMax) {
-    return profile.name + "'s state has at most 125 registers";
-  }
-  const ReadWords words{profile.read_address, profile.read_count};
-  const ReadWords state{profile.state_address, profile.state_count};
-  const auto readable = [&](std::uint16_t address) {
-    return words.holds(address, 1) || state.holds(address, 1);
-  };
-  const auto outside = [&](const char* what) {
-    return profile.name + "'s " + what + " is not among the registers that it reads";
-  };
-  const auto holds = [&](const std::optional<RegisterCondition>& one) {
-    return !one || readable(one->address);
-  };
-  if (!profile.position && !profile.force) return profile.name + " has neither position nor force";
-  for (const auto& field : {profile.position, profile.force}) {
-    if (field && !words.holds(field->address, words_in(field->kind))) {
-      return outside("position or force");
-    }
-  }
-  if (profile.life && !words.holds(*profile.life, 1)) return outside("sign of life");
-  for (const RegisterCondition& one : profile.healthy) {
-    if (!readable(one.address)) return outside("state");
-  }
-  for (const StartStep& step : profile.start) {
-    if (!holds(step.unless) || !holds(step.until)) return outside("condition of its start");
-  }
-  if (profile.move && !profile.position) return profile.name + " moves, and has no position";
-  if (installation.travel_min >= installation.travel_max) return profile.name + " has no travel";
-  return std::nullopt;
 }
 
 }  // namespace palp::patient

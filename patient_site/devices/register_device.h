@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "common/core/jump_allowance.h"
 #include "common/core/time.h"
 #include "common/io/device/register_port.h"
 #include "patient_site/devices/device_profile.h"
@@ -39,8 +40,14 @@ class RegisterDevice {
   /// What a line that comes back by itself has no say in.
   struct ByPerson {
     bool started{true};           ///< this start; so it may home
+    double stood_at{};            ///< [m], when it was ready last
     DeviceReason held{};          ///< the fault that is not reset yet
     std::uint32_t held_detail{};  ///< by `held`
+  };
+  /// Of its place.
+  struct Seen {
+    JumpAllowance jumps;
+    bool known{};  ///< since the start
   };
   void reach(TimePoint now);
   void enter_start(TimePoint now) noexcept;
@@ -81,18 +88,14 @@ class RegisterDevice {
   TimePoint step_began_{};
   DeviceAsks asks_;  ///< as heard last
   ByPerson by_person_;
-  bool position_known_{};  ///< since the start
-  AxisMotion motion_;      ///< commanded
-  AxisMotion delivered_;   ///< the last of them that arrived
+  Seen seen_;
+  AxisMotion motion_;     ///< commanded
+  AxisMotion delivered_;  ///< the last of them that arrived
   TimePoint steered_at_{};
   std::array<std::uint16_t, 2> sent_{};  ///< last target, in words
   bool anything_sent_{};
   std::uint16_t life_{};
   TimePoint lived_at_{};
 };
-
-/// Why such a device cannot be: a field outside what is read, a range that is none. nullopt: sound.
-[[nodiscard]] std::optional<std::string> flaw_of(const DeviceProfile& profile,
-                                                 const DeviceInstallation& installation);
 
 }  // namespace palp::patient

@@ -39,7 +39,9 @@ class ReadWords {
   }
   [[nodiscard]] double counts(const RegisterField& field, WordOrder order) const noexcept {
     const auto at = static_cast<std::size_t>(field.address - address_);
-    return from_words(std::span{words_}.subspan(at, words_in(field.kind)), field.kind, order);
+    const double counts =
+        from_words(std::span{words_}.subspan(at, words_in(field.kind)), field.kind, order);
+    return field.negative && meets(*field.negative) ? -counts : counts;
   }
   [[nodiscard]] bool meets(const RegisterCondition& condition) const noexcept {
     return (word(condition.address) & condition.mask) == condition.value;

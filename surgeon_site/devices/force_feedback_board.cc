@@ -71,7 +71,7 @@ io::HidAddress ForceFeedbackBoard::address() {
           .serial = {}};
 }
 
-void ForceFeedbackBoard::begin() noexcept {
+void ForceFeedbackBoard::begin(bool /*asked*/) noexcept {
   step_ = Step::Reset;
   resets_ = 0;
   block_ = 0;
@@ -160,19 +160,19 @@ PortFault ForceFeedbackBoard::start_effect(io::ReportPort& port, TimePoint now) 
   return port.write(report);
 }
 
-bool ForceFeedbackBoard::take(std::span<const std::uint8_t> report,
-                              TimePoint /*now*/,
-                              MasterSample& sample) {
+Taken ForceFeedbackBoard::take(std::span<const std::uint8_t> report,
+                               TimePoint /*now*/,
+                               MasterSample& sample) {
   if (report.size() == 2 && report[0] == kStateReport) {
     state_known_ = true;
     sample.trouble = board_trouble(report[1]);
     sample.emergency_stop = (report[1] & kSafetySwitch) == 0;
-    return true;
+    return Taken::Reading;
   }
-  if (report.size() == kWhereIsTheAxis.size() && report[0] == kVendorReport) return true;
+  if (report.size() == kWhereIsTheAxis.size() && report[0] == kVendorReport) return Taken::Reading;
   const bool axes = report.size() >= kAxesBytes && (report.size() - kAxesBytes) % 2 == 0 &&
                     report.size() <= kAxesBytes + 2 * kAxesMost && report[0] == kAxesReport;
-  if (!axes) return false;
+  if (!axes) return Taken::Unknown;
   axes_known_ = true;
   // A build with main axes of 32 bits is longer by 2 bytes for each, the first of them first.
   const bool wide = report.size() > kAxesBytes;
@@ -180,7 +180,7 @@ bool ForceFeedbackBoard::take(std::span<const std::uint8_t> report,
   if (wide) sample.position /= 65'536;
   const auto button = static_cast<std::size_t>(pedal_button_);
   sample.pedal_held = ((report[1 + button / 8] >> (button % 8)) & 1U) != 0;
-  return true;
+  return Taken::Reading;
 }
 
 PortFault ForceFeedbackBoard::send(io::ReportPort& port, double force, bool live, TimePoint now) {

@@ -14,9 +14,9 @@ class ForceFeedbackBoard final : public MasterProtocol {
   explicit ForceFeedbackBoard(int pedal_button) noexcept : pedal_button_{pedal_button} {}
   [[nodiscard]] static io::HidAddress address();
 
-  void begin() noexcept override;
+  void begin(bool asked) noexcept override;
   StartOutcome start(io::ReportPort& port, TimePoint now, std::string_view& why) override;
-  bool take(std::span<const std::uint8_t> report, TimePoint now, MasterSample& sample) override;
+  Taken take(std::span<const std::uint8_t> report, TimePoint now, MasterSample& sample) override;
   io::PortFault send(io::ReportPort& port, double force, bool live, TimePoint now) override;
   void stop(io::ReportPort& port) override;
 

@@ -10,7 +10,6 @@ namespace {
 constexpr Duration kForceValid = std::chrono::milliseconds{20};
 /// The device's thread may itself be stuck in a call.
 constexpr Duration kThreadStuck = std::chrono::milliseconds{50};
-constexpr Duration kMasterPeriod = std::chrono::milliseconds{1};
 constexpr Duration kNoMasterSpin{0};
 
 }  // namespace
@@ -24,7 +23,7 @@ MasterThread::MasterThread(std::string name,
       port_{std::move(port)},
       device_{std::move(protocol), installation, *port_},
       thread_{"palp-device",
-              {.period = kMasterPeriod,
+              {.period = installation.period,
                .spin = kNoMasterSpin,
                .priority = priority,
                .lock_memory = false},

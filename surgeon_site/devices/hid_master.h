@@ -12,7 +12,7 @@
 
 namespace palp::surgeon {
 
-/// A master on a thread of its own at 1 kHz, between mailboxes.
+/// A master on a thread of its own, at 1 kHz where its line allows it, between mailboxes.
 class MasterThread {
  public:
   /// Starts at once. `name`: for people and the log. `priority`: SCHED_FIFO, 0: none.

@@ -16,7 +16,6 @@ constexpr Duration kHealthWait = std::chrono::seconds{1};  // after the last ste
 constexpr int kReportsMax = 4096;                          // of one cycle; no kernel keeps more
 constexpr std::size_t kReportBytesMax = 128;
 constexpr Duration kUnsentMax = std::chrono::milliseconds{100};
-constexpr double kJumpFree = 2e-3;  // [m], more than any rounding or late stamp
 
 }  // namespace
 
@@ -37,21 +36,29 @@ std::string_view to_string(MasterState state) noexcept {
 MasterDevice::MasterDevice(std::unique_ptr<MasterProtocol> protocol,
                            const MasterInstallation& installation,
                            io::ReportPort& port)
-    : protocol_{std::move(protocol)}, installation_{installation}, port_{port} {}
+    : protocol_{std::move(protocol)},
+      installation_{installation},
+      port_{port},
+      jumps_{installation.speed_max} {}
 
 MasterReading MasterDevice::cycle(const Clock& clock, const MasterCommand& command) {
   const TimePoint now = clock.now();
   if (std::exchange(restarts_, command.restarts) != command.restarts &&
       now_.state == MasterState::Fault) {
     held_ = {};
+    asked_ = true;
     enter_start();
   }
   if (now_.state == MasterState::Absent) reach(now);
   if (now_.state == MasterState::Absent) return now_;
   protocol_->show_lamp(command.engaged);
-  drain(clock);
+  const bool sent = protocol_->answers() && now_.state == MasterState::Ready;
+  if (sent) send(command, clock.now());
+  if (now_.state != MasterState::Absent) drain(clock);
   if (now_.state == MasterState::Starting) proceed(clock.now());
-  if (now_.state != MasterState::Absent) send(command, clock.now());
+  // A fault that was just seen takes the force away at once.
+  const bool again = !sent || now_.state != MasterState::Ready;
+  if (again && now_.state != MasterState::Absent) send(command, clock.now());
   return now_;
 }
 
@@ -79,7 +86,8 @@ void MasterDevice::enter_start() noexcept {
   now_.velocity = 0;
   start_done_ = position_known_ = sequence_known_ = false;
   sample_ = {};
-  protocol_->begin();
+  jumps_.reset();
+  protocol_->begin(asked_);
 }
 
 void MasterDevice::drain(const Clock& clock) {
@@ -87,15 +95,12 @@ void MasterDevice::drain(const Clock& clock) {
   int good = 0;
   for (int i = 0; i < kReportsMax; ++i) {
     std::size_t length = 0;
-    if (port_.read(bytes, length, Duration{0}) != PortFault::None) {
-      vanish(io::to_string(PortFault::Lost), clock.now());
-      return;
-    }
+    const PortFault fault = port_.read(bytes, length, Duration{0});
+    if (fault != PortFault::None) return vanish(io::to_string(fault), clock.now());
     if (length == 0) break;
-    if (!protocol_->take(std::span{bytes}.first(length), clock.now(), sample_)) {
-      ++now_.broken;
-      continue;
-    }
+    const Taken taken = protocol_->take(std::span{bytes}.first(length), clock.now(), sample_);
+    if (taken == Taken::Unknown) ++now_.broken;
+    if (taken != Taken::Reading) continue;
     if (sample_.sequence_known) {
       if (sequence_known_ && sample_.sequence == sequence_) {
         ++now_.broken;  // one that was there already tells of no life
@@ -135,10 +140,7 @@ void MasterDevice::adopt(TimePoint now) {
   const double span = seconds(now - std::exchange(stepped_at_, now));
   const double way = position - now_.position;
   const bool ready = now_.state == MasterState::Ready;
-  if (ready && position_known_ &&
-      std::abs(way) > kJumpFree + installation_.speed_max * std::max(0.0, span)) {
-    return fail("the position jumped");
-  }
+  if (ready && position_known_ && jumps_.jumped(way, span)) return fail("the position jumped");
   if (ready && (position < installation_.travel_min || position > installation_.travel_max)) {
     return fail("the position is outside its travel");
   }
@@ -172,6 +174,7 @@ void MasterDevice::proceed(TimePoint now) {
       now_.position < installation_.travel_min || now_.position > installation_.travel_max;
   if (position_known_ && sample_.trouble.empty() && !outside) {
     now_.state = MasterState::Ready;
+    asked_ = false;
     ++now_.starts;
     return;
   }

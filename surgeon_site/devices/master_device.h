@@ -4,6 +4,7 @@
 #include <memory>
 #include <string_view>
 
+#include "common/core/jump_allowance.h"
 #include "common/core/time.h"
 #include "common/io/device/report_port.h"
 #include "surgeon_site/devices/master_protocol.h"
@@ -31,6 +32,7 @@ struct MasterInstallation {
   double force_max{};         ///< [N]
   Duration silence{};         ///< longer is a fault; 0: never
   double velocity_pole{60};   ///< [Hz], of velocities that are taken from positions
+  Duration period{std::chrono::milliseconds{1}};  ///< between two looks
 };
 
 /// Newest state of a master, as it crosses threads.
@@ -95,6 +97,8 @@ class MasterDevice {
   TimePoint reopen_at_{};
   TimePoint stepped_at_{};  ///< of the velocity
   TimePoint started_at_{};  ///< end of the protocol's start
+  JumpAllowance jumps_;
+  bool asked_{true};  ///< this start, by a person
   bool tried_{};
   bool start_done_{};
   bool position_known_{};  ///< since the start

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "common/io/device/hid_port.h"
 #include "surgeon_site/devices/force_feedback_board.h"
 #include "surgeon_site/devices/paddle.h"
+#include "surgeon_site/devices/register_reports.h"
 
 namespace palp::surgeon {
 
@@ -11,7 +13,8 @@ const std::vector<KnownMaster>& known_masters() {
   static const std::vector<KnownMaster> all{
       {MasterKind::Board, "openffboard", "OpenFFBoard", true},
       {MasterKind::Paddle, "paddle", "Teensy paddle", true},
-      {MasterKind::SpaceMouse, "spacemouse", "3Dconnexion SpaceMouse", false}};
+      {MasterKind::SpaceMouse, "spacemouse", "3Dconnexion SpaceMouse", false},
+      {MasterKind::ShaftMotor, "orca", "Iris ORCA", true}};
   return all;
 }
 
@@ -24,6 +27,7 @@ const KnownMaster* master_named(std::string_view flag) noexcept {
 std::vector<io::HidAddress> addresses_of(MasterKind kind) {
   if (kind == MasterKind::Board) return {ForceFeedbackBoard::address()};
   if (kind == MasterKind::Paddle) return {Paddle::address()};
+  if (kind == MasterKind::ShaftMotor) return {};
   const auto models = SpaceMouse::addresses();
   return {models.begin(), models.end()};
 }
@@ -33,7 +37,25 @@ std::unique_ptr<MasterProtocol> make_protocol(const MasterPlan& plan) {
     return std::make_unique<ForceFeedbackBoard>(plan.pedal_button);
   }
   if (plan.product->kind == MasterKind::Paddle) return std::make_unique<Paddle>();
+  if (plan.product->kind == MasterKind::ShaftMotor) {
+    return std::make_unique<ShaftMotor>(plan.installation.force_max, plan.pedal_bit);
+  }
   return std::make_unique<SpaceMouse>(plan.rates);
+}
+
+std::unique_ptr<io::ReportPort> make_port(const MasterPlan& plan) {
+  if (plan.product->kind == MasterKind::ShaftMotor) {
+    return std::make_unique<RegisterReports>(std::make_unique<io::ModbusPort>(plan.line),
+                                             std::make_unique<io::HidPort>(plan.pedal));
+  }
+  std::vector<io::HidAddress> all = addresses_of(plan.product->kind);
+  for (io::HidAddress& one : all) one.serial = plan.serial;
+  for (const io::HidFound& found : io::list_hid()) {
+    for (const io::HidAddress& one : all) {
+      if (agrees(found, one)) return std::make_unique<io::HidPort>(one);
+    }
+  }
+  return std::make_unique<io::HidPort>(all.front());
 }
 
 }  // namespace palp::surgeon

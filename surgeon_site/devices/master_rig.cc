@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "common/io/device/hid_port.h"
-
 namespace palp::surgeon {
 namespace {
 
@@ -12,24 +10,9 @@ constexpr Duration kMasterStartPatience = std::chrono::seconds{10};
 
 }  // namespace
 
-io::HidAddress address_of(const MasterPlan& plan) {
-  std::vector<io::HidAddress> all = addresses_of(plan.product->kind);
-  for (io::HidAddress& one : all) one.serial = plan.serial;
-  for (const io::HidFound& found : io::list_hid()) {
-    for (const io::HidAddress& one : all) {
-      if (agrees(found, one)) return one;
-    }
-  }
-  return all.front();
-}
-
 MasterRig::MasterRig(const MasterPlan& plan, int priority)
     : product_{plan.product->name},
-      thread_{"master",
-              make_protocol(plan),
-              plan.installation,
-              std::make_unique<io::HidPort>(address_of(plan)),
-              priority},
+      thread_{"master", make_protocol(plan), plan.installation, make_port(plan), priority},
       device_{thread_, plan.facts} {}
 
 std::string MasterRig::sentence() {

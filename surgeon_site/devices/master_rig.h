@@ -14,10 +14,6 @@ struct MasterNews {
   bool fit{};
 };
 
-/// Where one of a product's models is there, that one; else any, which then is told to be absent.
-/// Blocks.
-[[nodiscard]] io::HidAddress address_of(const MasterPlan& plan);
-
 /// The master of a site on its thread, and what the site sees of it.
 /// Thread: main; device(): rt.
 class MasterRig {

@@ -33,9 +33,9 @@ StartOutcome Paddle::start(io::ReportPort& /*port*/, TimePoint /*now*/, std::str
   return StartOutcome::Done;
 }
 
-bool Paddle::take(std::span<const std::uint8_t> report, TimePoint /*now*/, MasterSample& sample) {
+Taken Paddle::take(std::span<const std::uint8_t> report, TimePoint /*now*/, MasterSample& sample) {
   palp_paddle::State state{};
-  if (!palp_paddle::unpack(report.data(), report.size(), state)) return false;
+  if (!palp_paddle::unpack(report.data(), report.size(), state)) return Taken::Unknown;
   sample.position = state.position_nm;
   sample.velocity = state.velocity_um_per_s * 1e3;
   sample.velocity_known = true;
@@ -44,7 +44,7 @@ bool Paddle::take(std::span<const std::uint8_t> report, TimePoint /*now*/, Maste
   sample.trouble = paddle_trouble(state.flags);
   sample.sequence = state.sequence;
   sample.sequence_known = true;
-  return true;
+  return Taken::Reading;
 }
 
 io::PortFault Paddle::send(io::ReportPort& port, double force, bool live, TimePoint now) {

@@ -12,9 +12,9 @@ class Paddle final : public MasterProtocol {
   static constexpr double kForceUnit = 1e-6;     ///< [N]
   [[nodiscard]] static io::HidAddress address();
 
-  void begin() noexcept override {}
+  void begin(bool /*asked*/) noexcept override {}
   StartOutcome start(io::ReportPort& port, TimePoint now, std::string_view& why) override;
-  bool take(std::span<const std::uint8_t> report, TimePoint now, MasterSample& sample) override;
+  Taken take(std::span<const std::uint8_t> report, TimePoint now, MasterSample& sample) override;
   io::PortFault send(io::ReportPort& port, double force, bool live, TimePoint now) override;
   void show_lamp(bool engaged) noexcept override { engaged_ = engaged; }
   void stop(io::ReportPort& port) override;

@@ -41,7 +41,7 @@ std::array<io::HidAddress, 8> SpaceMouse::addresses() {
           model(kOld, 0xC62B)};
 }
 
-void SpaceMouse::begin() noexcept {
+void SpaceMouse::begin(bool /*asked*/) noexcept {
   deflection_ = {};
   position_ = rates_.begin;
   place_ = {};
@@ -54,23 +54,24 @@ StartOutcome SpaceMouse::start(io::ReportPort& /*port*/,
   return StartOutcome::Done;
 }
 
-bool SpaceMouse::take(std::span<const std::uint8_t> report,
-                      TimePoint now,
-                      MasterSample& /*sample*/) {
+Taken SpaceMouse::take(std::span<const std::uint8_t> report,
+                       TimePoint now,
+                       MasterSample& /*sample*/) {
   // Newer models send all six axes in one report of 13 bytes.
-  if (report.empty()) return false;
+  if (report.empty()) return Taken::Unknown;
   if (report[0] == 1 && (report.size() == 7 || report.size() == 13)) {
     for (std::size_t i = 0; i < deflection_.size(); ++i) {
       deflection_[i] = deflection_at(report, 1 + 2 * i);
     }
     heard_at_ = now;
-    return true;
+    return Taken::Reading;
   }
-  if (report[0] == 2 && report.size() == 7) return true;  // turns, which mean nothing here
-  if (report[0] != 3 || report.size() < 3) return false;
+  if (report[0] == 2 && report.size() == 7)
+    return Taken::Reading;  // turns, which mean nothing here
+  if (report[0] != 3 || report.size() < 3) return Taken::Unknown;
   const unsigned buttons = report[1] | (static_cast<unsigned>(report[2]) << 8U);
   pedal_held_ = ((buttons >> static_cast<unsigned>(rates_.pedal_button)) & 1U) != 0;
-  return true;
+  return Taken::Reading;
 }
 
 bool SpaceMouse::advance(TimePoint now, MasterSample& sample) {

@@ -25,9 +25,9 @@ class SpaceMouse final : public MasterProtocol {
   /// Of all models that are known, in the order of their worth.
   [[nodiscard]] static std::array<io::HidAddress, 8> addresses();
 
-  void begin() noexcept override;
+  void begin(bool asked) noexcept override;
   StartOutcome start(io::ReportPort& port, TimePoint now, std::string_view& why) override;
-  bool take(std::span<const std::uint8_t> report, TimePoint now, MasterSample& sample) override;
+  Taken take(std::span<const std::uint8_t> report, TimePoint now, MasterSample& sample) override;
   io::PortFault send(io::ReportPort& port, double force, bool live, TimePoint now) override;
   bool advance(TimePoint now, MasterSample& sample) override;
   void stop(io::ReportPort& /*port*/) override {}

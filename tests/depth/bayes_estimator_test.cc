@@ -20,7 +20,7 @@ constexpr Tapping kTaps{.taps = 4, .indentation = 3.8e-3, .rest_time = 0.2};
 
 /// What is said over the inclusion, after taps beside it.
 std::vector<DepthEstimate> estimates_over(const char* spec, const SimulatedPhantomConfig& sensor) {
-  const auto phantom = make_phantom(spec);
+  const auto phantom = plain_at_a(spec);
   EXPECT_TRUE(phantom);
   depth::DepthEstimator estimator{knowing()};
   std::vector<DepthEstimate> out;
@@ -50,7 +50,7 @@ TEST(BayesEstimatorTest, EveryTapMakesItSurer) {
 
 /// The last estimate after `hesitant` taps and a smooth one, all over the inclusion.
 DepthEstimate after_hesitant(int hesitant, int* refused) {
-  const auto phantom = make_phantom("ball depth=9 radius=8 ratio=200");
+  const auto phantom = plain_at_a("ball depth=9 radius=8 ratio=200");
   EXPECT_TRUE(phantom);
   depth::DepthEstimatorConfig config = knowing();
   config.bayes.stiffness.scale_stddev = 2e-3;
@@ -83,7 +83,7 @@ TEST(BayesEstimatorTest, AStrokeThatIsNotMonotoneCountsForTheNext) {
 std::vector<DepthEstimate> tapped_over(depth::DepthEstimator& estimator,
                                        const Tapping& tapping,
                                        TimePoint* now) {
-  const auto phantom = make_phantom("ball depth=9 radius=8 ratio=200");
+  const auto phantom = plain_at_a("ball depth=9 radius=8 ratio=200");
   EXPECT_TRUE(phantom);
   std::vector<DepthEstimate> out;
   *now = feel_taps(

@@ -210,7 +210,7 @@ TEST(StrokeTrackerTest, NumbersThatAreNoneAreIgnored) {
 /// The touches of the place after a tap and another one's reversal. The samples of the first tap
 /// after `cut` answers are lost on the way, if that is not 0, up to the next tap.
 std::vector<depth::Touch> touches_of(const Tapping& tapping, std::size_t cut) {
-  const auto phantom = make_phantom("ball depth=9 radius=8 ratio=200");
+  const auto phantom = plain_at_a("ball depth=9 radius=8 ratio=200");
   EXPECT_TRUE(phantom);
   depth::StrokeTracker tracker{{}};
   const TimePoint second{from_seconds(tapping.tap_time + tapping.rest_time)};
@@ -260,7 +260,7 @@ TEST(StrokeTrackerTest, AHesitantTouchIsKeptAsFarAsItCame) {
 }
 
 TEST(StrokeTrackerTest, KeepsTheLastTouchesAlone) {
-  const auto phantom = make_phantom("ball depth=9 radius=8 ratio=200");
+  const auto phantom = plain_at_a("ball depth=9 radius=8 ratio=200");
   ASSERT_TRUE(phantom);
   depth::StrokeTracker tracker{{}};
   Tapping tapping = kTwice;

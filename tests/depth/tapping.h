@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <vector>
 
 #include "common/core/filters.h"
@@ -12,6 +13,14 @@
 #include "patient_site/simulated_phantom.h"
 
 namespace palp::patient {
+
+/// The phantom of a ball with its curve at B and the plain block at A: where a single place is
+/// judged, what is left of the ball 20 mm beside it is not the question.
+inline Result<Phantom> plain_at_a(std::string_view spec) {
+  auto phantom = make_phantom(spec);
+  if (phantom) phantom->block.reset();
+  return phantom;
+}
 
 /// A hand that taps a simulated phantom.
 struct Tapping {

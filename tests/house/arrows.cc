@@ -25,6 +25,7 @@ constexpr std::array<std::string_view, 36> kRooms{"common/core",
                                                   "common/io/secure",
                                                   "common/io",
                                                   "common/plot",
+                                                  "video",
                                                   "monitor",
                                                   "site_program",
                                                   "netem/model",
@@ -84,10 +85,12 @@ const std::vector<Arrow>& arrows() {
       {"netem/presets_command.*", {"netem/syntax", "common/config"}},
       // A relay between sites: it has no keys, and knows nothing of couplings or impairments.
       {"relay/*", {"common/link", "common/io/*", "common/config"}},
+      // Pictures to datagrams and back: no clock, no socket, no record.
+      {"video/*", {"common/link", "common/message"}},
       // The live page: what the session file gets, for screens. It sees no site and no link.
       {"monitor/server.cc",
-       {"common/record", "common/message", "common/link", "common/io/realtime"}},
-      {"monitor/*", {"common/record", "common/message", "common/link", "common/config"}},
+       {"common/record", "common/message", "common/link", "common/io/realtime", "video"}},
+      {"monitor/*", {"common/record", "common/message", "common/link", "common/config", "video"}},
       // What the two programs of a session do alike: it puts parts together, as their main.cc does.
       {"site_program/*",
        {"common/config",
@@ -97,8 +100,10 @@ const std::vector<Arrow>& arrows() {
         "common/record",
         "common/io/*",
         "monitor",
+        "video",
         "netem/*"}},
-      {"fem/main.cc", {"common/config", "common/io/process/process_time.h"}},
+      {"fem/main.cc",
+       {"common/config", "common/io/process/parallel.h", "common/io/process/process_time.h"}},
       {"fem/*_command.*", {"common/config", "common/plot"}},
       // How far off the database is between its points: read as the estimators read it.
       {"fem/interpolation_check.cc", {"depth/depth_database.h"}},
@@ -131,8 +136,10 @@ const std::vector<Arrow>& arrows() {
         "common/config",
         "common/settings"}},
       {"surgeon_site/*", {"common/message", "common/coupling", "common/link", "common/record"}},
+      {"patient_site/drawn_camera.*", {"video"}},
       {"patient_site/main.cc",
        {"patient_site/devices",
+        "video",
         "site_program",
         "depth",
         "common/message",
@@ -166,6 +173,8 @@ const std::vector<Arrow>& arrows() {
         "common/config",
         "common/settings"}},
       {"patient_site/tissue_record.*", {"common/record", "common/config/number.h"}},
+      // Closed solution of a domed surface.
+      {"patient_site/block_tissue.*", {"depth", "fem/sneddon_sphere.h"}},
       {"patient_site/*",
        {"depth", "common/message", "common/coupling", "common/link", "common/record"}},
       // What is judged of a run, offline: no site sees it, and it sees none.
@@ -248,6 +257,7 @@ const std::vector<std::string_view>& protobuf_files() {
                                                    "patient_site/settings*.cc",
                                                    "lab/plan/scenario*.cc",
                                                    "netem/syntax/timeline.cc",
+                                                   "video/camera_frame.cc",
                                                    "fem/depth_table.cc"};
   return files;
 }
@@ -261,6 +271,8 @@ const std::vector<Fence>& fences() {
       {"boost/beast", {"monitor/server.cc"}},
       {"boost/math", {"study/compare.cc"}},
       {"google/protobuf/", protobuf_files()},
+      {"wels/", {"video/openh264_encoder.cc"}},
+      {"turbojpeg.h", {"video/jpeg_encoder.cc"}},
       {"zstd", {"common/record/mcap_*.cc"}},
       {"zlib.h", {"common/record/mcap_*.cc"}},
       // Programs without a schema of their own have flags of their own.

@@ -115,7 +115,7 @@ TEST_F(AxisCheckTest, OneThatSwingsAboutDoesNotArrive) {
     drive_.offset = 0.45e-3;
   };
   const auto found = check("yes\nout\n2\nno\n");
-  EXPECT_TRUE(!found && found.error().text.starts_with("it stands at")) << out_.str();
+  EXPECT_TRUE(!found) << out_.str();
 }
 
 TEST(AxisThatFeelsTest, ItsUnloadedForceIsNoTouchForTheCheck) {

@@ -66,7 +66,37 @@ TEST(PhantomTest, AFileIsSiteBBesideThePapersBlock) {
   EXPECT_EQ(phantom->plain.force(2e-3), make_phantom("none")->plain.force(2e-3));
   EXPECT_EQ(phantom->shape, "unknown");
   EXPECT_EQ(phantom->depth_max(), 4e-3);
+  EXPECT_THAT(phantom->caution, HasSubstr("beside it the tissue is the paper's block of 15.3 kPa"));
+  const auto meant = make_phantom("file:" + path + " beside=paper");
+  ASSERT_TRUE(meant) << meant.error().text;
+  EXPECT_EQ(meant->caution, "");
+  const auto both = make_phantom("file:" + path + " beside=" + path);
+  ASSERT_TRUE(both) << both.error().text;
+  EXPECT_NEAR(both->plain.force(2e-3), 0.3, 1e-15);
+  EXPECT_EQ(both->caution, "");
+  EXPECT_THAT(make_phantom("file:" + path + " beside=none.csv").error().text,
+              HasSubstr("cannot read none.csv"));
   std::remove(path.c_str());
+}
+
+TEST(PhantomTest, AFileMayHoldTheWordsOfATissue) {
+  const std::string path =
+      ::testing::TempDir() + "palp_phantom_words_" + std::to_string(::getpid()) + ".txt";
+  const std::string words = "# two balls\nball depth=6 at=20,0\nball depth=9 radius=5 at=-15,0\n";
+  std::ofstream{path} << words;
+  const auto phantom = make_phantom("file:" + path);
+  std::remove(path.c_str());
+  ASSERT_TRUE(phantom) << phantom.error().text;
+  EXPECT_EQ(phantom->words, words);
+  EXPECT_EQ(*phantom->depth, 6e-3);
+  ASSERT_TRUE(phantom->block);
+  EXPECT_EQ(phantom->block->inclusions.size(), 2U);
+  const auto read = parse_tissue_curves(tissue_csv(*phantom), "t", kSiteB);
+  ASSERT_TRUE(read) << read.error().text;
+  EXPECT_EQ(read->size(), 3U) << "A and above each ball";
+  EXPECT_NEAR(read->back().table.force(2e-3),
+              make_field(*phantom, 0)->elastic_force({-15e-3, 0}, 2e-3),
+              1e-8);
 }
 
 TEST(PhantomTest, AFileMaySayWhereItsCurvesLie) {
@@ -78,6 +108,7 @@ TEST(PhantomTest, AFileMaySayWhereItsCurvesLie) {
   std::remove(path.c_str());
   ASSERT_TRUE(phantom) << phantom.error().text;
   EXPECT_EQ(phantom->survey.size(), 2U);
+  EXPECT_EQ(phantom->caution, "");
   EXPECT_EQ(phantom->depth_max(), 3e-3);
   EXPECT_EQ(phantom->axis, (Place{5e-3, -2e-3}));
   const auto field = make_field(*phantom, 0);

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/patient_site/devices/fake_registers.h"
+#include "tests/common/io/device/fake_registers.h"
 
 namespace palp::patient {
 namespace {

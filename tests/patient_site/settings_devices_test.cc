@@ -43,6 +43,33 @@ TEST(DevicePlansTest, AStageOfThreeMakersAndACell) {
   EXPECT_EQ(sensor.rate, 100);
 }
 
+TEST(DevicePlansTest, ASlowLineMakesASlowDevice) {
+  const auto rate = [](const std::string& words) {
+    const std::string text = "normal { profile: \"orca\" " + words + " }";
+    const auto plans = make_device_plans(text, "rig");
+    EXPECT_TRUE(plans) << plans.error().text;
+    return std::pair{stage_facts_of(*plans).rate, seconds(plans->normal->profile.silence)};
+  };
+  EXPECT_EQ(rate("address: \"serial:/dev/a\"").first, 200);
+  EXPECT_EQ(rate("address: \"serial:/dev/a\" baud: 1000000").first, 200);
+  // 38 bytes of 11 bits and 1 ms of the device.
+  const auto [slow, silence] = rate("address: \"serial:/dev/a\" baud: 19200");
+  EXPECT_NEAR(slow, 1 / (38 * 11 / 19'200.0 + 1e-3), 0.01);
+  EXPECT_GT(silence, 0.13);
+  EXPECT_EQ(rate("address: \"tcp:1.2.3.4:5\" baud: 19200").first, 200);
+  EXPECT_EQ(rate("address: \"serial:/dev/a\" baud: 19200 silence_ms: 60").second, 0.06);
+}
+
+TEST(DevicePlansTest, AForceThatStaysTheSameIsStuckWhereTheProductsNever) {
+  const std::string axis = "normal { profile: \"iai\" address: \"tcp:1.2.3.4:5\" } ";
+  const auto after = [&](const std::string& words) {
+    const std::string cell = "cell { profile: \"tlb4\" address: \"tcp:1.2.3.4:6\" " + words + "}";
+    return make_device_plans(axis + cell, "rig").value().cell->installation.stuck_after;
+  };
+  EXPECT_EQ(after(""), std::chrono::seconds{2});
+  EXPECT_EQ(after("stuck_after_s: 7"), std::chrono::seconds{7});
+}
+
 TEST(DevicePlansTest, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(refusal("normal { profile: \"robot\" address: \"tcp:1.2.3.4:5\" }"),
               HasSubstr("rig: normal: unknown profile 'robot'; there are: az, iai"));

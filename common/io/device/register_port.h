@@ -15,7 +15,9 @@ enum class PortFault : std::uint8_t {
   NoReply,       ///< within the time that baud rate, lengths and the device's delay allow
   BrokenFrame,   ///< checksum, length or function are not those of the answer
   WrongStation,  ///< another device answered
-  Refused        ///< an exception of the device: it knows no such register, or not now
+  Refused,       ///< an exception of the device: it knows no such register, or not now
+  PedalNotOpen,  ///< of a device with a pedal of its own: that one cannot be opened
+  PedalLost      ///< was there, and is gone
 };
 
 [[nodiscard]] constexpr std::string_view to_string(PortFault fault) noexcept {
@@ -36,6 +38,10 @@ enum class PortFault : std::uint8_t {
       return "another station answered";
     case PortFault::Refused:
       return "request refused";
+    case PortFault::PedalNotOpen:
+      return "its pedal cannot be opened";
+    case PortFault::PedalLost:
+      return "its pedal is gone";
   }
   return "?";
 }

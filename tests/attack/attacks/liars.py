@@ -33,6 +33,7 @@ LIMITS = {"position_m": LENGTH, "velocity_m_per_s": SPEED, "force_n": FORCE}
 MODEL_LIMITS = {
     **{f"c{i}_n": FORCE for i in range(1, 6)}, "residual_n": FORCE, "relaxing_fast": FORCE,
     "relaxing_slow": FORCE, "surface_m": LENGTH, "depth_max_m": LENGTH, "swing_m": LENGTH,
+    **{f"stiffness{i}_n_per_m": FORCE for i in range(1, 13)},
     "swing_quadrature_m": LENGTH, "swing_rad_per_s": SPEED,
 }  # fmt: skip
 PAYLOADS = {

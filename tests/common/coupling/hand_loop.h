@@ -47,6 +47,7 @@ class Liar {
                0.1 * uniform(2),
                0.02 * uniform(3),
                1e-4 * uniform(4)};
+    for (std::size_t k = 0; k < kModelKnots.size(); ++k) model.stiffness[k] = 600 * uniform(20 + k);
     model.depth_max = 5e-3;
     model.swing = 2e-3 * (2 * uniform(5) - 1);
     model.swing_quadrature = 2e-3 * (2 * uniform(6) - 1);

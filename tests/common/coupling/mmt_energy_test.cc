@@ -24,7 +24,7 @@ class UnguardedSurgeon {
   SurgeonOutput step(const SurgeonInput& in, Duration /*dt*/) noexcept {
     if (const Incoming* last = newest(in.arrived)) {
       const auto* model = std::get_if<ModelPayload>(&last->sample.payload);
-      if (model != nullptr && is_sound(*model, 60e-3, 2000)) shown_ = contact_model(*model);
+      if (model != nullptr && is_sound(*model, 60e-3)) shown_ = contact_model(*model);
     }
     SurgeonOutput out;
     out.force = shown_.force(in.position - shown_.surface);
@@ -351,6 +351,28 @@ TEST(MmtSurgeonTest, ShowsNothingWhereTheGateLetsNothingThrough) {
     EXPECT_EQ(law.step(in, std::chrono::milliseconds{1}).force, 0);
     EXPECT_EQ(law.stored(), 0);
   }
+}
+
+TEST(MmtSurgeonTest, OfATissueTooStiffForTheDeviceItShowsWhatTheDeviceMayShow) {
+  const MmtConfig config;
+  const ModelPayload stiff{.version = 1, .c = {5}, .depth_max = 4e-3};
+  MmtSurgeon law{config};
+  law.begin_epoch(-1e-3);
+  Incoming incoming;
+  incoming.sample.payload = stiff;
+  incoming.fresh = true;
+  const std::array arrived{incoming};
+  double force = 0;
+  for (int tick = 0; tick < 200; ++tick) {
+    SurgeonInput in;
+    in.state = SiteState::Engaged;
+    in.position = std::min(1e-3, -1e-3 + 20e-6 * tick);
+    in.force_applied = force;
+    in.arrived = arrived;
+    force = law.step(in, std::chrono::milliseconds{1}).force;
+  }
+  EXPECT_NEAR(force, config.slope_max * 1e-3, 0.01) << "5 N were there";
+  EXPECT_EQ(law.refused(), 0U);
 }
 
 TEST(MmtSurgeonTest, RefusesAndCountsModelsThatNoTissueHas) {

@@ -221,6 +221,7 @@ std::vector<Border> borders() {
       {"swing rate", [](auto& w, double x) { model_in(w).swing_rate = x; }, message::kSpeedMax},
       {"relaxing fast", [](auto& w, double x) { model_in(w).relaxing[0] = x; }, message::kForceMax},
       {"relaxing slow", [](auto& w, double x) { model_in(w).relaxing[1] = x; }, message::kForceMax},
+      {"stiffness", [](auto& w, double x) { model_in(w).stiffness[11] = x; }, message::kForceMax},
       {"older",
        [](auto& w, double x) { w.older_count = 1, w.older[0].force = x; },
        message::kForceMax},
@@ -309,8 +310,12 @@ TEST(WireCodecTest, TelegramsHaveTheSizesOfTheWirePage) {
   wire.telegram.site.depth = {
       kMost, DepthVerdict::Found, DepthReason::HashOutOfRange, 1, 1, 1, 1, 1, {1, 1}};
   EXPECT_EQ(encoded(codec, wire).size(), 37U + 67U + 3 * 17U);  // direct, patient to surgeon
-  wire.telegram.port.payload = ModelPayload{kMost, {1, 1, 1, 1, 1}, 1, 1, 1, 1, 1, 1, {1, 1}};
-  EXPECT_EQ(encoded(codec, wire).size(), 37U + 67U + 90U + 2 * 17U);  // mmt, the largest
+  ModelPayload model{kMost, {1, 1, 1, 1, 1}, 1, 1, 1, 1, 1, 1, {1, 1}};
+  wire.telegram.port.payload = model;
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 67U + 90U + 2 * 17U);  // mmt, five numbers
+  model.stiffness.fill(1);
+  wire.telegram.port.payload = model;
+  EXPECT_EQ(encoded(codec, wire).size(), 37U + 67U + 163U + 2 * 17U);  // mmt, the largest
   wire.telegram.port.payload = TdpaPayload{1};
   EXPECT_EQ(encoded(codec, wire).size(), 37U + 67U + 28U + 2 * 17U);
   wire.telegram.port.payload = WavePayload{1, 1};

@@ -25,7 +25,11 @@ const Header kSome{.type = PacketType::Data,
 
 RC_GTEST_PROP(HeaderTest, ComesBackAsItWasPacked, ()) {
   const Header header{
-      .type = static_cast<PacketType>(*rc::gen::inRange(0, 4)),
+      .type = *rc::gen::element(PacketType::Data,
+                                 PacketType::Control,
+                                 PacketType::Path,
+                                 PacketType::Close,
+                                 PacketType::Media),
       .key = *rc::gen::inRange<std::uint8_t>(0, 4),
       .length = *rc::gen::inRange<std::uint16_t>(0, kDatagramSizeMax - kHeaderSize + 1),
       .connection = *rc::gen::arbitrary<std::uint32_t>(),
@@ -67,7 +71,7 @@ TEST(HeaderTest, RefusesUnknownTypes) {
   auto bytes = packed(kSome);
   for (unsigned type = 0; type < 16; ++type) {
     bytes[0] = static_cast<std::byte>(0x80U | type);
-    EXPECT_EQ(parse_header(bytes).has_value(), type <= 3) << type;
+    EXPECT_EQ(parse_header(bytes).has_value(), type <= 3 || type == 5) << type;
   }
 }
 

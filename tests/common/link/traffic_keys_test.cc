@@ -1,6 +1,7 @@
 #include "common/link/traffic_keys.h"
 
 #include <algorithm>
+#include <array>
 #include <new>
 #include <vector>
 
@@ -39,6 +40,18 @@ TEST(SessionKeysTest, DirectionsPlanesAndHandshakesShareNothing) {
       EXPECT_FALSE(all[i].salt == all[k].salt);
     }
   }
+}
+
+TEST(PlaneKeysTest, WhatOneEndSendsTheOtherReceives) {
+  std::array<std::byte, PlaneKeys::kExportedSize> bytes{};
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i);
+  const PlaneKeys surgeon = PlaneKeys::from_exported(bytes, Role::Surgeon);
+  const PlaneKeys patient = PlaneKeys::from_exported(bytes, Role::Patient);
+  EXPECT_EQ(surgeon.keys.send.key, patient.keys.receive.key);
+  EXPECT_EQ(surgeon.keys.receive.salt, patient.keys.send.salt);
+  EXPECT_EQ(surgeon.send_connection, patient.receive_connection);
+  EXPECT_EQ(surgeon.receive_connection, patient.send_connection);
+  EXPECT_FALSE(surgeon.keys.send.key == surgeon.keys.receive.key);
 }
 
 TEST(SecretTest, LeavesNothingBehind) {

@@ -10,7 +10,7 @@
 #include "common/io/device/hid_port.h"
 #include "patient_site/devices/scan_card.h"
 #include "tests/common/io/device/fake_hidapi.h"
-#include "tests/patient_site/devices/fake_registers.h"
+#include "tests/common/io/device/fake_registers.h"
 
 namespace palp::patient {
 

@@ -6,7 +6,7 @@
 #include "common/config/json.h"
 #include "patient_site/devices_command.h"
 #include "patient_site/settings_devices.h"
-#include "tests/patient_site/devices/fake_registers.h"
+#include "tests/common/io/device/fake_registers.h"
 
 namespace palp::patient {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "patient_site/devices/register_device.h"
 #include "patient_site/settings_devices.h"
-#include "tests/patient_site/devices/fake_registers.h"
+#include "tests/common/io/device/fake_registers.h"
 
 namespace palp::patient {
 
@@ -107,7 +107,10 @@ class DriveModel {
     if (name_ == "az") put(0xCC, place_);
     if (name_ == "orca") put(342, place_);
     if (name_ == "orca") put_bits(348, static_cast<std::uint32_t>(std::lround(felt * 1e3)));
-    if (name_ == "tlb4") put_bits(7, static_cast<std::uint32_t>(std::lround(felt * 1e2)));
+    if (name_ == "tlb4") {
+      put_bits(7, static_cast<std::uint32_t>(std::lround(std::abs(felt) * 1e2)));
+      port.words[6] = felt < 0 ? 0x0080 : 0;
+    }
     if (name_ == "z-sg") {
       put_bits(63, no_number ? 0x7FC00000 : std::bit_cast<std::uint32_t>(static_cast<float>(felt)));
     }

@@ -10,7 +10,7 @@
 #include "patient_site/devices/device_reading.h"
 #include "patient_site/devices/profile_texts.h"
 #include "patient_site/settings_devices.h"
-#include "tests/patient_site/devices/fake_registers.h"
+#include "tests/patient_site/devices/maker_axis.h"
 
 namespace palp::patient {
 namespace {
@@ -18,69 +18,8 @@ namespace {
 using io::PortFault;
 using testing::HasSubstr;
 
-/// An axis of the maker whose name stands there, in virtual time: it goes where it is sent.
-class Axis {
- public:
-  explicit Axis(const std::string& name = "iai", DeviceInstallation built_in = installation())
-      : profile_{find_profile(name).value()}, device_{profile_, built_in, port} {
-    if (name == "iai") {
-      port.words[0x9005] = 0x3010;
-      port.written = [this](std::uint16_t address) {
-        if (address != 0x9900) return;
-        port.words[0x9000] = port.words[0x9900];
-        port.words[0x9001] = port.words[0x9901];
-      };
-    }
-    if (name == "orca") {
-      port.written = [this](std::uint16_t address) {
-        if (address != 30) return;
-        port.words[342] = port.words[30];
-        port.words[343] = port.words[31];
-      };
-    }
-  }
-  static DeviceInstallation installation() {
-    DeviceInstallation built_in;
-    built_in.zero = 0.05;
-    built_in.reversed = true;
-    built_in.speed_max = 0.1;
-    built_in.acceleration_max = 2;
-    built_in.tare_time = std::chrono::milliseconds{100};
-    return built_in;
-  }
-  const DeviceReading& cycles(int count) {
-    for (int i = 0; i < count; ++i) {
-      clock.at += profile_.period;
-      if (alive) command.valid_until = clock.at + std::chrono::milliseconds{50};
-      const double before = reading.position;
-      const bool was_ready = reading.state == DeviceState::Ready;
-      reading = device_.cycle(clock, command);
-      if (was_ready && reading.state == DeviceState::Ready) {
-        fastest = std::max(fastest, std::abs(reading.position - before) / seconds(profile_.period));
-      }
-    }
-    return reading;
-  }
-  void move(double target) {
-    command.move = true;
-    command.target = target;
-  }
-  [[nodiscard]] std::string why() const { return describe_reason(reading, profile_); }
-
-  FakeRegisters port;
-  TestClock clock;
-  DeviceCommand command;
-  DeviceReading reading;
-  double fastest{};  ///< [m/s]
-  bool alive{true};  ///< of the one who commands
-
- private:
-  DeviceProfile profile_;
-  RegisterDevice device_;
-};
-
 TEST(RegisterDeviceTest, StartsAnAxisStepByStepAndHoldsItWhereItStands) {
-  Axis axis;
+  MakerAxis axis;
   axis.port.words[0x9001] = 3070;
   ASSERT_EQ(axis.cycles(20).state, DeviceState::Ready) << axis.why();
   EXPECT_TRUE(axis.port.coils[0x427]);
@@ -93,7 +32,7 @@ TEST(RegisterDeviceTest, StartsAnAxisStepByStepAndHoldsItWhereItStands) {
 }
 
 TEST(RegisterDeviceTest, MovesWithinSpeedTravelAndTime) {
-  Axis axis;
+  MakerAxis axis;
   axis.port.words[0x9001] = 5000;
   axis.cycles(20);
   axis.move(0.03);
@@ -108,7 +47,7 @@ TEST(RegisterDeviceTest, MovesWithinSpeedTravelAndTime) {
 }
 
 TEST(RegisterDeviceTest, AnExpiredCommandStopsIt) {
-  Axis axis;
+  MakerAxis axis;
   axis.cycles(20);
   axis.move(-0.1);
   axis.cycles(10);
@@ -122,7 +61,7 @@ TEST(RegisterDeviceTest, AnExpiredCommandStopsIt) {
 
 TEST(RegisterDeviceTest, WhoIsLeftAloneStopsWithinItsTravel) {
   for (int moving = 1; moving < 200; ++moving) {
-    Axis axis;
+    MakerAxis axis;
     axis.port.words[0x9001] = 5000;
     axis.cycles(20);
     axis.move(0.1);
@@ -133,29 +72,8 @@ TEST(RegisterDeviceTest, WhoIsLeftAloneStopsWithinItsTravel) {
   }
 }
 
-TEST(RegisterDeviceTest, ComesBackWithoutAJump) {
-  Axis axis;
-  axis.port.words[0x9001] = 5000;
-  axis.cycles(20);
-  axis.move(0.02);
-  axis.cycles(10);
-  axis.port.fault = PortFault::Lost;
-  axis.port.openable = false;
-  ASSERT_EQ(axis.cycles(100).state, DeviceState::Absent);
-  EXPECT_EQ(axis.why(), "cannot be opened");
-  EXPECT_LT(axis.port.opened, 8) << "tried now and then";
-  axis.port.words[0x9001] = 6000;
-  axis.port.fault = PortFault::None;
-  axis.port.openable = true;
-  axis.fastest = 0;
-  axis.cycles(200);
-  EXPECT_EQ(axis.reading.state, DeviceState::Ready) << axis.why();
-  EXPECT_NEAR(axis.reading.position, 0.02, 1e-5);
-  EXPECT_LE(axis.fastest, 0.1 + 0.002);
-}
-
 TEST(RegisterDeviceTest, AnEmergencyStopIsAFaultUntilRestarted) {
-  Axis axis;
+  MakerAxis axis;
   axis.cycles(20);
   axis.port.words[0x9005] = 0xB010;
   ASSERT_EQ(axis.cycles(1).state, DeviceState::Fault);
@@ -167,48 +85,29 @@ TEST(RegisterDeviceTest, AnEmergencyStopIsAFaultUntilRestarted) {
   EXPECT_EQ(axis.cycles(30).state, DeviceState::Ready) << axis.why();
 }
 
-TEST(RegisterDeviceTest, ALineThatWasLostFreesItOfNoFault) {
-  Axis axis;
-  axis.cycles(20);
-  axis.port.words[0x9005] = 0xB010;
-  ASSERT_EQ(axis.cycles(1).state, DeviceState::Fault);
-  axis.port.fault = PortFault::Lost;
-  ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
-  axis.port.fault = PortFault::None;
-  axis.port.words[0x9005] = 0x3010;
-  axis.port.coils.clear();
-  ASSERT_EQ(axis.cycles(100).state, DeviceState::Fault);
-  EXPECT_EQ(axis.why(), "the device reports: emergency stop");
-  EXPECT_FALSE(axis.port.coils.contains(0x403)) << "its servo is not switched on";
-  ++axis.command.asks.restarts;
-  EXPECT_EQ(axis.cycles(30).state, DeviceState::Ready) << axis.why();
+TEST(RegisterDeviceTest, AWeightWithoutASignHasItsSignInABit) {
+  MakerAxis cell{"tlb4"};
+  ASSERT_EQ(cell.cycles(40).state, DeviceState::Ready) << cell.why();
+  cell.port.words[8] = 30;
+  EXPECT_NEAR(cell.cycles(1).force, 0.3, 1e-9);
+  cell.port.words[6] = 0x0080;
+  EXPECT_NEAR(cell.cycles(1).force, -0.3, 1e-9);
+  cell.port.words[6] = 0x0001;
+  EXPECT_EQ(cell.cycles(1).state, DeviceState::Fault);
+  EXPECT_EQ(cell.why(), "the device reports: load cell error");
 }
 
-TEST(RegisterDeviceTest, WhatComesBackByItselfDoesNotHomeByItself) {
-  DeviceInstallation built_in = Axis::installation();
-  built_in.may_home = true;
-  Axis axis{"iai", built_in};
-  ASSERT_EQ(axis.cycles(20).state, DeviceState::Ready);
-  ++axis.command.asks.restarts;  // meant for the site
-  axis.port.fault = PortFault::Lost;
-  ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
-  axis.port.fault = PortFault::None;
-  axis.port.words[0x9005] = 0x3000;  // its power was lost, and its home with it
-  ASSERT_EQ(axis.cycles(100).state, DeviceState::Fault);
-  EXPECT_EQ(axis.why(), "it must move, which begins with a reset: home");
-  EXPECT_FALSE(axis.port.coils.contains(0x40B));
-  ++axis.command.asks.restarts;
-  axis.cycles(20);
-  EXPECT_TRUE(axis.port.coils[0x40B]);
-  axis.port.fault = PortFault::Lost;  // on its way home
-  ASSERT_EQ(axis.cycles(5).state, DeviceState::Absent);
-  axis.port.fault = PortFault::None;
-  axis.port.words[0x9005] = 0x3010;
-  EXPECT_EQ(axis.cycles(100).state, DeviceState::Ready) << axis.why();
+TEST(RegisterDeviceTest, TheDriveIsToldTheCeilingOfItsForce) {
+  DeviceInstallation built_in = MakerAxis::installation();
+  built_in.force_limit = 70;
+  MakerAxis axis{"orca", built_in};
+  ASSERT_EQ(axis.cycles(60).state, DeviceState::Ready) << axis.why();
+  EXPECT_EQ(axis.port.words[140], 70'000 - 65'536) << "mN, the low word first";
+  EXPECT_EQ(axis.port.words[141], 1);
 }
 
 TEST(RegisterDeviceTest, HomesOnlyWhereItMay) {
-  Axis axis;
+  MakerAxis axis;
   axis.port.words[0x9005] = 0x3000;
   ASSERT_EQ(axis.cycles(30).state, DeviceState::Fault);
   EXPECT_THAT(axis.why(), HasSubstr("may_home does not permit: home"));
@@ -216,7 +115,7 @@ TEST(RegisterDeviceTest, HomesOnlyWhereItMay) {
 }
 
 TEST(RegisterDeviceTest, AFewLostAnswersAreNoFaultAndSilenceIs) {
-  Axis axis;
+  MakerAxis axis;
   axis.cycles(20);
   axis.port.fault = PortFault::NoReply;
   EXPECT_EQ(axis.cycles(1).state, DeviceState::Ready);
@@ -226,7 +125,7 @@ TEST(RegisterDeviceTest, AFewLostAnswersAreNoFaultAndSilenceIs) {
   EXPECT_EQ(axis.cycles(10).state, DeviceState::Absent);
   EXPECT_EQ(axis.why(), "broken frame");
   EXPECT_GE(axis.reading.failures, 3U);
-  Axis silent;
+  MakerAxis silent;
   silent.cycles(20);
   silent.port.fault = PortFault::NoReply;
   EXPECT_EQ(silent.cycles(12).state, DeviceState::Absent);
@@ -234,14 +133,14 @@ TEST(RegisterDeviceTest, AFewLostAnswersAreNoFaultAndSilenceIs) {
 }
 
 TEST(RegisterDeviceTest, ARefusalIsAFaultAtOnce) {
-  Axis axis;
+  MakerAxis axis;
   axis.port.fault = PortFault::Refused;
   EXPECT_EQ(axis.cycles(2).state, DeviceState::Fault);
   EXPECT_EQ(axis.why(), "request refused");
 }
 
 TEST(RegisterDeviceTest, APositionThatJumpsIsAFault) {
-  Axis axis;
+  MakerAxis axis;
   axis.port.words[0x9001] = 5000;
   axis.cycles(20);
   axis.port.words[0x9001] = 9000;
@@ -250,7 +149,7 @@ TEST(RegisterDeviceTest, APositionThatJumpsIsAFault) {
 }
 
 TEST(RegisterDeviceTest, OneRequestMovesAndReadsWhereTheDeviceCan) {
-  Axis axis{"orca"};
+  MakerAxis axis{"orca"};
   axis.port.words[342] = 50'000;
   axis.port.words[348] = 20;
   ASSERT_EQ(axis.cycles(60).state, DeviceState::Ready) << axis.why();
@@ -268,7 +167,7 @@ TEST(RegisterDeviceTest, OneRequestMovesAndReadsWhereTheDeviceCan) {
 }
 
 TEST(RegisterDeviceTest, ATouchedSensorIsNotTared) {
-  Axis cell{"tlb4"};
+  MakerAxis cell{"tlb4"};
   cell.port.words[8] = 100;  // 1 N
   EXPECT_EQ(cell.cycles(40).state, DeviceState::Fault);
   EXPECT_THAT(cell.why(), HasSubstr("something touches"));
@@ -278,7 +177,7 @@ TEST(RegisterDeviceTest, ATouchedSensorIsNotTared) {
 }
 
 TEST(RegisterDeviceTest, AFloatThatIsNoNumberIsAFault) {
-  Axis cell{"z-sg"};
+  MakerAxis cell{"z-sg"};
   ASSERT_EQ(cell.cycles(20).state, DeviceState::Ready) << cell.why();
   cell.port.words[63] = 0x7FC0;
   EXPECT_EQ(cell.cycles(1).state, DeviceState::Fault);
@@ -286,7 +185,7 @@ TEST(RegisterDeviceTest, AFloatThatIsNoNumberIsAFault) {
 }
 
 TEST(RegisterDeviceTest, ATareThatIsAskedForKeepsTheOldOneWhereSomethingTouches) {
-  Axis cell{"tlb4"};
+  MakerAxis cell{"tlb4"};
   ASSERT_EQ(cell.cycles(40).state, DeviceState::Ready) << cell.why();
   cell.port.words[8] = 5;
   ++cell.command.asks.tares;
@@ -303,7 +202,7 @@ TEST(RegisterDeviceTest, ATareThatIsAskedForKeepsTheOldOneWhereSomethingTouches)
 }
 
 TEST(RegisterDeviceTest, ATareThatTheTipOrAGapOvertakesIsGivenUp) {
-  Axis cell{"tlb4"};
+  MakerAxis cell{"tlb4"};
   ASSERT_EQ(cell.cycles(40).state, DeviceState::Ready) << cell.why();
   ++cell.command.asks.tares;
   cell.cycles(5);
@@ -327,25 +226,12 @@ TEST(RegisterDeviceTest, ATareThatTheTipOrAGapOvertakesIsGivenUp) {
 }
 
 TEST(RegisterDeviceTest, ATareOfADeviceThatIsNotReadyIsRefused) {
-  Axis cell{"tlb4"};
+  MakerAxis cell{"tlb4"};
   cell.port.openable = false;
   ++cell.command.asks.tares;
   EXPECT_EQ(cell.cycles(1).tare.refused, 1U);
   EXPECT_EQ(cell.reading.tare.why, "the sensor is not ready");
   EXPECT_EQ(cell.cycles(5).tare.refused, 1U) << "once";
-}
-
-TEST(DeviceFlawTest, NamesWhatIsNotRead) {
-  DeviceProfile profile = find_profile("iai").value();
-  EXPECT_FALSE(flaw_of(profile, {}));
-  profile.position->address = 0x9009;
-  EXPECT_THAT(flaw_of(profile, {}).value_or(""), HasSubstr("position"));
-  profile = find_profile("iai").value();
-  profile.healthy[0].address = 7;
-  EXPECT_THAT(flaw_of(profile, {}).value_or(""), HasSubstr("state"));
-  profile = find_profile("iai").value();
-  profile.read_count = 126;
-  EXPECT_TRUE(flaw_of(profile, {}));
 }
 
 TEST(ProfileTextsTest, ListsWhatIsBuiltIn) {

@@ -2,6 +2,7 @@
 // axis goes on. The rows stand in docs/hardware.md, and are measured here in virtual time.
 #include <cstdio>
 #include <functional>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -143,6 +144,39 @@ TEST_P(RegisterFaultTest, EachEndsWhereTheTableSaysInTimeAndWithoutARunaway) {
         device.profile().name, fault.name, in_words(fault.state), after_ms, beyond.data());
     EXPECT_TRUE(is_documented(row)) << row;
   }
+}
+
+TEST_P(RegisterFaultTest, EveryThirdAnswerIsEnoughToMoveAndToFeel) {
+  for (const PortFault bad :
+       {PortFault::NoReply, PortFault::BrokenFrame, PortFault::WrongStation}) {
+    DriveModel device{GetParam()};
+    ASSERT_EQ(device.cycles(60).state, DeviceState::Ready) << device.why();
+    device.move(0.04);
+    double before = device.place();
+    const std::uint64_t heard = device.reading.number;
+    for (int i = 0; i < 450; ++i) {
+      device.port.fault = i % 3 != 0 ? bad : PortFault::None;
+      device.cycles(1);
+      const double most = DriveModel::kSpeed * seconds(device.profile().period) + 1e-4;
+      ASSERT_LE(std::abs(std::exchange(before, device.place()) - device.place()), most);
+    }
+    EXPECT_EQ(device.reading.state, DeviceState::Ready) << device.why();
+    EXPECT_GE(device.reading.failures, 300U);
+    EXPECT_GE(device.reading.number - heard, 150U);
+    EXPECT_NEAR(device.place(), device.axis() ? 0.04 : 0, 1e-4);
+  }
+}
+
+TEST_P(RegisterFaultTest, APlaceThatJumpsToAndFroAtTheLimitIsFound) {
+  DriveModel device{GetParam()};
+  if (!device.axis()) return;
+  ASSERT_EQ(device.cycles(60).state, DeviceState::Ready) << device.why();
+  const double most = 3 * DriveModel::kSpeed * seconds(device.profile().period) + 1.9e-3;
+  device.offset = most;
+  EXPECT_EQ(device.cycles(1).state, DeviceState::Ready) << "one late stamp might do that";
+  device.offset = 0;
+  EXPECT_EQ(device.cycles(1).state, DeviceState::Fault);
+  EXPECT_EQ(device.why(), "the position jumped");
 }
 
 TEST_P(RegisterFaultTest, NoSequenceOfThemMakesItJumpOrLeaveItsTravel) {

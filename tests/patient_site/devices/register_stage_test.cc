@@ -8,7 +8,7 @@
 #include "patient_site/devices/device_plans.h"
 #include "patient_site/devices/device_rig.h"
 #include "patient_site/settings_devices.h"
-#include "tests/patient_site/devices/fake_registers.h"
+#include "tests/common/io/device/fake_registers.h"
 
 namespace palp::patient {
 namespace {

@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "common/core/time.h"
 #include "common/io/device/register_port.h"
 
-namespace palp::patient {
+namespace palp {
 
 /// A clock that a test turns; each look takes no time.
 class TestClock final : public Clock {
@@ -23,7 +24,8 @@ class FakeRegisters final : public io::RegisterPort {
  public:
   std::map<std::uint16_t, std::uint16_t> words;
   std::map<std::uint16_t, bool> coils;
-  io::PortFault fault{};  ///< of every transaction
+  io::PortFault fault{};                   ///< of every transaction
+  std::optional<std::uint16_t> deaf_at{};  ///< readings from there are not answered
   bool openable{true};
   int opened{};
   int writes{};
@@ -36,6 +38,7 @@ class FakeRegisters final : public io::RegisterPort {
   void close() override {}
   io::PortFault read(std::uint16_t address, std::span<std::uint16_t> out, bool /*input*/) override {
     if (fault != io::PortFault::None) return fault;
+    if (address == deaf_at) return io::PortFault::NoReply;
     for (auto& word : out) word = words[address++];
     return fault;
   }
@@ -65,4 +68,4 @@ class FakeRegisters final : public io::RegisterPort {
   }
 };
 
-}  // namespace palp::patient
+}  // namespace palp
