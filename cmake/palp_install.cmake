@@ -8,7 +8,8 @@ set(PALP_PROGRAMS
     palp-review
     palp-netem
     palp-fem
-    palp-relay)
+    palp-relay
+    palp-study)
 install(TARGETS ${PALP_PROGRAMS} RUNTIME)
 
 set(data ${CMAKE_INSTALL_DATADIR}/palp)

@@ -31,4 +31,4 @@ _palp() {
   __ltrim_colon_completions "$current" 2>/dev/null
 }
 complete -o default -F _palp palp-surgeon palp-patient palp-lab palp-review palp-netem palp-fem \
-  palp-relay
+  palp-relay palp-study

@@ -1,0 +1,104 @@
+#include "study/answers_file.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+
+#include "common/config/number.h"
+#include "common/core/byte_order_mark.h"
+#include "common/core/printable.h"
+
+namespace palp::study {
+namespace {
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> out;
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = line.find('\t', begin);
+    out.push_back(line.substr(begin, end - begin));
+    if (end == std::string_view::npos) return out;
+    begin = end + 1;
+  }
+}
+
+/// Takes the first line off, without its end.
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
+struct Columns {
+  std::size_t count{};
+  std::size_t level{};
+  std::size_t correct{};
+  std::optional<std::size_t> condition;
+  std::optional<std::size_t> kind;
+};
+
+Result<Columns> columns_of(std::string_view header, const std::string& name) {
+  const auto names = split(header);
+  const auto find = [&](std::string_view wanted) -> std::optional<std::size_t> {
+    const auto at = std::ranges::find(names, wanted);
+    if (at == names.end()) return std::nullopt;
+    return static_cast<std::size_t>(at - names.begin());
+  };
+  const auto level = find("level_ln");
+  const auto correct = find("correct");
+  if (!level || !correct) {
+    return fail(name + " has no column '" + (level ? "correct" : "level_ln") +
+                "' in its first line; columns are separated by tabs");
+  }
+  for (const std::string_view one : {"level_ln", "correct", "condition", "trial_type"}) {
+    if (std::ranges::count(names, one) > 1) {
+      return fail(name + " names the column '" + std::string{one} + "' twice");
+    }
+  }
+  return Columns{names.size(), *level, *correct, find("condition"), find("trial_type")};
+}
+
+}  // namespace
+
+Result<std::vector<ConditionAnswers>> parse_answers(std::string_view text,
+                                                    const std::string& name) {
+  text = without_byte_order_mark(text);
+  const auto columns = columns_of(take_line(text), name);
+  if (!columns) return tl::unexpected(columns.error());
+  std::vector<ConditionAnswers> out;
+  for (std::size_t number = 2; !text.empty(); ++number) {
+    const std::string_view line = take_line(text);
+    if (line.empty()) continue;
+    const std::string where = name + ", line " + std::to_string(number);
+    const auto cells = split(line);
+    if (cells.size() != columns->count) {
+      return fail(where + " has " + std::to_string(cells.size()) + " cells, expected " +
+                  std::to_string(columns->count));
+    }
+    if (columns->kind && cells[*columns->kind] == "practice") continue;
+    const std::string_view correct = cells[columns->correct];
+    if (correct == "n/a") continue;
+    const auto level = config::parse_number(cells[columns->level]);
+    if (!level) {
+      return fail(where + ": level_ln is \"" + printable(cells[columns->level]) +
+                  "\", expected a number");
+    }
+    if (correct != "0" && correct != "1") {
+      return fail(where + ": correct is \"" + printable(correct) + "\", expected 0, 1 or n/a");
+    }
+    const std::string_view condition =
+        columns->condition ? cells[*columns->condition] : std::string_view{};
+    auto group = std::ranges::find(out, condition, &ConditionAnswers::condition);
+    if (group == out.end()) {
+      out.push_back({std::string{condition}, {}});
+      group = std::prev(out.end());
+    }
+    group->answers.push_back({*level, correct == "1" ? std::size_t{1} : 0, 1});
+  }
+  if (out.empty()) return fail(name + " holds no answered trial");
+  for (ConditionAnswers& one : out) one.answers = pooled(one.answers);
+  return out;
+}
+
+}  // namespace palp::study

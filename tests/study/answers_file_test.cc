@@ -1,0 +1,52 @@
+#include "study/answers_file.h"
+
+#include <gtest/gtest.h>
+
+namespace palp::study {
+namespace {
+
+constexpr std::string_view kFile =
+    "onset\ttrial_type\tcondition\tlevel_ln\tcorrect\n"
+    "1\tpractice\tA\t1\t1\n"
+    "2\ttrial\tA\t0.2\t1\n"
+    "3\ttrial\tB\t0.2\t0\n"
+    "4\ttrial\tA\t0.2\t0\r\n"
+    "5\tcatch\tA\t0.9\t1\n"
+    "6\ttrial\tB\t0.3\tn/a\n";
+
+TEST(AnswersFileTest, PoolsTheTrialsOfEachConditionWithoutPracticeAndMissingAnswers) {
+  const auto found = parse_answers(kFile, "f.tsv");
+  ASSERT_TRUE(found) << found.error().text;
+  ASSERT_EQ(found->size(), 2U);
+  EXPECT_EQ((*found)[0].condition, "A");
+  ASSERT_EQ((*found)[0].answers.size(), 2U);
+  EXPECT_EQ((*found)[0].answers[0].trials, 2U);
+  EXPECT_EQ((*found)[0].answers[0].yes, 1U);
+  EXPECT_EQ((*found)[0].answers[1].level, 0.9);
+  ASSERT_EQ((*found)[1].answers.size(), 1U);
+  EXPECT_EQ((*found)[1].answers[0].yes, 0U);
+}
+
+TEST(AnswersFileTest, ReadsAFileWithoutConditionsAndWithAByteOrderMark) {
+  const auto found = parse_answers("\xef\xbb\xbflevel_ln\tcorrect\n0.1\t1\n", "f.tsv");
+  ASSERT_TRUE(found) << found.error().text;
+  EXPECT_EQ(found->front().condition, "");
+}
+
+TEST(AnswersFileTest, SaysInOneSentenceWhatIsWrongAndWhere) {
+  const auto sentence = [](std::string_view text) {
+    return parse_answers(text, "f.tsv").error().text;
+  };
+  EXPECT_EQ(sentence("level_ln,correct\n"),
+            "f.tsv has no column 'level_ln' in its first line; columns are separated by tabs");
+  EXPECT_EQ(sentence("level_ln\tcorrect\n0,1\t1\n"),
+            "f.tsv, line 2: level_ln is \"0,1\", expected a number");
+  EXPECT_EQ(sentence("level_ln\tcorrect\n0.1\tyes\n"),
+            "f.tsv, line 2: correct is \"yes\", expected 0, 1 or n/a");
+  EXPECT_EQ(sentence("level_ln\tcorrect\n\n0.1\n"), "f.tsv, line 3 has 1 cells, expected 2");
+  EXPECT_EQ(sentence("level_ln\tcorrect\tcorrect\n"), "f.tsv names the column 'correct' twice");
+  EXPECT_EQ(sentence("level_ln\tcorrect\n"), "f.tsv holds no answered trial");
+}
+
+}  // namespace
+}  // namespace palp::study
