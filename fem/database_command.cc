@@ -1,16 +1,10 @@
 #include "fem/database_command.h"
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <optional>
-#include <set>
-#include <tuple>
 
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "common/config/json.h"
@@ -22,6 +16,7 @@
 #include "common/core/whole_file.h"
 #include "fem/database_builder.h"
 #include "fem/database_grid.h"
+#include "fem/database_processes.h"
 #include "fem/depth_table.h"
 #include "fem/interpolation_check.h"
 #include "fem/shape_builder.h"
@@ -34,16 +29,7 @@ constexpr const char* kSchema = "palp.depth-database/1";
 using config::ExitCode;
 using config::ExitStatus;
 
-constexpr int kSaveEvery = 4;  // cells
-constexpr int kStartsMax = 3;  // of one process
-constexpr int kRefused = 1;    // exit codes of such a process
-constexpr int kStopped = 2;
 constexpr std::uint64_t kCheckSeed = 1;
-
-struct Shard {
-  std::size_t index{};  ///< from 0
-  std::size_t count{1};
-};
 
 ExitStatus bad_input(const std::string& sentence) {
   return {ExitCode::BadInput, "palp-fem: " + sentence};
@@ -67,42 +53,14 @@ Result<Shard> parse_shard(const std::string& text) {
   return Shard{static_cast<std::size_t>(*index - 1), static_cast<std::size_t>(*count)};
 }
 
-Result<DepthTable> load(const std::string& path) {
-  const auto bytes = read_whole_file(path);
-  if (!bytes) return tl::unexpected<Error>(bytes.error());
-  auto table = parse_table(*bytes);
-  if (!table) return fail(path + ": " + table.error().text);
-  return table;
-}
-
-auto place(const GridCell& cell) { return std::tuple{cell.shape, cell.depth, cell.radius}; }
-
-/// For a person: how far, how fast, how long still.
-class ShownProgress {
- public:
-  ShownProgress(std::size_t before, std::size_t count, const std::function<double()>& wall)
-      : wall_{wall}, before_{before}, count_{count}, began_{wall()} {}
-
-  void show(std::size_t done) const {
-    std::fprintf(stderr, "\rpalp-fem: %3zu %% of the grid", 100 * done / count_);
-    const double each = (wall_() - began_) / static_cast<double>(done - before_);
-    std::fprintf(stderr,
-                 ", %.1f places a minute, %.0f s left\x1b[K",
-                 60 / std::max(each, 1e-6),
-                 each * static_cast<double>(count_ - done));
-  }
-
- private:
-  const std::function<double()>& wall_;
-  std::size_t before_;  ///< places that were there
-  std::size_t count_;
-  double began_;  ///< [s]
-};
-
 Detail detail_of(const DatabaseFlags& flags) {
   return flags.accuracy == "coarse" ? Detail::Coarse
          : flags.accuracy == "fine" ? Detail::Fine
                                     : Detail::Normal;
+}
+
+SolvingPlan solving_plan(const DatabaseFlags& flags) {
+  return {flags.out, flags.cores, member_mesh(detail_of(flags)), flags.wall};
 }
 
 /// The grid that was asked for, if it can be solved.
@@ -123,43 +81,6 @@ Result<DepthGrid> asked_grid(const DatabaseFlags& flags) {
   return grid;
 }
 
-/// One process: the cells of its share that `table` lacks. `wall`: null shows no progress.
-Result<void> solve_share(DepthTable table,
-                         const Shard& shard,
-                         const std::string& path,
-                         Accuracy mesh,
-                         const std::function<double()>* wall) {
-  std::set<std::tuple<InclusionShape, std::uint32_t, std::uint32_t>> have;
-  for (const DepthMember& member : table.members) {
-    have.insert({member.shape, member.depth, member.radius});
-  }
-  std::vector<GridCell> mine;
-  const std::vector<GridCell> cells = cells_of(table.grid);
-  for (std::size_t i = shard.index; i < cells.size(); i += shard.count) mine.push_back(cells[i]);
-  const auto missing = std::stable_partition(
-      mine.begin(), mine.end(), [&](const auto& cell) { return have.contains(place(cell)); });
-  const auto first = static_cast<std::size_t>(missing - mine.begin());
-  std::optional<ShownProgress> shown;
-  if (wall != nullptr) shown.emplace(first, mine.size(), *wall);
-  int unsaved = 0;
-  for (std::size_t i = first; i < mine.size(); ++i) {
-    for (DepthMember& member : solve_cell(table.grid, mine[i], mesh)) {
-      table.members.push_back(std::move(member));
-    }
-    if (shown) shown->show(i + 1);
-    if (++unsaved < kSaveEvery && i + 1 < mine.size()) continue;
-    unsaved = 0;
-    const auto written = config::write_whole_file(path, table_bytes(table));
-    if (!written) return tl::unexpected<Error>(written.error());
-  }
-  if (shown) std::fputs("\n", stderr);
-  return {};
-}
-
-std::string part_name(const std::string& out, std::size_t core) {
-  return out + ".part" + std::to_string(core);
-}
-
 /// Everything found so far: the file itself and what the processes of an earlier run left.
 Result<DepthTable> start_table(const DatabaseFlags& flags) {
   DepthTable table;
@@ -171,7 +92,7 @@ Result<DepthTable> start_table(const DatabaseFlags& flags) {
   for (std::size_t core = 0; core <= flags.cores; ++core) {
     const std::string name = core == 0 ? flags.out : part_name(flags.out, core - 1);
     if (::access(name.c_str(), F_OK) != 0) continue;
-    auto found = load(name);
+    auto found = load_table(name);
     if (!found) return found;
     if (auto merged = merge_table(table, *found); !merged) {
       return fail(name + ": " + merged.error().text + " than asked for; remove it first");
@@ -187,85 +108,6 @@ Result<DepthTable> start_table(const DatabaseFlags& flags) {
   if (!plain) return tl::unexpected<Error>(plain.error());
   table.plain = *plain;
   return table;
-}
-
-/// One share of the work, and the process that does it.
-struct Share {
-  Shard cells;
-  std::string part;
-  Accuracy mesh{};
-  const std::function<double()>* wall{};  ///< of the one that shows progress
-  pid_t process{};
-  int starts{};
-};
-
-/// Goes on from what its part file holds. Ends when its parent does, however that ends.
-[[noreturn]] void work_on(DepthTable table, const Share& share, pid_t parent) {
-  if (::prctl(PR_SET_PDEATHSIG, SIGTERM) != 0 || ::getppid() != parent) std::_Exit(kStopped);
-  if (::access(share.part.c_str(), F_OK) == 0) {
-    if (const auto part = load(share.part); part) {
-      static_cast<void>(merge_table(table, *part));
-    }
-  }
-  const auto done = solve_share(std::move(table), share.cells, share.part, share.mesh, share.wall);
-  if (!done) std::fprintf(stderr, "palp-fem: %s\n", done.error().text.c_str());
-  std::_Exit(done ? 0 : kRefused);
-}
-
-Result<void> start(const DepthTable& table, Share& share) {
-  ++share.starts;
-  const pid_t parent = ::getpid();
-  share.process = ::fork();
-  if (share.process < 0) return fail("cannot start a process for each core");
-  if (share.process == 0) work_on(table, share, parent);
-  return {};
-}
-
-std::string exit_status_of(int status) {
-  if (WIFSIGNALED(status)) {
-    const int signal = WTERMSIG(status);
-    return "was ended by signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
-  }
-  return "ended with code " + std::to_string(WEXITSTATUS(status));
-}
-
-/// A process that was ended from outside is started again; one that refuses its work is not.
-Result<void> solve_on_all_cores(const DepthTable& table,
-                                const Shard& shard,
-                                const DatabaseFlags& flags) {
-  std::vector<Share> shares;
-  for (std::size_t core = 0; core < flags.cores; ++core) {
-    shares.push_back({.cells = {shard.index + shard.count * core, shard.count * flags.cores},
-                      .part = part_name(flags.out, core),
-                      .mesh = member_mesh(detail_of(flags)),
-                      .wall = core == 0 && flags.wall ? &flags.wall : nullptr});
-    if (auto started = start(table, shares.back()); !started) return started;
-  }
-  std::string failed;
-  for (std::size_t running = shares.size(); running > 0;) {
-    int status = 0;
-    const pid_t ended = ::waitpid(-1, &status, 0);
-    if (ended < 0) return fail("lost sight of the processes; start again to go on");
-    const auto share = std::find_if(
-        shares.begin(), shares.end(), [&](const Share& one) { return one.process == ended; });
-    if (share == shares.end()) continue;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
-      --running;
-      continue;
-    }
-    const std::string sentence = "process " + std::to_string(share - shares.begin() + 1) + " of " +
-                                 std::to_string(shares.size()) + " " + exit_status_of(status);
-    const bool refused = WIFEXITED(status) && WEXITSTATUS(status) == kRefused;
-    if (!refused && share->starts < kStartsMax) {
-      std::fprintf(stderr, "\npalp-fem: %s; it is started again\n", sentence.c_str());
-      if (auto started = start(table, *share); !started) return started;
-      continue;
-    }
-    failed = sentence;
-    --running;
-  }
-  if (!failed.empty()) return fail(failed + "; what was solved is kept, start again to go on");
-  return {};
 }
 
 std::size_t wanted_members(const DepthGrid& grid) {
@@ -380,13 +222,13 @@ ExitStatus run_database(const DatabaseFlags& flags) {
     const Forecast ahead = forecast(table->grid, detail_of(flags), flags.off_axis);
     std::fprintf(stderr, "palp-fem: %s\n", forecast_text(ahead, flags.cores).c_str());
   }
-  if (const auto done = solve_on_all_cores(*table, *shard, flags); !done) {
+  if (const auto done = solve_on_all_cores(*table, *shard, solving_plan(flags)); !done) {
     return cannot_open(done.error().text);
   }
   for (std::size_t core = 0; core < flags.cores; ++core) {
     const std::string name = part_name(flags.out, core);
     if (::access(name.c_str(), F_OK) != 0) continue;
-    const auto part = load(name);
+    const auto part = load_table(name);
     if (!part) return refused(part.error());
     if (auto merged = merge_table(*table, *part); !merged) return bad_input(merged.error().text);
   }
@@ -406,7 +248,7 @@ ExitStatus run_database(const DatabaseFlags& flags) {
 ExitStatus run_merge(const DatabaseFlags& flags) {
   std::optional<DepthTable> table;
   for (const std::string& name : flags.files) {
-    auto found = load(name);
+    auto found = load_table(name);
     if (!found) return refused(found.error());
     if (!table) {
       table = std::move(*found);
@@ -431,7 +273,7 @@ ExitStatus run_merge(const DatabaseFlags& flags) {
 }
 
 ExitStatus run_info(const DatabaseFlags& flags) {
-  const auto table = load(flags.file);
+  const auto table = load_table(flags.file);
   if (!table) return refused(table.error());
   return tell(*table, flags.report);
 }

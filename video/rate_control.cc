@@ -19,15 +19,15 @@ constexpr Duration kPause = milliseconds{40};
 constexpr double kLossMax = 0.15;
 constexpr double kSpreadMuch = 1.12;    // of a frame on its way
 constexpr double kSpreadLittle = 1.05;  // likewise
-constexpr double kPaceMin = 600;   // [kbit/s]
-constexpr double kPaceMax = 9600;  // [kbit/s]
+constexpr double kPaceMin = 600;        // [kbit/s]
+constexpr double kPaceMax = 9600;       // [kbit/s]
 constexpr Duration kForgetCeiling = seconds{20};
 constexpr Duration kOffMax = seconds{60};
 constexpr Duration kOffFirst = seconds{5};
 constexpr int kCutsBeforeOff = 4;
 constexpr double kFrozenMax = 0.005;  // share of time
-constexpr double kRecovery = 0.05;     // [s], beyond a round trip
-constexpr double kFps = 30;            // [1/s]
+constexpr double kRecovery = 0.05;    // [s], beyond a round trip
+constexpr double kFps = 30;           // [1/s]
 
 /// P(more than `spare` of `count` lost).
 double chance_of_more(std::size_t count, std::size_t spare, double loss) noexcept {
@@ -97,9 +97,7 @@ int RateControl::stride() const noexcept {
   return target_ < 300 ? 2 : 1;
 }
 
-std::size_t ParityPlan::count(std::size_t data,
-                              double loss,
-                              Duration round_trip) const noexcept {
+std::size_t ParityPlan::count(std::size_t data, double loss, Duration round_trip) const noexcept {
   std::size_t count = std::min(lost_of_frame_, data + 1);
   if (loss > 0.0005) {
     const double known = std::min(0.3, loss);

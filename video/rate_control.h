@@ -60,10 +60,12 @@ class RateControl {
 class ParityPlan {
  public:
   void hear(const Report& report) noexcept { lost_of_frame_ = report.fragments_lost; }
-  /// For `data` fragments. The least with which pictures freeze for 0.5 % of the time at most, where
-  /// each frame that fails costs a round trip; or what was lost of a frame of late, if that is more:
-  /// losses come in bursts.
-  [[nodiscard]] std::size_t count(std::size_t data, double loss, Duration round_trip) const noexcept;
+  /// For `data` fragments. The least with which pictures freeze for 0.5 % of the time at most,
+  /// where each frame that fails costs a round trip; or what was lost of a frame of late, if that
+  /// is more: losses come in bursts.
+  [[nodiscard]] std::size_t count(std::size_t data,
+                                  double loss,
+                                  Duration round_trip) const noexcept;
 
  private:
   std::size_t lost_of_frame_{};

@@ -105,6 +105,7 @@ const std::vector<Arrow>& arrows() {
       {"fem/main.cc",
        {"common/config", "common/io/process/parallel.h", "common/io/process/process_time.h"}},
       {"fem/*_command.*", {"common/config", "common/plot"}},
+      {"fem/database_processes.cc", {"common/config/report.h"}},
       // How far off the database is between its points: read as the estimators read it.
       {"fem/interpolation_check.cc", {"depth/depth_database.h"}},
       {"fem/*", {}},

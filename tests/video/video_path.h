@@ -33,7 +33,7 @@ struct VideoPathResult {
   double fps{};
   double wire_kbps{};     ///< [kbit/s], with heads
   std::uint64_t wrong{};  ///< frames shown that could not be decoded rightly
-  double off_share{};  ///< of time: video has stopped, for force
+  double off_share{};     ///< of time: video has stopped, for force
   SenderCounts sent;
   ReceiverCounts received;
 };

@@ -30,14 +30,15 @@ TEST_P(ForceBesideVideo, ComesHardlyLaterAndNoneIsLost) {
 
 // At 3 Mbit/s 8 ms are wanted; with the true encoder and the drawn scene, which needs less than its
 // rate, video_bench has 4.4.
-INSTANTIATE_TEST_SUITE_P(
-    Bottlenecks,
-    ForceBesideVideo,
-    ::testing::Values(
-        Bottleneck{10, 1.5}, Bottleneck{5, 4}, Bottleneck{3, 12}, Bottleneck{2.5, 15}),
-    [](const auto& one) {
-      return "Kbit" + std::to_string(static_cast<int>(one.param.mbps * 1000));
-    });
+INSTANTIATE_TEST_SUITE_P(Bottlenecks,
+                         ForceBesideVideo,
+                         ::testing::Values(Bottleneck{10, 1.5},
+                                           Bottleneck{5, 4},
+                                           Bottleneck{3, 12},
+                                           Bottleneck{2.5, 15}),
+                         [](const auto& one) {
+                           return "Kbit" + std::to_string(static_cast<int>(one.param.mbps * 1000));
+                         });
 
 TEST(VideoPathTest, WithoutControlForceWouldStandInItsQueue) {
   VideoPathSetup setup = video_path("", kOneWay, 2.5);

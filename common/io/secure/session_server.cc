@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <deque>
 #include <exception>
 #include <span>
@@ -258,11 +257,9 @@ void SessionServer::Io::send(std::span<const std::byte> datagram, const Endpoint
 /// A session that works is not disturbed with what the relay says.
 void SessionServer::Io::keep_seat() {
   if (!relay_) return;
-  using SessionIs = RelayMember::SessionIs;
+  using enum RelayMember::SessionIs;
   const bool in_session = present_.session_id != 0;
-  const SessionIs session = !in_session                             ? SessionIs::None
-                            : desk_.link().state == LinkState::Live ? SessionIs::Live
-                                                                    : SessionIs::Silent;
+  const auto session = !in_session ? None : desk_.link().state == LinkState::Live ? Live : Silent;
   if (const auto message = relay_->tick(clock_.now(), session)) send(*message, relay_->relay());
   const auto news = relay_->take_news();
   if (!news || in_session) return;

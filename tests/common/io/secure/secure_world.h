@@ -282,4 +282,18 @@ class World {
   std::uint64_t started_{};
 };
 
+/// Whether a sealed datagram is a question about a path, or the answer to one.
+inline bool is_path(std::span<const std::byte> bytes) {
+  const auto header = link::parse_clear_part(bytes);
+  return header && header->type == link::PacketType::Path;
+}
+
+/// A session in which the surgeon is behind something that changes addresses, or not; lives after.
+inline void begin(World& world, bool translated) {
+  world.way = std::chrono::milliseconds{25};
+  world.surgeon->session_endpoint.set_own_address(translated ? *resolve_endpoint("10.0.0.7:1000")
+                                                             : kSurgeonAt);
+  world.run(std::chrono::seconds{2});
+}
+
 }  // namespace palp::io::test
