@@ -18,6 +18,9 @@ bool of_no_tick(const Record& record) {
          std::holds_alternative<PlantTruth>(record);
 }
 
+/// No site makes more in one tick; a file may hold any number.
+constexpr std::size_t kTickRecordsMax = 4096;
+
 std::uint64_t torn_in(const record::SessionReader& reader) {
   return reader.report().chunks_damaged + reader.missing();
 }
@@ -32,6 +35,10 @@ std::optional<LoggedTick> LoggedTicks::next() {
     if (of_no_tick(entry->record)) continue;
     if (const auto* status = std::get_if<LinkStatus>(&entry->record)) {
       dropped_ = status->records_dropped;
+    }
+    if (tick.records.size() == kTickRecordsMax) {
+      tick = {};
+      ++damaged_;
     }
     tick.add(entry->record);
     if (!tick.heard) continue;

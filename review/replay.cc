@@ -13,6 +13,7 @@
 #include "common/record/session_reader.h"
 #include "review/logged_ticks.h"
 #include "review/record_comparison.h"
+#include "review/site_data.h"
 
 namespace palp::review {
 namespace {
@@ -47,6 +48,10 @@ tl::unexpected<Error> lost(std::uint64_t records, const LoggedTick& tick) {
                           " s lies behind them: a site is done again only from all of its ticks"));
 }
 
+tl::unexpected<Error> nothing() {
+  return fail("the file holds no tick with all that it was given");
+}
+
 using Estimates = std::map<std::uint32_t, DepthEstimate>;
 
 Estimates estimates_of(const RunBytes& files) {
@@ -54,9 +59,9 @@ Estimates estimates_of(const RunBytes& files) {
   for (const record::FileBytes& file : files) {
     record::SessionReader reader{file};
     while (const auto entry = reader.next()) {
-      if (const auto* estimate = std::get_if<DepthEstimate>(&entry->record)) {
+      const auto* estimate = std::get_if<DepthEstimate>(&entry->record);
+      if (estimate != nullptr && found.size() < kListMax)
         found.emplace(estimate->number, *estimate);
-      }
     }
   }
   return found;
@@ -237,6 +242,7 @@ Result<ReplayReport> replay_surgeon(const RunBytes& files,
     if (const auto records = ticks.dropped_up_to_the_next_status()) return lost(records, *tick);
     break;
   }
+  if (report.ticks == 0) return nothing();
   report.lack = ticks.lack();
   return report;
 }
@@ -268,6 +274,7 @@ Result<ReplayReport> replay_patient(const RunBytes& files, const PatientParts& p
     report.difference = comparison.compare({logged->second}, {*run.estimate()}, run.began_at());
     if (!report.difference.empty()) break;
   }
+  if (report.ticks == 0) return nothing();
   report.lack = run.lack();
   // A program that is killed has no time for its last one.
   const bool whole = report.difference.empty() && report.lack.empty();
@@ -303,6 +310,7 @@ Result<WhatIf> what_if_patient(const RunBytes& files, const PatientParts& parts)
     report.target_max = std::max(report.target_max, std::abs(apart));
     ++both;
   }
+  if (report.ticks == 0) return nothing();
   if (both > 0) report.target_rms = std::sqrt(square / static_cast<double>(both));
   report.estimates.reserve(estimates.size());
   for (const auto& [number, one] : estimates) report.estimates.push_back(one);

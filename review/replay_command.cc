@@ -11,6 +11,7 @@
 #include "judge/depth_statement.h"
 #include "patient_site/settings.h"
 #include "patient_site/tissue_record.h"
+#include "review/site_data.h"
 #include "review/text.h"
 #include "surgeon_site/settings.h"
 
@@ -44,7 +45,7 @@ Result<FileFacts> facts_of_file(const record::FileBytes& file) {
   FileFacts facts{.site = entry("site"),
                   .number = entry("file_number"),
                   .run = entry("run_began_utc"),
-                  .settings = std::string{reader.attachment("config.textproto").value_or("")},
+                  .settings = text_of(reader, "config.textproto").value_or(""),
                   .travel_max = entry(patient::kTravelMaxKey),
                   .sensor_stale = entry(patient::kSensorStaleKey)};
   if (facts.site != "surgeon" && facts.site != "patient") {

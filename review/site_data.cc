@@ -15,9 +15,6 @@
 namespace palp::review {
 namespace {
 
-/// [bytes], a longer text is none of ours and is not read.
-constexpr std::size_t kTextMax = std::size_t{4} << 20U;
-
 template <class T>
 void keep(std::vector<T>& list, const T& one) {
   if (list.size() < kListMax) list.push_back(one);
@@ -77,14 +74,14 @@ class Collector {
   std::optional<TimePoint> last_tick_;
 };
 
-/// Of an attachment; nothing: there is none, or it is too long.
+}  // namespace
+
 std::optional<std::string> text_of(const record::SessionReader& reader, const char* name) {
+  constexpr std::size_t kTextMax = std::size_t{4} << 20U;  // [bytes]
   const auto text = reader.attachment(name);
   if (!text || text->size() > kTextMax) return std::nullopt;
   return std::string{*text};
 }
-
-}  // namespace
 
 std::optional<std::string> SiteData::entry(const std::string& key) const {
   const auto found = std::find_if(

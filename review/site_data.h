@@ -82,6 +82,10 @@ struct SiteData {
 /// [m], where the patient's surface lies: as the file says, else as the strokes found it.
 [[nodiscard]] double surface_of(const SiteData& patient);
 
+/// An attachment; nothing: there is none, or it is longer than any of ours.
+[[nodiscard]] std::optional<std::string> text_of(const record::SessionReader& reader,
+                                                 const char* name);
+
 /// Fails if the file cannot be opened, is none, or is the other site's.
 [[nodiscard]] Result<SiteData> load_site(const std::string& path, link::Role site);
 [[nodiscard]] Result<SiteData> load_site(const record::FileBytes& file,

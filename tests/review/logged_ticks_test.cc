@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/record/session_writer.h"
 #include "tests/review/lab_files.h"
 
 namespace palp::review {
@@ -28,6 +29,24 @@ TEST(LoggedTicksTest, FilesOfARunFollowEachOther) {
   std::size_t count = 0;
   while (ticks.next()) ++count;
   EXPECT_EQ(count, 200U);
+}
+
+TEST(LoggedTicksTest, ATickOfMoreRecordsThanAnySiteMakesIsDamage) {
+  const auto torn = [](int notes) {
+    record::MemorySink sink;
+    {
+      record::SessionWriter writer{sink, {.site = link::Role::Surgeon}};
+      for (int k = 0; k < notes; ++k) writer.write(Note{.code = 36});
+      writer.write(LinkHeard{});
+    }
+    const RunBytes bytes{sink.bytes()};
+    LoggedTicks ticks{bytes};
+    const auto tick = ticks.next();
+    EXPECT_LE(tick->records.size(), 4096U);
+    return ticks.damaged() > 0;
+  };
+  EXPECT_FALSE(torn(4000));
+  EXPECT_TRUE(torn(5000));
 }
 
 }  // namespace

@@ -208,9 +208,7 @@ struct Looked {
 
 /// All numbers of the lab's report and of the review's are the same to the last digit, and each
 /// tap stands beside the stroke that the tip made for it.
-inline void expect_same_judgement(std::uint64_t seed, Looked& looked) {
-  SCOPED_TRACE("random session " + std::to_string(seed));
-  const lab::Scenario scenario = random_scenario(seed);
+inline void expect_same_judgement(const lab::Scenario& scenario, Looked& looked) {
   LabFiles files;
   const lab::RunResult run =
       lab::simulate(scenario, {.surgeon = &files.surgeon, .patient = &files.patient});
@@ -252,6 +250,11 @@ inline void expect_same_judgement(std::uint64_t seed, Looked& looked) {
         << "tap " << k;
   }
   EXPECT_GE(2 * paired, found.size()) << "most taps are strokes";
+}
+
+inline void expect_same_judgement(std::uint64_t seed, Looked& looked) {
+  SCOPED_TRACE("random session " + std::to_string(seed));
+  expect_same_judgement(random_scenario(seed), looked);
 }
 
 }  // namespace palp::review::test

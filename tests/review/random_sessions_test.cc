@@ -16,5 +16,23 @@ TEST(RandomSessionsTest, FilesSayWhatTheLabSaid) {
   EXPECT_GT(looked.presses, 0U);
 }
 
+TEST(RandomSessionsTest, AStrokeThatComesInTheNextTapsTimeStandsBesideItsOwn) {
+  const std::string spec = "delay 700ms";
+  lab::Scenario scenario = test::lab_scenario({},
+                                              {"surgeon.coupling.name=wave",
+                                               "patient.coupling.name=wave",
+                                               "up.spec=" + spec,
+                                               "down.spec=" + spec});
+  surgeon::ScriptBuilder script{scenario.hand.plant.grip.stiffness};
+  script.hold(from_seconds(0.3)).travel(kSiteA).move(surgeon::kNearPlace, from_seconds(0.4));
+  for (const double depth : {2.5e-3, 4.5e-3, 2.5e-3, 4.5e-3}) {
+    script.taps(1, depth, from_seconds(0.6), from_seconds(0.1));
+  }
+  scenario.script = script.lift(from_seconds(0.4), from_seconds(0.3)).build();
+  test::Looked looked;
+  test::expect_same_judgement(scenario, looked);
+  EXPECT_GE(looked.taps, 4U);
+}
+
 }  // namespace
 }  // namespace palp::review

@@ -65,6 +65,14 @@ TEST(ReplayCommandTest, ARecoveredFileSaysSoAndMissingTicksAreNoDifference) {
   EXPECT_THAT(torn.error().text, HasSubstr("damaged before its tick"));
 }
 
+TEST(ReplayCommandTest, AFileWithoutATickIsNoneThatWasDoneAgain) {
+  const auto bytes = three_seconds().surgeon.bytes();
+  // All that stands before the first chunk, which begins with half a second.
+  const auto answer = replay_command({bytes.first(bytes.size() / 30)}, {});
+  ASSERT_FALSE(answer);
+  EXPECT_THAT(answer.error().text, HasSubstr("no tick"));
+}
+
 TEST(ReplayCommandTest, RefusesInASentence) {
   const auto of_surgeon = replay_command({three_seconds().surgeon.bytes()}, {.estimator = "paper"});
   ASSERT_FALSE(of_surgeon);
