@@ -45,10 +45,10 @@ struct ProtobufCodec::ShapeBuilder {
       Field entry;
       entry.wire_type = static_cast<std::uint8_t>(WireFormatLite::WireTypeForFieldType(
           static_cast<WireFormatLite::FieldType>(field.type())));
-      entry.excluded_by = static_cast<std::uint16_t>(1U << number);
+      entry.excluded_by = 1U << number;
       if (const auto* one_of = field.containing_oneof()) {
         for (int k = 0; k < one_of->field_count(); ++k) {
-          entry.excluded_by |= static_cast<std::uint16_t>(1U << one_of->field(k)->number());
+          entry.excluded_by |= 1U << one_of->field(k)->number();
         }
       }
       if (const Descriptor* nested = field.message_type()) entry.message = add(*nested, depth + 1);
@@ -69,10 +69,12 @@ bool ProtobufCodec::fits(std::size_t shape,
   if (depth >= kDepthMax) return false;
   std::uint32_t seen = 0;
   while (!bytes.empty()) {
-    const auto tag = std::to_integer<std::size_t>(bytes[0]);
-    bytes = bytes.subspan(1);
-    const std::size_t number = tag >> 3U;
-    if (number >= kFieldNumbers) return false;
+    std::uint64_t tag = 0;
+    const std::size_t before = bytes.size();
+    if (!take_varint(bytes, tag)) return false;
+    const std::uint64_t number = tag >> 3U;
+    // A tag in more bytes than it needs would be taken too.
+    if (number >= kFieldNumbers || before - bytes.size() != (tag < 0x80 ? 1U : 2U)) return false;
     const Field& field = shapes_[shape][number];
     if (field.wire_type != (tag & 7U) || (seen & field.excluded_by) != 0) return false;
     seen |= 1U << number;

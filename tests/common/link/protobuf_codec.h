@@ -21,14 +21,14 @@ class ProtobufCodec final : public Codec {
       std::span<const std::byte> bytes) noexcept override;
 
  private:
-  static constexpr std::size_t kFieldNumbers = 16;
+  static constexpr std::size_t kFieldNumbers = 32;
   static constexpr std::size_t kDepthMax = 4;  ///< nested messages; the schema has 3
 
   /// What the schema allows at one field number.
   struct Field {
     std::uint8_t wire_type{kForbidden};
     std::uint8_t message{};       ///< index into shapes_, for a nested one
-    std::uint16_t excluded_by{};  ///< bit n: not together with field n; itself: not twice
+    std::uint32_t excluded_by{};  ///< bit n: not together with field n; itself: not twice
   };
   static constexpr std::uint8_t kForbidden = 0xFF;
   using Shape = std::array<Field, kFieldNumbers>;
