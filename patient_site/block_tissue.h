@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -46,7 +45,7 @@ struct StiffnessVariation {
 /// What a block is made of. The database says the force without and above an inclusion and what is
 /// left of it beside a ball.
 struct BlockTissue {
-  std::shared_ptr<const depth::DepthDatabase> database;
+  std::optional<depth::DepthDatabase> database{};  ///< there, once it is to be used
   std::optional<double> youngs_modulus{};  ///< [Pa]; nothing: the database's, or the law's own
   std::optional<double> height{};          ///< [m], thinner than the database's block
   std::optional<PlainLaw> law{};           ///< the block's force in place of the database's

@@ -92,6 +92,19 @@ Result<std::optional<DevicePlans>> plan_devices(Settings& settings) {
   return std::optional{std::move(*plans)};
 }
 
+/// The simulated patient is that phantom, and the gate keeps within what is known of it.
+Result<void> take_phantom(const Phantom& phantom, Settings& settings) {
+  if (auto same = check_tip(settings, phantom); !same) return same;
+  if (!phantom.caution.empty()) {
+    std::fprintf(stderr, "palp-patient: warning: %s\n", phantom.caution.c_str());
+  }
+  const SimulatedPhantomConfig& simulation = settings.simulation;
+  settings.node.gate = within_tables(settings.node.gate,
+                                     simulation.surface_offset - simulation.breathing_amplitude,
+                                     phantom.depth_max());
+  return {};
+}
+
 tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   const auto bad = [](const Error& error) { return tl::unexpected{exit_status_of(error)}; };
   auto settings = make_settings(document);
@@ -116,13 +129,7 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   const SimulatedPhantomConfig& simulation = settings->simulation;
   const bool tissue_known = !*devices || !(*devices)->phantom.empty();
   if (!*devices) {
-    if (const auto same = check_tip(*settings, *phantom); !same) return bad(same.error());
-    if (!phantom->caution.empty()) {
-      std::fprintf(stderr, "palp-patient: warning: %s\n", phantom->caution.c_str());
-    }
-    settings->node.gate = within_tables(settings->node.gate,
-                                        simulation.surface_offset - simulation.breathing_amplitude,
-                                        phantom->depth_max());
+    if (const auto fits = take_phantom(*phantom, *settings); !fits) return bad(fits.error());
   }
   const PatientDevices facts = *devices ? facts_of(**devices) : facts_of(simulation);
   site_program::RunnerConfig runner;

@@ -176,7 +176,7 @@ Result<void> load_block(const Part& part, BlockTissue& block) {
   if (auto taken = take_words(part, {path}); !taken) return taken;
   auto database = depth::load_database(file);
   if (!database) return tl::unexpected<Error>(database.error());
-  block.database = std::make_shared<depth::DepthDatabase>(std::move(*database));
+  block.database = std::move(*database);
   return {};
 }
 
@@ -236,7 +236,7 @@ Result<DescribedTissue> parse_tissue_words(std::string_view text) {
   if (!tissue.block.database) {
     auto database = depth::default_database();
     if (!database) return tl::unexpected<Error>(database.error());
-    tissue.block.database = std::make_shared<depth::DepthDatabase>(std::move(*database));
+    tissue.block.database = std::move(*database);
   }
   if (auto ok = check(tissue.block); !ok) return tl::unexpected<Error>(ok.error());
   return tissue;

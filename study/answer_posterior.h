@@ -68,8 +68,8 @@ class AnswerTable {
   std::vector<double> ln_jnd_;
   std::vector<double> pse_;
   std::vector<double> lapse_;
-  std::vector<double> prior_;
-  std::vector<double> shares_;
+  std::vector<double> prior_;   ///< [-]
+  std::vector<double> shares_;  ///< [-]
 };
 
 /// Posterior of one observer on the grid of a table, which outlives it. The order of the answers
@@ -94,7 +94,7 @@ class AnswerPosterior {
 
  private:
   const AnswerTable* table_;
-  std::vector<double> weights_;  ///< sum 1
+  std::vector<double> weights_;  ///< [-], sum 1
 };
 
 }  // namespace palp::study

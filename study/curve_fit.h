@@ -53,10 +53,10 @@ struct CurveFitOptions {
 };
 
 struct CurveEstimate {
-  double likeliest{};  ///< at the maximum of the joint posterior
-  double mean{};
-  double low{};  ///< 95 % interval of the marginal
-  double high{};
+  double likeliest{};  ///< [-], at the maximum of the joint posterior
+  double mean{};       ///< [-]
+  double low{};        ///< [-], 95 % interval of the marginal
+  double high{};       ///< [-]
 };
 
 struct CurveFit {

@@ -11,11 +11,11 @@ namespace palp::study {
 
 /// `palp-study fit`, as given on the command line.
 struct FitFlags {
-  std::string file;
+  std::string file{};
   std::uint64_t intervals{2};
   bool two_sided{};
-  std::string curve;  ///< empty: none beside the observer's
-  std::string report;
+  std::string curve{};  ///< empty: none beside the observer's
+  std::string report{};
 };
 
 void declare_fit(config::CommandLine& line, FitFlags& flags);

@@ -41,7 +41,7 @@ using ForEachIndex =
 
 /// Of ln JND, over all cases.
 struct RecoverySummary {
-  double trials{};  ///< mean
+  double trials{};  ///< [-], mean
   double bias{};    ///< [-]
   double sd{};      ///< [-]
   double bound{};   ///< [-], Cramer and Rao: root of the mean of their squares

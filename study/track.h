@@ -86,10 +86,10 @@ class Track {
   std::uint64_t stream_;
   std::size_t trials_{};
   // Staircases.
-  double ln_level_{};
+  double ln_level_{};  ///< [-]
   int right_in_a_row_{};
   int direction_{};                ///< -1 down, +1 up, 0 not yet
-  std::vector<double> reversals_;  ///< ln level
+  std::vector<double> reversals_;  ///< [-], ln level
 };
 
 /// Share of right answers at which a staircase of that rule with its own ratio settles.

@@ -91,7 +91,7 @@ class Receiver {
   double span_ratio_{1};  ///< [-]
   double rate_kbps_{};    ///< [kbit/s]
   std::size_t fragments_newest_{4};
-  std::array<double, 21> lost_{};  ///< weight of frames that lost so many fragments, fading
+  std::array<double, 21> lost_{};  ///< [-], weight of frames that lost so many fragments, fading
   ReceiverCounts counts_;
 };
 

@@ -91,6 +91,11 @@ class ContactEstimator {
     double deepest{};           ///< [m], tip in contact
   };
   static constexpr std::size_t kPlaces = 32;
+  struct Places {
+    Place here;
+    std::array<Known, kPlaces> known{};  ///< the oldest gives way
+    std::size_t count{};                 ///< that were ever written
+  };
   void remember() noexcept;
   [[nodiscard]] const Known* known_at(const Place& place) const noexcept;
 
@@ -160,9 +165,7 @@ class ContactEstimator {
   ModelPayload model_;
   BreathingEstimator swing_;
   Here here_;
-  Place place_;
-  std::array<Known, kPlaces> known_{};  ///< the oldest gives way
-  std::size_t known_count_{};           ///< that were ever written
+  Places places_;
 };
 
 }  // namespace palp::coupling

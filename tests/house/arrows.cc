@@ -11,7 +11,7 @@ namespace palp::house {
 namespace {
 
 /// Rooms, the longer name first where one lies in another.
-constexpr std::array<std::string_view, 36> kRooms{"common/core",
+constexpr std::array<std::string_view, 37> kRooms{"common/core",
                                                   "common/message",
                                                   "common/coupling",
                                                   "common/link",

@@ -76,7 +76,9 @@ TEST(SessionStrangersTest, SitesThatDifferRefuseEachOtherInOneSentence) {
   };
   std::vector<Case> cases(4, {config_of(Role::Surgeon), config_of(Role::Patient), {}});
   cases[0].patient.protocol_version = kProtocolVersion + 1;
-  cases[0].text = "the sites speak different protocol versions: surgeon 7, patient 8";
+  cases[0].text = "the sites speak different protocol versions: surgeon " +
+                  std::to_string(kProtocolVersion) + ", patient " +
+                  std::to_string(kProtocolVersion + 1);
   cases[1].surgeon.coupling = "wave";
   cases[1].text = "the sites use different couplings: surgeon wave, patient direct";
   cases[2].surgeon.settings_hash = 0xAB;
