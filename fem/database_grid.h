@@ -42,7 +42,7 @@ struct Forecast {
   std::size_t curves{};  ///< on the axis
   std::size_t balls{};   ///< beside it
   double work{};         ///< [s], of one processor as fast as the one it was measured on
-  double bytes{};        ///< of the file
+  double bytes{};        ///< [bytes], of the file
   double error_share{};  ///< [-], of F, between the grid's points at worst
 };
 /// From how the default grid's times and error scale; true within a factor of about two.

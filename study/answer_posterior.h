@@ -64,10 +64,10 @@ class AnswerTable {
 
  private:
   Task task_;
-  std::vector<double> levels_;
-  std::vector<double> ln_jnd_;
-  std::vector<double> pse_;
-  std::vector<double> lapse_;
+  std::vector<double> levels_;  ///< [-]
+  std::vector<double> ln_jnd_;  ///< [-]
+  std::vector<double> pse_;     ///< [-]
+  std::vector<double> lapse_;   ///< [-]
   std::vector<double> prior_;   ///< [-]
   std::vector<double> shares_;  ///< [-]
 };

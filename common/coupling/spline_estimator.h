@@ -62,9 +62,9 @@ class SplineEstimator {
   double lowest_{};                         ///< [m], of the first node
   Nodes hats_{};                            ///< [-], of straight lines from node to node; filtered
   Nodes passed_{};                          ///< [-], summed since begin_equation()
-  double count_{};                          ///< ticks, likewise
+  double count_{};                          ///< [-], ticks, likewise
   std::array<Nodes, kNodes> normal_{};      ///< [-]
-  std::array<Nodes, 1 + kBeside> right_{};  ///< of each part of what was met
+  std::array<Nodes, 1 + kBeside> right_{};  ///< [N], of each part of what was met
   KnotStiffness stiffness_{};               ///< [N/m]
   double share_{};                          ///< [-]
   KnotStiffness expected_{};                ///< [N/m]
