@@ -117,8 +117,10 @@ double ContactModel::slope(double depth) const noexcept {
 
 double ContactModel::depth(double wanted) const noexcept {
   double found = 0;
-  for (double step = kModelDepthMax / 2; step > kDepthStep; step /= 2) {
+  double step = kModelDepthMax / 2;
+  while (step > kDepthStep) {
     if (force(found + step) < wanted) found += step;
+    step /= 2;
   }
   return found;
 }
