@@ -179,8 +179,10 @@ Estimated estimated(const std::vector<LikelyBall>& balls,
   };
   if (!(window > 0)) return out;
   double most = 0;
-  for (double from = low + window; from + window < high; from += 0.5 * window) {
+  double from = low + window;
+  while (from + window < high) {
     most = std::max(most, within(from));
+    from += 0.5 * window;
   }
   const double first = within(low);
   const double last = within(high - window);

@@ -86,10 +86,13 @@ std::optional<NextTouch> next_touch(const MapLikelihood& likelihood,
     high = {std::max(high.x, touched.place.x), std::max(high.y, touched.place.y)};
   }
   std::optional<NextTouch> best;
-  for (double x = low.x - kRound; x <= high.x + kRound; x += kStep) {
-    for (double y = low.y - kRound; y <= high.y + kRound; y += kStep) {
-      if (std::abs(x) > travel || std::abs(y) > travel) continue;
-      const Place place{x, y};
+  const auto steps = [](double from, double to) {
+    return static_cast<int>((to - from + 2 * kRound) / kStep);
+  };
+  for (int i = 0; i <= steps(low.x, high.x); ++i) {
+    for (int k = 0; k <= steps(low.y, high.y); ++k) {
+      const Place place{low.x - kRound + i * kStep, low.y - kRound + k * kStep};
+      if (std::abs(place.x) > travel || std::abs(place.y) > travel) continue;
       const double gain = gain_at(likelihood, spread, balls, place);
       if (!best || gain > best->gain) best = NextTouch{place, gain};
     }
