@@ -17,8 +17,8 @@ constexpr double kModeReach = 42;       // [-], log-likelihood below the best, r
 constexpr std::size_t kFirstRadii = 3;  // cells to begin with
 constexpr std::size_t kFirstRatios = 2;
 constexpr std::size_t kCellsMax = 40;
-constexpr double kFine = 0.7;    // [-], standard deviations to a cell's edge: fine enough
-constexpr double kLight = 4e-3;  // [-], share of all: not worth halving
+constexpr double kFineReach = 0.7;  // [-], standard deviations to a cell's edge: fine enough
+constexpr double kLight = 4e-3;     // [-], share of all: not worth halving
 constexpr int kClimbsFirst = 12;
 constexpr int kClimbsCells = 5;
 constexpr int kClimbsLater = 3;
@@ -275,7 +275,7 @@ class CellMaker {
         const double reach = std::max(cell.radius_reach, cell.ratio_reach);
         // The edge of a coarse cell may be likelier than its middle.
         const double share = std::exp(cell.mass - total + std::min(0.5 * reach * reach, 8.0));
-        if (reach < kFine || share < kLight || share * reach < most) continue;
+        if (reach < kFineReach || share < kLight || share * reach < most) continue;
         most = share * reach;
         heaviest = i;
       }

@@ -17,7 +17,7 @@ constexpr double kFirstShare = 0.25;       // [-], of the later draws, by the ce
 constexpr double kTail = 0.025;            // [-], outside of an interval on each side
 constexpr double kEnd = 0.08;              // [-], of a range: near its end
 constexpr double kModeShare = 0.02;        // [-]: less is no mode
-constexpr double kForgotten = 1e-9;        // [-], share of a ball
+constexpr double kForgottenShare = 1e-9;   // [-], share of a ball
 constexpr std::uint64_t kSeed = 0x6d6170;
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
@@ -245,7 +245,7 @@ MapPosterior map_posterior(const MapLikelihood& likelihood,
   double mean_y = 0;
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     shares[i] /= total;
-    if (shares[i] < kForgotten) continue;
+    if (shares[i] < kForgottenShare) continue;
     out.balls.push_back({drawn[i].ball, shares[i]});
     mean_x += shares[i] * drawn[i].ball.place.x;
     mean_y += shares[i] * drawn[i].ball.place.y;

@@ -6,7 +6,7 @@
 namespace palp::depth {
 namespace {
 
-constexpr double kStep = 4e-3;         // [m]
+constexpr double kGrid = 4e-3;         // [m]
 constexpr double kRound = 12e-3;       // [m], farther than that from every touch nothing is sought
 constexpr double kTouchError = 0.012;  // [-], of the force, of one touch
 constexpr std::size_t kBalls = 200;    // that stand for the posterior
@@ -87,11 +87,11 @@ std::optional<NextTouch> next_touch(const MapLikelihood& likelihood,
   }
   std::optional<NextTouch> best;
   const auto steps = [](double from, double to) {
-    return static_cast<int>((to - from + 2 * kRound) / kStep);
+    return static_cast<int>((to - from + 2 * kRound) / kGrid);
   };
   for (int i = 0; i <= steps(low.x, high.x); ++i) {
     for (int k = 0; k <= steps(low.y, high.y); ++k) {
-      const Place place{low.x - kRound + i * kStep, low.y - kRound + k * kStep};
+      const Place place{low.x - kRound + i * kGrid, low.y - kRound + k * kGrid};
       if (std::abs(place.x) > travel || std::abs(place.y) > travel) continue;
       const double gain = gain_at(likelihood, spread, balls, place);
       if (!best || gain > best->gain) best = NextTouch{place, gain};

@@ -54,7 +54,7 @@ struct NodalEquations {
 };
 
 /// The curve that fits one place, whatever lies below: size, shape, surface, rate factor.
-struct Fit {
+struct PlaceFit {
   NodalCurve curve{};  ///< [-], over the plain block's force
   double scale{1};
   double shift{};  ///< [m]
@@ -63,11 +63,11 @@ struct Fit {
   bool regular{};
 };
 
-Fit fit(const NodalEquations& sums,
-        const NormalEquations& all,
-        const PlaceReadings& readings,
-        const NodalCurve& near,
-        double scale) {
+PlaceFit fit(const NodalEquations& sums,
+             const NormalEquations& all,
+             const PlaceReadings& readings,
+             const NodalCurve& near,
+             double scale) {
   NodalCurve one{};
   one.fill(1);
   // Columns: the plain block's curve, its shapes, the surface and the rate of the curve so far.
@@ -95,7 +95,7 @@ Fit fit(const NodalEquations& sums,
     system.right[i] += information[i] * expected[i];
   }
   const auto solution = solve(system);
-  Fit out;
+  PlaceFit out;
   out.regular = solution.regular && solution.x[0] > 0;
   if (!out.regular) return out;
   out.scale = solution.x[0];
@@ -116,7 +116,7 @@ Fit fit(const NodalEquations& sums,
   return out;
 }
 
-TouchModel expected_of(const Fit& fit, double surface) {
+TouchModel expected_of(const PlaceFit& fit, double surface) {
   TouchModel out{.curve = {}, .surface = surface, .scale = 1, .rate_factor = fit.rate_factor};
   for (std::size_t n = 0; n < kCurveNodes; ++n) {
     for (std::size_t m = 0; m < kCurveTerms; ++m) out.curve[m] += fit.curve[n] * node_terms()[n][m];
@@ -127,7 +127,7 @@ TouchModel expected_of(const Fit& fit, double surface) {
 /// The quadratic form of curve and rate factor. Shift and rate factor multiply the curve that fits,
 /// which is near enough whatever the curve turns out to be; the shift, of which the tracker says
 /// `off`, goes.
-void reduce(const NormalEquations& sums, const Fit& best, double off, PlaceData& out) {
+void reduce(const NormalEquations& sums, const PlaceFit& best, double off, PlaceData& out) {
   const NodalEquations nodal{sums};
   const double v = out.rate_factor;
   constexpr std::size_t kLast = kCurveNodes;
@@ -178,7 +178,7 @@ std::optional<PlaceData> place_data(const PlaceReadings& readings, const CurveBa
   const SensorSteps steps{readings.noise, readings.quantum};
   double surface = readings.surface;
   std::optional<TouchModel> expected;
-  Fit best;
+  PlaceFit best;
   best.curve.fill(readings.stiffness.scale);
   best.scale = readings.stiffness.scale;
   NormalEquations sums{surface};
@@ -193,7 +193,7 @@ std::optional<PlaceData> place_data(const PlaceReadings& readings, const CurveBa
                 .expected = expected});
     }
     if (!(sums.weights() > 0)) return std::nullopt;
-    const Fit next = fit(NodalEquations{sums}, sums, readings, best.curve, best.scale);
+    const PlaceFit next = fit(NodalEquations{sums}, sums, readings, best.curve, best.scale);
     if (!next.regular) return std::nullopt;
     best = next;
     surface += std::clamp(best.shift, -kSurfaceSpread, kSurfaceSpread);

@@ -7,7 +7,6 @@ namespace palp::video {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 // Found in virtual time over bottlenecks of 1.9 to 100 Mbit/s; tests/lab/video_path_test.cc holds
 // what they achieve.
@@ -21,9 +20,9 @@ constexpr double kSpreadMuch = 1.12;    // of a frame on its way
 constexpr double kSpreadLittle = 1.05;  // likewise
 constexpr double kPaceMin = 600;        // [kbit/s]
 constexpr double kPaceMax = 9600;       // [kbit/s]
-constexpr Duration kForgetCeiling = seconds{20};
-constexpr Duration kOffMax = seconds{60};
-constexpr Duration kOffFirst = seconds{5};
+constexpr Duration kForgetCeiling = std::chrono::seconds{20};
+constexpr Duration kOffMax = std::chrono::seconds{60};
+constexpr Duration kOffFirst = std::chrono::seconds{5};
 constexpr int kCutsBeforeOff = 4;
 constexpr double kFrozenMax = 0.005;  // share of time
 constexpr double kRecovery = 0.05;    // [s], beyond a round trip
