@@ -133,6 +133,11 @@ class Sampler {
   std::vector<Drawn> drawn_;
 };
 
+struct WeighedValue {
+  double value{};
+  double share{};  // [-]
+};
+
 /// Of a coordinate between two ends; 5 % outside the interval, on one side alone where the
 /// likeliest value is an end: the truth may lie there.
 template <class Value>
@@ -140,11 +145,7 @@ Estimated estimated(const std::vector<LikelyBall>& balls,
                     double low,
                     double high,
                     const Value& value) {
-  struct Weighed {
-    double value{};
-    double share{};
-  };
-  std::vector<Weighed> all;
+  std::vector<WeighedValue> all;
   all.reserve(balls.size());
   Estimated out;
   double mean = 0;
@@ -153,13 +154,14 @@ Estimated estimated(const std::vector<LikelyBall>& balls,
     mean += one.share * all.back().value;
   }
   double square = 0;
-  for (const Weighed& one : all) square += one.share * (one.value - mean) * (one.value - mean);
+  for (const WeighedValue& one : all) square += one.share * (one.value - mean) * (one.value - mean);
   out.stddev = std::sqrt(square);
-  std::sort(
-      all.begin(), all.end(), [](const Weighed& a, const Weighed& b) { return a.value < b.value; });
+  std::sort(all.begin(), all.end(), [](const WeighedValue& a, const WeighedValue& b) {
+    return a.value < b.value;
+  });
   const auto quantile = [&](double share) {
     double sum = 0;
-    for (const Weighed& one : all) {
+    for (const WeighedValue& one : all) {
       sum += one.share;
       if (sum >= share) return one.value;
     }
@@ -172,7 +174,7 @@ Estimated estimated(const std::vector<LikelyBall>& balls,
   const double window = kEnd * (high - low);
   const auto within = [&](double from) {
     double sum = 0;
-    for (const Weighed& one : all) {
+    for (const WeighedValue& one : all) {
       if (one.value >= from && one.value <= from + window) sum += one.share;
     }
     return sum;
