@@ -4,6 +4,8 @@
 #   address_in     where a program listens, from its log
 #   make_keys      an identity for each site, in $work/keys
 #   fail           a sentence, the ends of all logs, exit code 1
+#   watch_machine  from now on, notes how long the machine stands still
+#   standstill     the longest time that it stood still since, in whole ms; ends the watch
 set -u
 bin=$(cd "${1:?the folder of the programs}" && pwd) || exit 3
 work=${PALP_KEEP:-$(mktemp -d)}
@@ -40,4 +42,32 @@ address_in() { # log
 }
 make_keys() {
   "$bin/palp-surgeon" certificates --folder "$work/keys" >"$work/keys.log" 2>&1 || fail "no keys"
+}
+# On a shared machine a processor may stand still for a tenth of a second: what a site says of such
+# a run is not the network's doing.
+watch_machine() {
+  local cpu
+  rm -f "$work"/standstill.*
+  for cpu in $(seq 0 $(($(nproc) - 1))); do
+    taskset -c "$cpu" python3 - >"$work/standstill.$cpu" 2>/dev/null <<'END' &
+import signal, sys, time
+longest, before = 0.0, time.monotonic()
+def end(*_):
+    print(round(1e3 * longest))
+    sys.exit()
+signal.signal(signal.SIGTERM, end)
+while True:
+    time.sleep(0.002)
+    now = time.monotonic()
+    longest, before = max(longest, now - before), now
+END
+    watching+=("$!")
+  done
+}
+watching=()
+standstill() {
+  kill "${watching[@]}" 2>/dev/null
+  wait "${watching[@]}" 2>/dev/null
+  watching=()
+  sort -n "$work"/standstill.* | tail -n 1
 }
