@@ -5,8 +5,8 @@
 #include "common/core/lapse.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
+#include "common/coupling/force_growth.h"
 #include "common/record/notes.h"
-#include "surgeon_site/force_growth.h"
 
 namespace palp::surgeon {
 
@@ -15,7 +15,7 @@ struct ForceGateConfig {
   double force_continuous{1.4};  ///< [N] > 0, what its motors stand for ever
   double thermal_time{10.0};     ///< [s] > 0, time constant of the motors' heat: an assumption
   double fade_slew{40.0};        ///< [N/s] > 0, as the gate closes: 0.4 N in 10 ms
-  ForceGrowthConfig growth;      ///< while it is open
+  coupling::ForceGrowthConfig growth;  ///< while it is open
 };
 
 struct ForceRequest {
@@ -53,7 +53,7 @@ class ForceGate {
   void heat_up(Duration passed) noexcept;
 
   ForceGateConfig config_;
-  ForceGrowth growth_;
+  coupling::ForceGrowth growth_;
   double force_{};  ///< [N]
   double heat_{};   ///< [N^2], low pass of force^2, stays below force_continuous^2
   bool clamped_{};

@@ -1,9 +1,25 @@
 #include "common/coupling/direct.h"
 
-namespace palp::coupling {
+#include <utility>
 
-void DirectSurgeon::begin_epoch(double /*position*/) noexcept {
+namespace palp::coupling {
+namespace {
+
+ForceGrowthConfig with_spring(ForceGrowthConfig change, double spring) noexcept {
+  change.stiffness += spring;
+  return change;
+}
+
+}  // namespace
+
+DirectSurgeon::DirectSurgeon(const DirectConfig& config) noexcept
+    : config_{config}, change_{with_spring(config.change, config.position_scale * config.spring)} {}
+
+void DirectSurgeon::begin_epoch(double position) noexcept {
   heard_ = false;
+  force_ = 0;
+  position_ = position;
+  change_.forget();
   fade_.set(1);  // nothing was heard, so the force is zero: there is nothing to fade in
 }
 
@@ -22,8 +38,9 @@ SurgeonOutput DirectSurgeon::step(const SurgeonInput& in, const Lapse& lapse) no
     const double ahead = config_.position_scale * in.position - tip_.position;
     force = config_.force_scale * tip_.force + config_.spring * ahead;  // paper eq. (1)
   }
-  force *= fade_.value();
-  return {force, {in.position, in.velocity, force, std::monostate{}}};
+  change_.move(in.position - std::exchange(position_, in.position), in.velocity, lapse);
+  force_ = change_.change(force_, fade_.value() * force);
+  return {force_, {in.position, in.velocity, force_, std::monostate{}}};
 }
 
 void DirectPatient::begin_epoch(double position) noexcept { target_ = position; }

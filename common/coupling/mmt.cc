@@ -15,6 +15,26 @@ constexpr bool may_render(SiteState state) noexcept {
   return state == SiteState::Engaged || state == SiteState::Hold || state == SiteState::Retract;
 }
 
+/// A share of the way from one model to another.
+ContactModel blended(ContactModel from, const ContactModel& to, double share) noexcept {
+  from.surface += share * (to.surface - from.surface);
+  from.reach += share * (to.reach - from.reach);
+  for (std::size_t term = 0; term < kModelTerms; ++term) {
+    from.c[term] += share * (to.c[term] - from.c[term]);
+  }
+  for (std::size_t knot = 0; knot < kModelKnots.size(); ++knot) {
+    from.stiffness[knot] += share * (to.stiffness[knot] - from.stiffness[knot]);
+  }
+  return from;
+}
+
+RelaxingContact::Shares blended(RelaxingContact::Shares from,
+                                const RelaxingContact::Shares& to,
+                                double share) noexcept {
+  for (std::size_t k = 0; k < from.size(); ++k) from[k] += share * (to[k] - from[k]);
+  return from;
+}
+
 ContactEstimatorConfig with_sensor(ContactEstimatorConfig config,
                                    const ForceSensorFacts& sensor) noexcept {
   config.sensor = sensor;
@@ -75,7 +95,8 @@ void MmtSurgeon::hear(std::span<const Incoming> arrived, Duration round_trip) no
 }
 
 /// The shown model ages at `depth` and moves towards the newest one; in the air at once, for
-/// nothing is stored there.
+/// nothing is stored there. A force that falls falls no faster than `fall`: a lie is no kick, and
+/// the tank pays, as for any change of the model.
 void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& lapse) noexcept {
   const double passed = seconds(lapse.passed());
   if (!candidate_) return shown_.age(depth, passed);
@@ -94,20 +115,18 @@ void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& 
     showing_ = true;
     return;
   }
-  const double share = -std::expm1(-seconds(lapse.period) / config_.blend);
-  elastic.surface += share * (aim.surface - elastic.surface);
-  elastic.reach += share * (aim.reach - elastic.reach);
-  for (std::size_t term = 0; term < kModelTerms; ++term) {
-    elastic.c[term] += share * (aim.c[term] - elastic.c[term]);
+  const RelaxingContact before = shown_;
+  const double force = before.force(depth);
+  const double fall_max = config_.fall * seconds(lapse.period);
+  double share = -std::expm1(-seconds(lapse.period) / config_.blend);
+  for (int attempt = 0; attempt < 8; ++attempt) {
+    const ContactModel between = blended(elastic, aim, share);
+    shown_ = before;
+    shown_.age_into(between, blended(before.relaxing(), candidate_relaxing_, share), depth, passed);
+    const double fall = force - shown_.force(std::min(depth, position - between.surface));
+    if (fall <= fall_max) return;
+    share *= 0.95 * fall_max / fall;
   }
-  for (std::size_t knot = 0; knot < kModelKnots.size(); ++knot) {
-    elastic.stiffness[knot] += share * (aim.stiffness[knot] - elastic.stiffness[knot]);
-  }
-  RelaxingContact::Shares relaxing = shown_.relaxing();
-  for (std::size_t k = 0; k < relaxing.size(); ++k) {
-    relaxing[k] += share * (candidate_relaxing_[k] - relaxing[k]);
-  }
-  shown_.age_into(elastic, relaxing, depth, passed);
 }
 
 /// The hand moved, the model did not. Within the play a force that lets go steeply stays as it is:

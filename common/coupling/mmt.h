@@ -37,6 +37,7 @@ struct MmtConfig {
   double release_max{1000};
   double release_play{60e-6};   ///< [m], that a holding hand trembles and its encoder counts
   double blend{0.05};           ///< [s], time constant of changes of the model
+  double fall{25};              ///< [N/s], most by which they let the force fall
   double brake{2};              ///< [N s/m], on the way in, while a force is still to come in
   double contact_damping{0.2};  ///< [N s/m], on the way out: the way in is what a finger judges
   double air_damping{0.3};      ///< [N s/m], fills the tank

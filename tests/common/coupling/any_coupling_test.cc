@@ -38,7 +38,8 @@ TEST(AnyCouplingTest, UnknownNameIsOneSentenceWithTheNameAndTheNamesThereAre) {
 TEST(AnyCouplingTest, ConfigurationReachesTheLaw) {
   CouplingConfig config;
   config.name = "direct";
-  config.direct = {.force_scale = 2, .position_scale = 3, .spring = 0};
+  config.direct = {
+      .force_scale = 2, .position_scale = 3, .spring = 0, .change = {.slew = 1e9, .at_once = 1e9}};
   SurgeonCoupling surgeon = *make_surgeon_coupling(config);
   PatientCoupling patient = *make_patient_coupling(config);
   begin_epoch(surgeon, 0);

@@ -34,9 +34,15 @@ PatientInput tip_at(double position) {
   return in;
 }
 
+/// The equation alone.
+DirectConfig at_once(DirectConfig config = {}) {
+  config.change.slew = config.change.at_once = 1e9;
+  return config;
+}
+
 /// Force on the hand at `hand` when the patient reported `tip` and `contact`.
 double force_for(const DirectConfig& config, double hand, double tip, double contact) {
-  DirectSurgeon law{config};
+  DirectSurgeon law{at_once(config)};
   law.begin_epoch(0);
   const std::array arrived{fresh_sample(tip, contact)};
   return law.step(hand_at(hand, arrived), kTick).force;
@@ -77,14 +83,14 @@ TEST(DirectSurgeonTest, NoForceBeforeTheFirstSampleOfAnEpoch) {
 }
 
 TEST(DirectSurgeonTest, NewestOfSeveralArrivalsCounts) {
-  DirectSurgeon law{{.spring = 0}};
+  DirectSurgeon law{at_once({.spring = 0})};
   law.begin_epoch(0);
   const std::array arrived{fresh_sample(0, 1), fresh_sample(0, 2), fresh_sample(0, 3)};
   EXPECT_EQ(law.step(hand_at(0, arrived), kTick).force, 3);
 }
 
 TEST(DirectSurgeonTest, LateOrRepairedSampleIsNeverUsed) {
-  DirectSurgeon law{{.spring = 0}};
+  DirectSurgeon law{at_once({.spring = 0})};
   law.begin_epoch(0);
   const std::array first{fresh_sample(0, 1)};
   law.step(hand_at(0, first), kTick);
@@ -97,7 +103,7 @@ TEST(DirectSurgeonTest, LateOrRepairedSampleIsNeverUsed) {
 }
 
 TEST(DirectSurgeonTest, ForceFadesToZeroInHoldAndReturnsWhenEngaged) {
-  DirectSurgeon law{{.spring = 0}};
+  DirectSurgeon law{at_once({.spring = 0})};
   law.begin_epoch(0);
   const std::array arrived{fresh_sample(0, 2)};
   EXPECT_EQ(law.step(hand_at(0, arrived), kTick).force, 2);
@@ -111,6 +117,29 @@ TEST(DirectSurgeonTest, ForceFadesToZeroInHoldAndReturnsWhenEngaged) {
     EXPECT_NEAR(law.step(hand_at(0, {}), kTick).force, 2 * (n / 500.0), kRounding);
   }
   EXPECT_NEAR(law.step(hand_at(0, {}), kTick).force, 2, kRounding);
+}
+
+/// A hand at rest and one that goes out and in, and a peer that says anything.
+RC_GTEST_PROP(DirectSurgeonTest, WhatThePeerSaysIsNoKick, ()) {
+  constexpr double kStiffest = 650;                         // [N/m]
+  const double swing = *rc::gen::element(0.0, 1e-3, 5e-3);  // [m]
+  DirectSurgeon law{{}};
+  law.begin_epoch(0);
+  std::vector<double> forces{0};
+  std::vector<double> hands{0};
+  for (int i = 1; i <= 300; ++i) {
+    const std::array arrived{
+        fresh_sample(*rc::gen::element(-0.06, 0.0, 0.06), *rc::gen::element(0.0, 0.2, 5.0, -30.0))};
+    hands.push_back(swing * (1 - std::cos(0.05 * i)));
+    forces.push_back(law.step(hand_at(hands.back(), arrived), kTick).force);
+    const std::size_t from = forces.size() - std::min<std::size_t>(forces.size(), 11);
+    const double change = forces.back() - forces[from];
+    double way = 0;  // of this window, and of the memory before it
+    for (std::size_t k = from - std::min<std::size_t>(from, 20) + 1; k < hands.size(); ++k) {
+      way += std::max(0.0, (change > 0 ? 1 : -1) * (hands[k] - hands[k - 1]));
+    }
+    RC_ASSERT(std::abs(change) <= 0.35 + kStiffest * way + 1e-9);
+  }
 }
 
 TEST(DirectSurgeonTest, TellsThePatientItsHandAndItsForce) {

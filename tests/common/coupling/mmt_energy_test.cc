@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -258,6 +259,44 @@ TEST(MmtSurgeonTest, PressingFurtherIntoAKnownTissueIsNotSlewed) {
   }
   EXPECT_NEAR(
       force, contact_model(std::get<ModelPayload>(incoming.sample.payload)).force(4e-3), 1e-9);
+}
+
+/// A hand at rest in a tissue that it knows; then it is told of another one.
+TEST(MmtSurgeonTest, AForceThatIsToldAwayFallsSlowly) {
+  const ModelPayload known{.version = 1, .c = {0, 0.3}, .depth_max = 5e-3};
+  ModelPayload nothing = known;
+  nothing.c = {};
+  ModelPayload deeper = known;
+  deeper.surface = 40e-3;
+  for (const ModelPayload& told : {nothing, deeper}) {
+    const MmtConfig config;
+    MmtSurgeon law{config};
+    law.begin_epoch(-1e-3);
+    double force = 0;
+    double work = 0;
+    double most = 0;
+    for (int tick = 0; tick <= 1000; ++tick) {
+      Incoming incoming;
+      incoming.sample.payload = tick < 500 ? known : told;
+      incoming.fresh = true;
+      const std::array arrived{incoming};
+      SurgeonInput in;
+      in.state = SiteState::Engaged;
+      in.position = -1e-3 + 0.02e-3 * std::min(tick, 250);
+      in.force_applied = force;
+      in.arrived = arrived;
+      if (tick <= 250) work += tick > 0 ? force * 0.02e-3 : 0;
+      const double before = std::exchange(force, law.step(in, std::chrono::milliseconds{1}).force);
+      ASSERT_TRUE(tick != 500 || before > 0.5) << before;
+      if (tick >= 500) {
+        EXPECT_LE(before - force, 1e-3 * config.fall + 1e-9) << tick;
+        most = std::max(most, before - force);
+      }
+      ASSERT_LE(law.tank() + law.stored(), config.tank_start + work + 1e-12) << tick;
+    }
+    EXPECT_GT(most, 0.8e-3 * config.fall) << "there is something to hold back";
+    EXPECT_LT(force, 0.01) << "it does go";
+  }
 }
 
 TEST(MmtSurgeonTest, ABeginningEpochDoesNotRefillTheTank) {

@@ -6,7 +6,7 @@
 #include "common/core/check.h"
 #include "common/core/lapse.h"
 
-namespace palp::surgeon {
+namespace palp::coupling {
 
 struct ForceGrowthConfig {
   double slew{40};         ///< [N/s] > 0, for no motion ...
@@ -19,8 +19,9 @@ struct ForceGrowthConfig {
 /// How a force on the hand may grow: as the hand's own motion through the stiffest tissue explains,
 /// and by a slew beside. So no lie, no news and no pause is a kick, whatever law believes it. What
 /// is explained is the net motion: a hand that goes to and fro, or an encoder that cannot decide
-/// between two counts, explains no more than its swing. A force that falls is not held up: that
-/// would give the hand energy which nobody pays for. Thread: rt. A value.
+/// between two counts, explains no more than its swing. A force that falls is not held up, but
+/// where somebody asks for that: it gives the hand energy which nobody pays for. Thread: rt. A
+/// value.
 class ForceGrowth {
  public:
   explicit ForceGrowth(const ForceGrowthConfig& config) : config_{config} {
@@ -42,22 +43,35 @@ class ForceGrowth {
   }
   /// What moved while the gate was closed explains nothing.
   void forget() noexcept { explained_ = 0; }
-  /// From `force` towards `target` [N]; it falls at once.
+  /// From `force` towards `target` [N], by what the hand's way and the slew explain, also where it
+  /// falls: for laws that have no energy to keep.
+  [[nodiscard]] double change(double force, double target) noexcept {
+    const double side = target >= force ? 1 : -1;
+    const double wanted = std::abs(target - force);
+    const double explained = explain(side, wanted);
+    return explained >= wanted ? target : force + side * explained;
+  }
+  /// The same, but it falls at once.
   [[nodiscard]] double follow(double force, double target) noexcept {
     const double side = target >= 0 ? 1 : -1;
     const double kept = std::min(std::max(0.0, side * force), std::abs(target));
     take_back(force, std::abs(force) - kept);
     const double wanted = std::abs(target) - kept;
-    const double by_motion = std::min(wanted, std::max(0.0, side * explained_));
-    const double beside = std::min(wanted - by_motion, spare_);
-    explained_ -= side * by_motion;
-    spare_ -= beside;
-    return by_motion + beside >= wanted ? target : side * (kept + by_motion + beside);
+    const double explained = explain(side, wanted);
+    return explained >= wanted ? target : side * (kept + explained);
   }
 
  private:
   static constexpr double kMost = 10;  ///< [N], more than a device's peak
 
+  /// Uses up what explains `wanted` [N] more to that side. @returns how much of it.
+  [[nodiscard]] double explain(double side, double wanted) noexcept {
+    const double by_motion = std::min(wanted, std::max(0.0, side * explained_));
+    const double beside = std::min(wanted - by_motion, spare_);
+    explained_ -= side * by_motion;
+    spare_ -= beside;
+    return by_motion + beside;
+  }
   /// A force that falls as the hand goes out may come again as the hand comes back.
   void take_back(double force, double fall) noexcept {
     if (force > 0 && explained_ < 0) explained_ = std::min(0.0, explained_ + fall);
@@ -71,4 +85,4 @@ class ForceGrowth {
   double spare_{};      ///< [N]
 };
 
-}  // namespace palp::surgeon
+}  // namespace palp::coupling

@@ -1,15 +1,16 @@
-#include "surgeon_site/force_growth.h"
+#include "common/coupling/force_growth.h"
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "surgeon_site/encoder.h"
+#include "common/core/filters.h"
 
-namespace palp::surgeon {
+namespace palp::coupling {
 namespace {
 
 using std::chrono_literals::operator""ms;
@@ -81,22 +82,38 @@ TEST(ForceGrowthTest, ASpringUnderAQuickHandIsLeftAlone) {
   }
 }
 
+TEST(ForceGrowthTest, AChangeIsBoundedToBothSides) {
+  ForceGrowth still{{}};
+  double force = 2;
+  for (int i = 0; i < 10; ++i) {
+    still.move(0, 0, 1ms);
+    force = still.change(force, -1);
+  }
+  EXPECT_NEAR(force, 2 - 0.4, 1e-9);
+  ForceGrowth moved{{}};
+  moved.move(-1e-3, 0, 1ms);
+  EXPECT_NEAR(moved.change(2, -1), 2 - 1.5 - 0.04, 1e-9) << "the hand left";
+  moved.move(1e-3, 0, 1ms);
+  EXPECT_NEAR(moved.change(2, -1), 2 - 0.04, 1e-9) << "it came in: that explains no fall";
+}
+
 /// A hand at rest where an encoder cannot decide between two counts, and a peer that lies.
 RC_GTEST_PROP(ForceGrowthTest, AnEncoderThatCannotDecideExplainsNoMoreThanItsStep, ()) {
   const double step = *rc::gen::element(5e-6, 30e-6, 100e-6);  // [m]
   const ForceGrowthConfig config;
   ForceGrowth growth{config};
-  Encoder encoder{step, 60, 0};
+  VelocityEstimate estimate{60, 1e-3};
+  double position = 0;
   double force = 0;
   double slowest = 0;
   double fastest = 0;
   std::deque<double> last(10, 0.0);
   for (int i = 0; i < 300; ++i) {
-    const double before = encoder.position();
-    encoder.sample(*rc::gen::element(0.0, step), 1ms);
-    slowest = std::min(slowest, encoder.velocity());
-    fastest = std::max(fastest, encoder.velocity());
-    growth.move(encoder.position() - before, encoder.velocity(), 1ms);
+    const double before = std::exchange(position, *rc::gen::element(0.0, step));
+    const double velocity = estimate.step(position, 1);
+    slowest = std::min(slowest, velocity);
+    fastest = std::max(fastest, velocity);
+    growth.move(position - before, velocity, 1ms);
     force = growth.follow(force, *rc::gen::element(0.0, 1.0, 100.0));
     const double swing = config.stiffness * step + config.damping * (fastest - slowest);
     // What leaks away in the memory comes again.
@@ -108,4 +125,4 @@ RC_GTEST_PROP(ForceGrowthTest, AnEncoderThatCannotDecideExplainsNoMoreThanItsSte
 }
 
 }  // namespace
-}  // namespace palp::surgeon
+}  // namespace palp::coupling
