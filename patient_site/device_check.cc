@@ -36,7 +36,7 @@ Result<std::string> DeviceCheck::check_modbus(const std::string& name, const std
   DevicePlan plan = *plan_named(name);
   io::ModbusPort port{plan.address};
   const auto pass = [this](Duration span) { clock_.pass(span); };
-  if (plan.profile.move) {
+  if (!plan.profile.move.empty()) {
     auto found = AxisCheck{plan, port, clock_, pass, talk_}.run();
     if (!found) return tl::unexpected{found.error()};
     plan = std::move(*found);

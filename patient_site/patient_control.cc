@@ -52,7 +52,11 @@ PatientControl::PatientControl(const PatientConfig& config,
 void PatientControl::note_not_finite(bool finite, bool& was_finite) noexcept {
   if (!finite && was_finite) account_.note(NoteCode::NotFinite);
   was_finite = finite;
-  if (!finite) device_faulted_ = true;
+  find_fault(!finite, NoteCode::DeviceFault);
+}
+
+void PatientControl::find_fault(bool found, NoteCode what) noexcept {
+  if (found && device_fault_ == NoteCode::None) device_fault_ = what;
 }
 
 /// A device that gives no numbers is broken: the last good ones stay, and the site stops.
@@ -60,7 +64,7 @@ void PatientControl::take_stage(const StageState& read) noexcept {
   const bool finite =
       std::isfinite(read.position) && std::isfinite(read.velocity) && is_finite(read.place);
   note_not_finite(finite, stage_was_finite_);
-  device_faulted_ = device_faulted_ || read.faulted;
+  find_fault(read.faulted, NoteCode::DeviceFault);
   now_.velocity = 0;
   if (!begun_) stage_sampled_at_ = now_.at;
   if (!finite) return;
@@ -76,13 +80,13 @@ void PatientControl::take_force(const std::optional<ForceSample>& read) noexcept
   if (read) {
     const bool finite = std::isfinite(read->force);
     note_not_finite(finite, force_was_finite_);
-    device_faulted_ = device_faulted_ || read->saturated;
+    find_fault(read->saturated, NoteCode::SensorSaturated);
     if (finite) {
       now_.contact_force = read->force;
       force_sampled_at_ = std::max(force_sampled_at_, read->sampled_at);
     }
   }
-  if (now_.at - force_sampled_at_ > config_.sensor_stale) device_faulted_ = true;
+  find_fault(now_.at - force_sampled_at_ > config_.sensor_stale, NoteCode::SensorSilent);
 }
 
 /// Only while the tip has somewhere to go: the state is that of the tick before, and so the target.
@@ -91,12 +95,14 @@ void PatientControl::watch_devices(const Lapse& lapse) noexcept {
     watch_.reset();
     return;
   }
-  const bool stuck = watch_.stuck({.tip = now_.position,
-                                   .target = now_.command,
-                                   .force = now_.contact_force,
-                                   .in_tissue = gate_.inside(now_.position)},
-                                  lapse);
-  device_faulted_ = device_faulted_ || stuck;
+  const DeviceWatch::Stuck stuck = watch_.judge({.tip = now_.position,
+                                                .target = now_.command,
+                                                .force = now_.contact_force,
+                                                .felt_at = force_sampled_at_,
+                                                .in_tissue = gate_.inside(now_.position)},
+                                               lapse);
+  find_fault(stuck.sensor, NoteCode::SensorStuck);
+  find_fault(stuck.stage, NoteCode::StageStuck);
 }
 
 SupervisorOutput PatientControl::supervise(const PatientInputs& given,
@@ -107,7 +113,7 @@ SupervisorOutput PatientControl::supervise(const PatientInputs& given,
   in.peer = given.arrived.peer;
   in.peer_heard = given.arrived.peer_heard;
   in.emergency_stop = given.user.emergency_stop;
-  in.device_faulted = device_faulted_;
+  in.device_fault = device_fault_;
   in.overslept = lapse.passed() > kLateMax;
   in.force_exceeded = now_.contact_force > config_.gate.force_stop;
   in.local_reset = given.user.resets != resets_;
@@ -170,7 +176,7 @@ MotionAnswer PatientControl::limit(double target, const Place& place, const Laps
 PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
   const Lapse lapse = account_.begin_tick(in.now);
   now_.at = in.now;
-  device_faulted_ = false;
+  device_fault_ = NoteCode::None;
   take_stage(in.stage);
   take_force(in.force);
   gate_.feel(now_.position, now_.contact_force);

@@ -81,6 +81,7 @@ class PatientControl {
   void take_force(const std::optional<ForceSample>& read) noexcept;
   void watch_devices(const Lapse& lapse) noexcept;
   void note_not_finite(bool finite, bool& was_finite) noexcept;
+  void find_fault(bool found, record::NoteCode what) noexcept;
   [[nodiscard]] SupervisorOutput supervise(const PatientInputs& in, const Lapse& lapse) noexcept;
   void record_decision(const SupervisorOutput& decision, SiteState before) noexcept;
   [[nodiscard]] coupling::PatientInput law_input(const link::Arrivals& arrived) const noexcept;
@@ -98,8 +99,8 @@ class PatientControl {
   record::SiteAccount account_;
   PatientStatus now_;  ///< of this tick: what is shown, and what one tick leaves to the next
   bool begun_{};
-  bool gate_begun_{};      ///< with the first reading that has numbers
-  bool device_faulted_{};  ///< in this tick
+  bool gate_begun_{};                ///< with the first reading that has numbers
+  record::NoteCode device_fault_{};  ///< the first that was found in this tick
   bool stage_was_finite_{true};
   bool force_was_finite_{true};
   bool session_began_{};  ///< or ended, in this tick

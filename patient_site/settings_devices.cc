@@ -103,7 +103,7 @@ DeviceProfile make_profile(const RegisterProfile& message) {
   profile.life_within = from_milliseconds(message.life_ms());
   profile.stuck_after = from_milliseconds(message.stuck_ms());
   for (const auto& one : message.start()) profile.start.push_back(make_step(one));
-  if (message.has_move()) profile.move = make_write(message.move());
+  for (const auto& one : message.move()) profile.move.push_back(make_write(one));
   if (message.has_stop()) profile.stop = make_write(message.stop());
   profile.exchange = message.exchange();
   profile.only_changes = message.only_changes();
@@ -189,7 +189,7 @@ Result<DevicePlans> sound(DevicePlans plans, const std::string& name) {
     return fail(name + ": a stage has the axes x and y, or neither");
   }
   for (const auto* axis : {&plans.normal, &plans.x, &plans.y}) {
-    if (*axis && !(*axis)->profile.move) {
+    if (*axis && (*axis)->profile.move.empty()) {
       return fail(name + ": " + (*axis)->profile.name + " is no axis");
     }
   }
@@ -287,7 +287,7 @@ double rounded(double value) {
 
 void enter(const DevicePlan& found, ModbusDevice& message) {
   const DeviceInstallation& built_in = found.installation;
-  if (found.profile.move) {
+  if (!found.profile.move.empty()) {
     message.set_zero_mm(rounded(built_in.zero * 1e3));
     message.set_reversed(built_in.reversed);
     message.set_um_per_count(rounded(built_in.position_unit * 1e6));

@@ -16,7 +16,7 @@ bool PatientSupervisor::engagement(const SupervisorInput& in) const noexcept {
 
 PatientSupervisor::Arrow PatientSupervisor::stop(const SupervisorInput& in) const noexcept {
   if (in.emergency_stop) return {SiteState::Stopped, NoteCode::EmergencyStop};
-  if (in.device_faulted) return {SiteState::Stopped, NoteCode::DeviceFault};
+  if (in.device_fault != NoteCode::None) return {SiteState::Stopped, in.device_fault};
   // A stage that can only move out is not held in the tissue, nor kept from a reset, by its force.
   const bool may_press =
       state_ != SiteState::Parked && state_ != SiteState::Retract && state_ != SiteState::Stopped;

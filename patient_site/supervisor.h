@@ -15,13 +15,13 @@ struct SupervisorInput {
   SiteReport peer;
   bool peer_heard{};
   bool emergency_stop{};
-  bool device_faulted{};
-  bool overslept{};        ///< this tick is late beyond what a law may go on over
-  bool force_exceeded{};   ///< the contact force is beyond what a site may go on with
-  bool local_reset{};      ///< the user's way out of Stopped, true for one tick
-  bool free_to_follow{};   ///< no contact, or clear of the surface
-  bool retracted{};        ///< the tip stands clear
-  double contact_force{};  ///< [N], for the notes
+  record::NoteCode device_fault{};  ///< the reason to stop; None: they do their work
+  bool overslept{};                 ///< this tick is late beyond what a law may go on over
+  bool force_exceeded{};            ///< the contact force is beyond what a site may go on with
+  bool local_reset{};               ///< the user's way out of Stopped, true for one tick
+  bool free_to_follow{};            ///< no contact, or clear of the surface
+  bool retracted{};                 ///< the tip stands clear
+  double contact_force{};           ///< [N], for the notes
 };
 
 /// `reason` and `refused` are None where nothing changed and nothing was refused.

@@ -29,6 +29,10 @@ enum class NoteCode : std::uint16_t {
   EmergencyStop = 15,
   LocalReset = 16,
   TickLate = 17,
+  StageStuck = 18,
+  SensorStuck = 19,
+  SensorSilent = 20,
+  SensorSaturated = 21,
   // Events.
   EngageRefusedForce = 32,  ///< detail: contact force [N]
   ForceGateClamped = 33,    ///< detail: force asked for [N]

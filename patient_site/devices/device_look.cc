@@ -17,8 +17,14 @@ std::string address_text(const io::ModbusAddress& address) {
   return "tcp:" + address.host + ":" + std::to_string(address.port);
 }
 
-std::string why_not(io::PortFault fault, const io::ModbusAddress& address) {
+std::string why_not(io::PortFault fault, const DevicePlan& plan) {
+  const io::ModbusAddress& address = plan.address;
   std::string text{io::to_string(fault)};
+  if (fault == io::PortFault::Refused) {
+    const int first = plan.profile.read_address;
+    return text + ": it has no registers " + std::to_string(first) + " to " +
+           std::to_string(first + plan.profile.read_count - 1) + "; is that its profile?";
+  }
   if (fault != io::PortFault::NotOpen || address.line.empty()) return text;
   const char* const line = address.line.c_str();
   if (::access(line, F_OK) != 0) return text + ": there is no such line";
@@ -72,7 +78,7 @@ DeviceLook look_at(const std::string& place, const DevicePlan& plan, io::Registe
   }
   port.close();
   look.usable = fault == io::PortFault::None;
-  look.found = look.usable ? readings(plan, words) : why_not(fault, plan.address);
+  look.found = look.usable ? readings(plan, words) : why_not(fault, plan);
   return look;
 }
 

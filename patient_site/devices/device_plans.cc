@@ -21,13 +21,13 @@ std::size_t words_of(const RegisterWrite& write) noexcept {
 
 /// What one period has on the line, the device's own delays included.
 Duration time_of_period(const DeviceProfile& profile, const io::ModbusAddress& address) noexcept {
-  const std::size_t moved = profile.move ? words_of(*profile.move) : 0;
-  const bool two = profile.move && !profile.exchange;
   std::size_t bytes = (profile.exchange ? kExchangeFrame : kReadFrame) + 2 * profile.read_count;
-  bytes += 2 * moved + (two ? kWriteFrame : 0);
+  const std::size_t frame = profile.exchange ? 0 : kWriteFrame;
+  for (const RegisterWrite& one : profile.move) bytes += frame + 2 * words_of(one);
   const double bits = address.parity == 'N' ? 10 : 11;
+  const std::size_t requests = 1 + (profile.exchange ? 0 : profile.move.size());
   return from_seconds(bits * static_cast<double>(bytes) / address.baud) +
-         (two ? 2 : 1) * profile.reply_delay;
+         static_cast<std::int64_t>(requests) * profile.reply_delay;
 }
 
 }  // namespace

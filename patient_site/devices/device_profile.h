@@ -86,7 +86,7 @@ struct DeviceProfile {
   Duration life_within{};
   Duration stuck_after{};  ///< no force stays the same for so long; 0: it may
   std::vector<StartStep> start;
-  std::optional<RegisterWrite> move;  ///< an axis
+  std::vector<RegisterWrite> move;  ///< to a target, in this order; empty: no axis
   std::optional<RegisterWrite> stop;
   bool exchange{};      ///< `move` and the reading in one request, function 23
   bool only_changes{};  ///< a repeated target would begin a new move

@@ -41,7 +41,12 @@ std::optional<std::string> flaw_of(const DeviceProfile& profile,
       return outside("condition of its start");
     }
   }
-  if (profile.move && !profile.position) return profile.name + " moves, and has no position";
+  if (!profile.move.empty() && !profile.position) {
+    return profile.name + " moves, and has no position";
+  }
+  if (profile.exchange && profile.move.size() != 1) {
+    return profile.name + " exchanges: its move is one request";
+  }
   if (installation.travel_min >= installation.travel_max) return profile.name + " has no travel";
   return std::nullopt;
 }

@@ -104,10 +104,10 @@ void RegisterDevice::enter_start(TimePoint now) noexcept {
 bool RegisterDevice::poll(const Clock& clock) {
   const TimePoint began = clock.now();
   PortFault fault{};
-  if (profile_.exchange && profile_.move && now_.state == DeviceState::Ready) {
+  if (profile_.exchange && now_.state == DeviceState::Ready) {
     std::array<std::uint16_t, kWriteWordsMax> written{};
-    const std::size_t count = words_of(*profile_.move, written);
-    fault = port_.exchange(profile_.move->address,
+    const std::size_t count = words_of(profile_.move.front(), written);
+    fault = port_.exchange(profile_.move.front().address,
                            std::span{written}.first(count),
                            profile_.read_address,
                            words_.words());
@@ -344,11 +344,14 @@ PortFault RegisterDevice::send(const RegisterWrite& write) {
 }
 
 void RegisterDevice::send_move(TimePoint now) {
-  if (!profile_.move || !profile_.position) return;
+  if (profile_.move.empty() || !profile_.position) return;
   const double counts = raw_position(motion_.command) / profile_.position->unit;
   const auto target = to_words(counts, profile_.position->kind, profile_.order);
   if (profile_.only_changes && anything_sent_ && target == sent_) return;
-  const PortFault fault = send(*profile_.move);
+  PortFault fault{};
+  for (const RegisterWrite& one : profile_.move) {
+    if (fault == PortFault::None) fault = send(one);
+  }
   note_transfer(fault, now);
   if (fault != PortFault::None) {
     motion_ = delivered_;

@@ -1,6 +1,7 @@
 // A person and a drive, in virtual time.
 #include "patient_site/axis_check.h"
 
+#include <cmath>
 #include <functional>
 #include <sstream>
 #include <stdexcept>
@@ -109,13 +110,13 @@ TEST_F(AxisCheckTest, OneThatNeverRestsOrGoesOnIsTold) {
 }
 
 TEST_F(AxisCheckTest, OneThatSwingsAboutDoesNotArrive) {
-  during_ = [this] {
+  during_ = [this] {  // slower than a jump, and never where it was sent
     if (!was_told("it moved after")) return;
-    drive_.wobble = 0.9e-3;
-    drive_.offset = 0.45e-3;
+    drive_.offset = 1.2e-3 + 0.5e-3 * std::sin(3 * seconds(drive_.clock.at.time_since_epoch()));
   };
   const auto found = check("yes\nout\n2\nno\n");
-  EXPECT_TRUE(!found) << out_.str();
+  ASSERT_FALSE(found) << out_.str();
+  EXPECT_EQ(found.error().text.find("it stands at "), 0) << found.error().text;
 }
 
 TEST(AxisThatFeelsTest, ItsUnloadedForceIsNoTouchForTheCheck) {

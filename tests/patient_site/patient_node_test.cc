@@ -243,21 +243,24 @@ TEST(PatientNodeTest, ComesOutOfHoldWithARamp) {
 }
 
 TEST(PatientNodeTest, EveryFaultOfADeviceStopsTheSite) {
-  const auto stopped_by = [](auto&& fault) {
+  const auto reason_after = [](auto&& fault) {
     World world;
     world.engage();
     fault(world.site);
     world.run(milliseconds{60});
     EXPECT_TRUE(world.site.halted);
-    const auto transitions = world.recorder.all<Transition>();
-    EXPECT_EQ(transitions.back().reason, static_cast<std::uint16_t>(NoteCode::DeviceFault));
-    return world.status().state;
+    EXPECT_EQ(world.status().state, SiteState::Stopped);
+    return static_cast<NoteCode>(world.recorder.all<Transition>().back().reason);
   };
-  EXPECT_EQ(stopped_by([](FaultySite& site) { site.stage_faulted = true; }), SiteState::Stopped);
-  EXPECT_EQ(stopped_by([](FaultySite& site) { site.stage_gives_nan = true; }), SiteState::Stopped);
-  EXPECT_EQ(stopped_by([](FaultySite& site) { site.force = std::nan(""); }), SiteState::Stopped);
-  EXPECT_EQ(stopped_by([](FaultySite& site) { site.saturated = true; }), SiteState::Stopped);
-  EXPECT_EQ(stopped_by([](FaultySite& site) { site.silent = true; }), SiteState::Stopped);
+  EXPECT_EQ(reason_after([](FaultySite& site) { site.stage_faulted = true; }),
+            NoteCode::DeviceFault);
+  EXPECT_EQ(reason_after([](FaultySite& site) { site.stage_gives_nan = true; }),
+            NoteCode::DeviceFault);
+  EXPECT_EQ(reason_after([](FaultySite& site) { site.force = std::nan(""); }),
+            NoteCode::DeviceFault);
+  EXPECT_EQ(reason_after([](FaultySite& site) { site.saturated = true; }),
+            NoteCode::SensorSaturated);
+  EXPECT_EQ(reason_after([](FaultySite& site) { site.silent = true; }), NoteCode::SensorSilent);
 }
 
 TEST(PatientNodeTest, ASensorWhoseReadingStaysWhileTheTipMovesInContactStopsTheSite) {
@@ -272,6 +275,7 @@ TEST(PatientNodeTest, ASensorWhoseReadingStaysWhileTheTipMovesInContactStopsTheS
     EXPECT_EQ(world.status().state, SiteState::Engaged);
     world.move(6e-3, milliseconds{200});
     EXPECT_EQ(world.status().state, SiteState::Stopped) << reading;
+    EXPECT_EQ(world.status().reason, NoteCode::SensorStuck);
   }
 }
 
@@ -294,8 +298,7 @@ TEST(PatientNodeTest, AStageThatDoesNotFollowStopsTheSite) {
   EXPECT_EQ(world.status().state, SiteState::Engaged);
   world.run(milliseconds{150});
   EXPECT_EQ(world.status().state, SiteState::Stopped);
-  const auto transitions = world.recorder.all<Transition>();
-  EXPECT_EQ(transitions.back().reason, static_cast<std::uint16_t>(NoteCode::DeviceFault));
+  EXPECT_EQ(world.status().reason, NoteCode::StageStuck);
 }
 
 TEST(PatientNodeTest, AShortSilenceOfTheSensorIsNoFault) {

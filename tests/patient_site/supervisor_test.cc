@@ -175,7 +175,7 @@ std::vector<Arrow> arrows() {
        changed(quiet(),
                [](auto& in) {
                  in.local_reset = true;
-                 in.device_faulted = true;
+                 in.device_fault = NoteCode::SensorStuck;
                }),
        S::Stopped,
        NoteCode::None},
@@ -186,9 +186,9 @@ std::vector<Arrow> arrows() {
        NoteCode::EmergencyStop},
       {"engaged_fault",
        S::Engaged,
-       stop([](auto& in) { in.device_faulted = true; }),
+       stop([](auto& in) { in.device_fault = NoteCode::SensorStuck; }),
        S::Stopped,
-       NoteCode::DeviceFault},
+       NoteCode::SensorStuck},
       {"engaged_force",
        S::Engaged,
        stop([](auto& in) { in.force_exceeded = true; }),

@@ -32,4 +32,14 @@ inline bool is_documented(const std::string& row) {
   return page.find(row + "\n") != std::string::npos;
 }
 
+/// How many rows the page has of this device: what is promised is what is measured.
+inline int documented_rows(const std::string& device) {
+  std::ifstream file{PALP_TREE "/docs/hardware.md"};
+  int rows = 0;
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind("| " + device + " | ", 0) == 0) ++rows;
+  }
+  return rows;
+}
+
 }  // namespace palp

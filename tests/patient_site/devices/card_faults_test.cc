@@ -3,9 +3,9 @@
 #include <cmath>
 #include <functional>
 
-#include "common/core/random.h"
 #include "tests/patient_site/devices/card_bench.h"
 #include "tests/support/fault_rows.h"
+#include "tests/support/random_runs.h"
 
 namespace palp::patient {
 namespace {
@@ -65,6 +65,7 @@ std::string card_state(const CardReading& card) {
 class CardFaultTest : public testing::TestWithParam<CardKind> {};
 
 TEST_P(CardFaultTest, EachEndsWhereTheTableSaysInTime) {
+  int rows = 0;
   for (const CardFault& fault : card_faults()) {
     if (fault.only_wide && GetParam() != CardKind::Usb1608) continue;
     CardFaultBench card{GetParam()};
@@ -84,13 +85,15 @@ TEST_P(CardFaultTest, EachEndsWhereTheTableSaysInTime) {
     const std::string row = fault_row(
         std::string{card_model(GetParam()).name}, fault.name, in_words(fault.state), after, "-");
     EXPECT_TRUE(is_documented(row)) << row;
+    ++rows;
   }
+  EXPECT_EQ(rows, documented_rows(std::string{card_model(GetParam()).name}));
 }
 
 TEST_P(CardFaultTest, NoSequenceOfThemGivesAForceThatIsNoNumber) {
   CardFaultBench card{GetParam()};
   for (std::uint64_t turn = 0; turn < 1000; ++turn) {
-    const RandomStream stream{18, turn};
+    const RandomStream stream = random_run(18, turn);
     std::uint64_t index = 0;
     const auto draw = [&](std::uint64_t count) { return stream.bits(index++) % count; };
     for (int i = 0; i < 8; ++i) {

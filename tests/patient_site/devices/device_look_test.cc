@@ -41,6 +41,9 @@ TEST(DeviceLookTest, SaysWhyOneCannotBeUsed) {
   const DeviceLook silent = look_at("force sensor", plan_of("tlb4", "tcp:127.0.0.1:502"), port);
   EXPECT_FALSE(silent.usable);
   EXPECT_EQ(silent.found, "no reply");
+  port.fault = io::PortFault::Refused;
+  EXPECT_EQ(look_at("force sensor", plan_of("tlb4", "tcp:127.0.0.1:502"), port).found,
+            "request refused: it has no registers 5 to 13; is that its profile?");
 }
 
 TEST(DevicesCommandTest, ListsForPeopleAndForScripts) {

@@ -59,7 +59,7 @@ class DriveModel {
     command.move = true;
     command.target = target;
   }
-  [[nodiscard]] bool axis() const { return profile_.move.has_value(); }
+  [[nodiscard]] bool axis() const { return !profile_.move.empty(); }
   [[nodiscard]] const DeviceProfile& profile() const { return profile_; }
   [[nodiscard]] double place() const { return place_; }  ///< [m], where it really is
   [[nodiscard]] std::string why() const { return describe_reason(reading, profile_); }

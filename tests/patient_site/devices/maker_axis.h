@@ -14,7 +14,7 @@ namespace palp::patient {
 class MakerAxis {
  public:
   explicit MakerAxis(const std::string& name = "iai", DeviceInstallation built_in = installation())
-      : profile_{find_profile(name).value()}, device_{profile_, built_in, port} {
+      : MakerAxis(find_profile(name).value(), built_in) {
     if (name == "iai") {
       port.words[0x9005] = 0x3010;
       port.written = [this](std::uint16_t address) {
@@ -31,6 +31,8 @@ class MakerAxis {
       };
     }
   }
+  MakerAxis(const DeviceProfile& profile, const DeviceInstallation& built_in)
+      : profile_{profile}, device_{profile_, built_in, port} {}
   static DeviceInstallation installation() {
     DeviceInstallation built_in;
     built_in.zero = 0.05;

@@ -31,5 +31,12 @@ TEST(ProfileFlawTest, NamesWhatIsNotRead) {
   EXPECT_THAT(flaw(profile), HasSubstr("125"));
 }
 
+TEST(ProfileFlawTest, OneRequestCannotReadAndWriteTwice) {
+  DeviceProfile profile = find_profile("orca").value();
+  EXPECT_EQ(flaw(profile), "none");
+  profile.move.push_back(profile.move.front());
+  EXPECT_THAT(flaw(profile), HasSubstr("exchanges"));
+}
+
 }  // namespace
 }  // namespace palp::patient

@@ -234,6 +234,25 @@ TEST(RegisterDeviceTest, ATareOfADeviceThatIsNotReadyIsRefused) {
   EXPECT_EQ(cell.cycles(5).tare.refused, 1U) << "once";
 }
 
+TEST(RegisterDeviceTest, AMoveOfSeveralRequestsGoesInTheirOrderAndNotWithoutItsFirst) {
+  constexpr std::uint16_t kTarget = 0x9900;
+  constexpr std::uint16_t kGo = 0x7000;
+  DeviceProfile profile = find_profile("iai").value();
+  profile.move.push_back({WriteKind::Registers, kGo, {{.number = 1}}});
+  MakerAxis axis{profile, MakerAxis::installation()};
+  axis.port.words[0x9005] = 0x3010;
+  ASSERT_EQ(axis.cycles(20).state, DeviceState::Ready) << axis.why();
+  std::vector<std::uint16_t> heard;
+  axis.port.written = [&](std::uint16_t address) { heard.push_back(address); };
+  axis.move(0.04);
+  axis.cycles(1);
+  EXPECT_EQ(heard, (std::vector<std::uint16_t>{kTarget, kGo}));
+  heard.clear();
+  axis.port.deaf_at = kTarget;
+  axis.cycles(1);
+  EXPECT_TRUE(heard.empty());
+}
+
 TEST(ProfileTextsTest, ListsWhatIsBuiltIn) {
   EXPECT_EQ(profile_names(), "az, iai, orca, tlb4, z-sg");
   EXPECT_TRUE(profile_text("robot").empty());

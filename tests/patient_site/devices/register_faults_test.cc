@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "common/core/random.h"
 #include "tests/patient_site/devices/drive_model.h"
 #include "tests/support/fault_rows.h"
+#include "tests/support/random_runs.h"
 
 namespace palp::patient {
 namespace {
@@ -115,6 +115,7 @@ class RegisterFaultTest : public testing::TestWithParam<std::string> {};
 TEST_P(RegisterFaultTest, EachEndsWhereTheTableSaysInTimeAndWithoutARunaway) {
   std::vector<Fault> faults = faults_of_lines();
   for (const Fault& one : faults_of_devices()) faults.push_back(one);
+  int rows = 0;
   for (const Fault& fault : faults) {
     if (!fault.only.empty() && fault.only.find(GetParam()) == std::string::npos) continue;
     DriveModel device{GetParam()};
@@ -143,7 +144,9 @@ TEST_P(RegisterFaultTest, EachEndsWhereTheTableSaysInTimeAndWithoutARunaway) {
     const std::string row = fault_row(
         device.profile().name, fault.name, in_words(fault.state), after_ms, beyond.data());
     EXPECT_TRUE(is_documented(row)) << row;
+    ++rows;
   }
+  EXPECT_EQ(rows, documented_rows(find_profile(GetParam())->name));
 }
 
 TEST_P(RegisterFaultTest, EveryThirdAnswerIsEnoughToMoveAndToFeel) {
@@ -181,7 +184,7 @@ TEST_P(RegisterFaultTest, APlaceThatJumpsToAndFroAtTheLimitIsFound) {
 
 TEST_P(RegisterFaultTest, NoSequenceOfThemMakesItJumpOrLeaveItsTravel) {
   for (std::uint64_t run = 0; run < 1000; ++run) {
-    const RandomStream stream{19, run};
+    const RandomStream stream = random_run(19, run);
     std::uint64_t index = 0;
     const auto draw = [&](std::uint64_t count) { return stream.bits(index++) % count; };
     DriveModel device{GetParam()};

@@ -8,11 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include "common/core/random.h"
 #include "surgeon_site/devices/firmware/paddle/paddle_report.h"
 #include "surgeon_site/devices/master_plan.h"
 #include "surgeon_site/settings_devices.h"
 #include "tests/support/fault_rows.h"
+#include "tests/support/random_runs.h"
 #include "tests/surgeon_site/devices/hid_bench.h"
 
 namespace palp::surgeon {
@@ -165,6 +165,7 @@ std::string state_of(const MasterReading& reading) {
 class MasterFaultTest : public testing::TestWithParam<std::string> {};
 
 TEST_P(MasterFaultTest, EachEndsWhereTheTableSaysInTimeAndWithoutForce) {
+  int rows = 0;
   for (const Fault& fault : faults()) {
     if (!fault.only.empty() && fault.only.find(GetParam()) == std::string::npos) continue;
     FarEnd far{GetParam()};
@@ -184,7 +185,9 @@ TEST_P(MasterFaultTest, EachEndsWhereTheTableSaysInTimeAndWithoutForce) {
     const std::string row = fault_row(
         far.name(), fault.name, in_words(fault.state), after, far.has_force() ? "0 N" : "-");
     EXPECT_TRUE(is_documented(row)) << row;
+    ++rows;
   }
+  EXPECT_EQ(rows, documented_rows(FarEnd{GetParam()}.name()));
 }
 
 TEST_P(MasterFaultTest, ACableFreesItOfNoFault) {
@@ -210,7 +213,7 @@ TEST_P(MasterFaultTest, ACableFreesItOfNoFault) {
 TEST_P(MasterFaultTest, NoSequenceOfThemGivesForceThatIsNotAskedFor) {
   FarEnd far{GetParam()};
   for (std::uint64_t run = 0; run < 1000; ++run) {
-    const RandomStream stream{20, run};
+    const RandomStream stream = random_run(20, run);
     std::uint64_t index = 0;
     const auto draw = [&](std::uint64_t count) { return stream.bits(index++) % count; };
     for (int i = 0; i < 12; ++i) {

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "common/core/random.h"
 #include "common/io/device/hid_port.h"
 #include "surgeon_site/devices/master_device.h"
 #include "surgeon_site/devices/master_plan.h"
@@ -16,6 +15,7 @@
 #include "tests/common/io/device/fake_hidapi.h"
 #include "tests/common/io/device/fake_registers.h"
 #include "tests/support/fault_rows.h"
+#include "tests/support/random_runs.h"
 
 namespace palp::surgeon {
 namespace {
@@ -214,12 +214,13 @@ TEST(ShaftMotorTest, EachFaultEndsWhereTheTableSaysInTimeAndWithoutForce) {
         fault_row("Iris ORCA as a master", fault.name, in_words(fault.state), after, "0 N");
     EXPECT_TRUE(is_documented(row)) << row;
   }
+  EXPECT_EQ(faults().size(), static_cast<std::size_t>(documented_rows("Iris ORCA as a master")));
 }
 
 TEST(ShaftMotorTest, NoSequenceOfThemGivesForceThatIsNotAskedFor) {
   ShaftBench shaft;
   for (std::uint64_t run = 0; run < 1000; ++run) {
-    const RandomStream stream{21, run};
+    const RandomStream stream = random_run(21, run);
     std::uint64_t index = 0;
     const auto draw = [&](std::uint64_t count) { return stream.bits(index++) % count; };
     for (int i = 0; i < 12; ++i) {

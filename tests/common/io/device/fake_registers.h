@@ -25,7 +25,7 @@ class FakeRegisters final : public io::RegisterPort {
   std::map<std::uint16_t, std::uint16_t> words;
   std::map<std::uint16_t, bool> coils;
   io::PortFault fault{};                   ///< of every transaction
-  std::optional<std::uint16_t> deaf_at{};  ///< readings from there are not answered
+  std::optional<std::uint16_t> deaf_at{};  ///< requests there are not answered
   bool openable{true};
   int opened{};
   int writes{};
@@ -44,6 +44,7 @@ class FakeRegisters final : public io::RegisterPort {
   }
   io::PortFault write(std::uint16_t address, std::span<const std::uint16_t> in) override {
     if (fault != io::PortFault::None) return fault;
+    if (address == deaf_at) return io::PortFault::NoReply;
     ++writes;
     std::uint16_t at = address;
     for (const auto word : in) words[at++] = word;
