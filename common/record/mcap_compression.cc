@@ -11,6 +11,11 @@ std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t so_far) {
   return static_cast<std::uint32_t>(::crc32_z(so_far, data, bytes.size()));
 }
 
+std::uint32_t crc32_in_pieces(const FileBytes& bytes, std::uint32_t so_far) {
+  bytes.in_pieces([&](std::span<const std::byte> piece) { so_far = crc32(piece, so_far); });
+  return so_far;
+}
+
 struct ChunkCompressor::Context {
   explicit Context(int compression_level) : level{compression_level} {}
   Context(const Context&) = delete;
@@ -47,6 +52,7 @@ ChunkDecompressor::Answer ChunkDecompressor::decompress(std::string_view compres
   if (uncompressed_size > size_max_) {
     return {.records = {}, .error = "claims more uncompressed bytes than the limit"};
   }
+  if (bytes.size() > size_max_) return {.records = {}, .error = "has more bytes than the limit"};
   if (compression.empty()) {
     return bytes.size() == uncompressed_size
                ? Answer{.records = bytes, .error = {}}

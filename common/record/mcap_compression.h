@@ -13,6 +13,8 @@ namespace palp::record {
 
 /// CRC-32 of zlib; `so_far` continues an earlier one. "123456789" gives 0xCBF43926.
 [[nodiscard]] std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t so_far = 0);
+/// The same of many bytes of a file, of which only a piece at a time is in memory.
+[[nodiscard]] std::uint32_t crc32_in_pieces(const FileBytes& bytes, std::uint32_t so_far = 0);
 
 /// One zstd context, kept between chunks.
 class ChunkCompressor {

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/record/file_bytes.h"
+
 /// The bytes of MCAP (https://mcap.dev/spec): opcodes and little-endian building blocks that
 /// writer and reader share.
 namespace palp::record {
@@ -58,7 +60,7 @@ struct McapAttachment {
   std::uint64_t create_time{};  ///< [ns]
   std::string_view name;
   std::string_view media_type;
-  std::span<const std::byte> data;
+  FileBytes data;
 };
 
 template <std::integral T>

@@ -95,6 +95,10 @@ std::optional<McapItem> McapReader::next_in_chunk() {
 }
 
 std::optional<McapItem> McapReader::next_in_file() {
+  while (next_gap_ < gaps_.size() && gaps_[next_gap_].begin <= offset_) {
+    const Gap& gap = gaps_[next_gap_++];
+    if (gap.begin == offset_) offset_ = gap.end;
+  }
   const auto record = cut_record(file_, offset_);
   if (!record) {
     report_.bytes_unread = file_.size() - offset_;
@@ -106,11 +110,10 @@ std::optional<McapItem> McapReader::next_in_file() {
 }
 
 void McapReader::leave_behind(std::uint64_t offset) {
-  constexpr std::size_t kForgetEvery = std::size_t{1} << 20;  // [bytes]
   const auto read = static_cast<std::size_t>(offset) - read_up_to_;
-  if (!window_) data_crc_ = crc32(file_.subspan(read_up_to_, read), data_crc_);
+  if (!window_) data_crc_ = crc32_in_pieces(mapping_.part(read_up_to_, read), data_crc_);
   read_up_to_ += read;
-  if (read_up_to_ - forgotten_ < kForgetEvery) return;
+  if (read_up_to_ - forgotten_ < FileBytes::kPieceSize) return;
   mapping_.forget(forgotten_, read_up_to_);
   forgotten_ = read_up_to_;
 }
@@ -278,6 +281,10 @@ std::optional<McapItem> McapReader::read_channel(const RawRecord& record) {
 }
 
 std::optional<McapItem> McapReader::read_message(const RawRecord& record) {
+  if (record.content.size() > limits_.chunk_size_max) {
+    fault(record.offset, "this message is longer than the limit");
+    return std::nullopt;
+  }
   ByteCursor cursor{record.content};
   McapMessage message;
   const auto id = cursor.read<std::uint16_t>();
@@ -302,6 +309,17 @@ std::optional<McapItem> McapReader::read_message(const RawRecord& record) {
   return message;
 }
 
+/// Who copies a file keeps these until its end.
+bool McapReader::admit_names(const RawRecord& record, std::size_t size) {
+  constexpr std::uint64_t kRecordSize = 64;
+  if (names_size_ + kRecordSize + size <= limits_.names_size_max) {
+    names_size_ += kRecordSize + size;
+    return true;
+  }
+  fault(record.offset, "attachments and metadata records have more or longer names than the limit");
+  return false;
+}
+
 std::optional<McapItem> McapReader::read_attachment(const RawRecord& record) {
   ByteCursor cursor{record.content};
   McapAttachment attachment;
@@ -309,13 +327,21 @@ std::optional<McapItem> McapReader::read_attachment(const RawRecord& record) {
   attachment.create_time = cursor.read<std::uint64_t>();
   attachment.name = cursor.text();
   attachment.media_type = cursor.text();
-  attachment.data = cursor.take(cursor.read<std::uint64_t>());
-  const std::size_t covered = record.content.size() - cursor.rest().size();
+  const auto size = cursor.read<std::uint64_t>();
+  const std::size_t content = record.offset + kMcapPrefixSize;
+  const std::size_t data = content + record.content.size() - cursor.rest().size();
+  cursor.take(size);
   const auto crc = cursor.read<std::uint32_t>();
-  if (!cursor.ok() || (crc != 0 && crc != crc32(record.content.first(covered)))) {
-    fault(record.offset,
-          cursor.ok() ? "this attachment has a wrong CRC"
-                      : "a field of this attachment reaches beyond its end");
+  if (!cursor.ok()) {
+    fault(record.offset, "a field of this attachment reaches beyond its end");
+    return std::nullopt;
+  }
+  if (!admit_names(record, attachment.name.size() + attachment.media_type.size())) {
+    return std::nullopt;
+  }
+  attachment.data = mapping_.part(data, size);
+  if (crc != 0 && crc != crc32_in_pieces(mapping_.part(content, data + size - content))) {
+    fault(record.offset, "this attachment has a wrong CRC");
     return std::nullopt;
   }
   ++report_.attachments;
@@ -335,6 +361,7 @@ std::optional<McapItem> McapReader::read_metadata(const RawRecord& record) {
     fault(record.offset, "a field of this metadata record reaches beyond its end");
     return std::nullopt;
   }
+  if (!admit_names(record, metadata.name.size())) return std::nullopt;
   ++report_.metadata;
   return metadata;
 }

@@ -69,13 +69,15 @@ struct McapFault {
 };
 
 struct McapLimits {
-  std::uint64_t chunk_size_max{64u << 20};  ///< [bytes], uncompressed
+  std::uint64_t chunk_size_max{64u << 20};  ///< [bytes], uncompressed; of a message without one
   /// What a file may unpack to at any of its places: so many bytes, and so many times the bytes up
   /// to there. Recordings of ours unpack to less than 30 times their size.
   std::uint64_t unpacked_size_free{64u << 20};  ///< [bytes]
   std::uint64_t unpacked_ratio_max{256};
-  std::uint64_t definitions_size_max{4u << 20};         ///< [bytes], of all schemas and channels
-  std::uint64_t metadata_size_max{2u << 20};            ///< [bytes], of one metadata record
+  std::uint64_t definitions_size_max{4u << 20};  ///< [bytes], of all schemas and channels
+  std::uint64_t metadata_size_max{2u << 20};     ///< [bytes], of one metadata record, of statistics
+  /// [bytes], of the names of all attachments and metadata records, and 64 for each.
+  std::uint64_t names_size_max{4u << 20};
   std::size_t chunk_places_max{std::size_t{1} << 20U};  ///< kept to be held against the index
   /// [bytes], of a schema or topic: names are compared with every message.
   std::size_t name_size_max{4096};
@@ -108,9 +110,10 @@ class McapReader {
   /// The next item, or nullopt at the end. Definitions come once, not again from the summary.
   std::optional<McapItem> next();
 
-  /// From now on chunks without a message in [`from`, `to`] [ns] are passed over unopened, in no
-  /// time; what the file says of itself as a whole is then not checked.
-  void only_between(std::uint64_t from, std::uint64_t to) noexcept { window_ = {from, to}; }
+  /// From now on chunks without a message in [`from`, `to`] [ns] are passed over unopened, and
+  /// where the file has an index not even looked at; what it says of itself as a whole is not
+  /// checked.
+  void only_between(std::uint64_t from, std::uint64_t to);
 
   [[nodiscard]] const McapReadReport& report() const noexcept { return report_; }
 
@@ -133,6 +136,7 @@ class McapReader {
   std::optional<McapItem> interpret(const RawRecord& record);
   void open_chunk(const RawRecord& record);
   [[nodiscard]] bool passes_over(std::uint64_t begin, std::uint64_t end) const noexcept;
+  void find_chunks_to_pass_over();
   bool admit_unpacked(const RawRecord& record, std::uint64_t size);
   std::optional<McapItem> read_schema(const RawRecord& record);
   std::optional<McapItem> read_channel(const RawRecord& record);
@@ -141,6 +145,7 @@ class McapReader {
   std::optional<McapItem> read_metadata(const RawRecord& record);
   std::optional<McapItem> read_statistics(const RawRecord& record);
   bool admit_definition(const RawRecord& record, std::uint64_t so_far);
+  bool admit_names(const RawRecord& record, std::size_t size);
   void check_message_index(const RawRecord& record);
   void check_chunk_index(const RawRecord& record);
   void leave_behind(std::uint64_t offset);
@@ -160,6 +165,12 @@ class McapReader {
     std::uint64_t to{};    ///< [ns]
   };
   std::optional<Window> window_;
+  struct Gap {
+    std::uint64_t begin{};  ///< a chunk outside of the window
+    std::uint64_t end{};    ///< behind its message indexes
+  };
+  std::vector<Gap> gaps_;  ///< in order
+  std::size_t next_gap_{};
   bool ended_{};
   ChunkDecompressor decompressor_;
   std::span<const std::byte> chunk_;  ///< records of the open chunk
@@ -172,6 +183,7 @@ class McapReader {
   std::map<std::uint16_t, McapSchema> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;
   std::uint64_t definitions_size_{};  ///< [bytes]
+  std::uint64_t names_size_{};        ///< [bytes], as in limits_
   std::uint64_t unpacked_{};          ///< [bytes] claimed by the chunks so far
   std::map<std::uint16_t, std::uint64_t> messages_by_channel_;
   McapReadReport report_;

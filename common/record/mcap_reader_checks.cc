@@ -6,6 +6,44 @@
 
 namespace palp::record {
 
+void McapReader::only_between(std::uint64_t from, std::uint64_t to) {
+  window_ = {from, to};
+  find_chunks_to_pass_over();
+}
+
+/// By the index at the end of a file that was closed. An index that lies leads to what is no record
+/// or is the wrong one, as any damage does.
+void McapReader::find_chunks_to_pass_over() {
+  gaps_.clear();
+  next_gap_ = 0;
+  constexpr std::size_t kTail = kMcapPrefixSize + kMcapFooterSize + kMcapMagic.size();
+  if (file_.size() < kTail) return;
+  const std::size_t footer_at = file_.size() - kTail;
+  std::size_t end = footer_at;
+  const auto footer = cut_record(file_, end);
+  if (!footer || footer->opcode != McapOpcode::Footer) return;
+  std::size_t at = ByteCursor{footer->content}.read<std::uint64_t>();
+  if (at == 0) return;
+  while (at < footer_at && gaps_.size() < limits_.chunk_places_max) {
+    const auto record = cut_record(file_, at);
+    if (!record || record->opcode == McapOpcode::Footer) return;
+    if (record->opcode != McapOpcode::ChunkIndex) continue;
+    ByteCursor cursor{record->content};
+    const auto first = cursor.read<std::uint64_t>();
+    const auto last = cursor.read<std::uint64_t>();
+    const auto begin = cursor.read<std::uint64_t>();
+    const auto chunk = cursor.read<std::uint64_t>();
+    cursor.take(cursor.read<std::uint32_t>());
+    const auto indexes = cursor.read<std::uint64_t>();
+    const std::uint64_t before = gaps_.empty() ? 0 : gaps_.back().end;
+    if (!cursor.ok() || begin < before || begin > footer_at || chunk > footer_at - begin ||
+        indexes > footer_at - begin - chunk) {
+      return;
+    }
+    if (passes_over(first, last)) gaps_.push_back({begin, begin + chunk + indexes});
+  }
+}
+
 void McapReader::check_message_index(const RawRecord& record) {
   ByteCursor cursor{record.content};
   const auto id = cursor.read<std::uint16_t>();
@@ -17,7 +55,12 @@ void McapReader::check_message_index(const RawRecord& record) {
   if (chunk_.empty()) {
     return;  // of a damaged chunk
   }
-  std::uint64_t count = 0;
+  const auto seen = chunk_messages_.find(id);
+  constexpr std::size_t kEntrySize = 16;
+  if (entries.rest().size() != kEntrySize * (seen == chunk_messages_.end() ? 0 : seen->second)) {
+    fault(record.offset, "this message index has not as many entries as its chunk has messages");
+    return;
+  }
   while (!entries.empty()) {
     const auto log_time = entries.read<std::uint64_t>();
     auto offset = static_cast<std::size_t>(entries.read<std::uint64_t>());
@@ -33,11 +76,6 @@ void McapReader::check_message_index(const RawRecord& record) {
       fault(record.offset, "an entry of this message index points at no such message");
       return;
     }
-    ++count;
-  }
-  if (const auto seen = chunk_messages_.find(id);
-      count != (seen == chunk_messages_.end() ? 0 : seen->second)) {
-    fault(record.offset, "this message index has not as many entries as its chunk has messages");
   }
 }
 
@@ -47,6 +85,7 @@ void McapReader::check_chunk_index(const RawRecord& record) {
   const auto offset = cursor.read<std::uint64_t>();
   const auto length = cursor.read<std::uint64_t>();
   const std::size_t number = chunk_indexes_++;
+  if (window_) return;
   const bool kept = number < chunk_places_.size();
   if (!cursor.ok() || number >= report_.chunks ||
       (kept && !(chunk_places_[number] == ChunkPlace{offset, length}))) {
@@ -64,6 +103,10 @@ void McapReader::check_data_end(const RawRecord& record) {
 }
 
 std::optional<McapItem> McapReader::read_statistics(const RawRecord& record) {
+  if (record.content.size() > limits_.metadata_size_max) {
+    fault(record.offset, "the statistics are longer than the limit");
+    return std::nullopt;
+  }
   ByteCursor cursor{record.content};
   McapStatistics statistics;
   statistics.messages = cursor.read<std::uint64_t>();
@@ -123,10 +166,10 @@ void McapReader::check_footer(const RawRecord& record) {
   const std::uint64_t summary_begin = summary_at == 0 ? record.offset : summary_at;
   const std::uint64_t covered =
       record.offset + kMcapPrefixSize + kMcapFooterSize - sizeof crc - summary_begin;
-  if (crc != 0 && crc != crc32(file_.subspan(summary_begin, covered))) {
+  if (crc != 0 && crc != crc32_in_pieces(mapping_.part(summary_begin, covered))) {
     fault(record.offset, "the summary has a wrong CRC");
   }
-  if (chunk_indexes_ != 0 && chunk_indexes_ != report_.chunks) {
+  if (!window_ && chunk_indexes_ != 0 && chunk_indexes_ != report_.chunks) {
     fault(record.offset,
           std::to_string(chunk_indexes_) + " chunk indexes stand for " +
               std::to_string(report_.chunks) + " chunks");

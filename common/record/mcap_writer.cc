@@ -110,10 +110,20 @@ void McapWriter::add_attachment(const McapAttachment& one) {
     append(output_, one.name);
     append(output_, one.media_type);
     append(output_, std::uint64_t{one.data.size()});
-    append(output_, one.data);
-    append(output_, crc32(std::span{output_}.subspan(attachment.content())));
   }
-  const std::uint64_t length = output_.size();
+  std::uint32_t crc = crc32(std::span{output_}.subspan(kMcapPrefixSize));
+  const std::uint64_t length = output_.size() + one.data.size() + sizeof crc;
+  const std::uint64_t content = length - kMcapPrefixSize;
+  std::memcpy(output_.data() + kMcapPrefixSize - sizeof content, &content, sizeof content);
+  // One write, unless it is longer than a piece.
+  one.data.in_pieces([&](std::span<const std::byte> piece) {
+    crc = crc32(piece, crc);
+    append(output_, piece);
+    if (output_.size() < FileBytes::kPieceSize) return;
+    put(output_);
+    output_.clear();
+  });
+  append(output_, crc);
   put(output_);
   ++attachment_count_;
   const RecordScope index{attachment_indexes_, McapOpcode::AttachmentIndex};

@@ -41,7 +41,7 @@ std::optional<SessionEntry> SessionReader::next() {
   return std::nullopt;
 }
 
-void SessionReader::only_between(TimePoint from, TimePoint to) noexcept {
+void SessionReader::only_between(TimePoint from, TimePoint to) {
   mcap_.only_between(clock_.stamp(from), clock_.stamp(to));
 }
 

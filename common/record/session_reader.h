@@ -47,7 +47,7 @@ class SessionReader {
   std::optional<SessionEntry> next();
 
   /// As McapReader::only_between(), of instants of the site's own time. A first entry was read.
-  void only_between(TimePoint from, TimePoint to) noexcept;
+  void only_between(TimePoint from, TimePoint to);
 
   // All that was met so far; complete once next() said nullopt.
   [[nodiscard]] const McapReadReport& report() const noexcept { return mcap_.report(); }

@@ -227,7 +227,8 @@ class Seen {
     EXPECT_EQ(one.create_time, kAttachment.create_time);
     EXPECT_EQ(one.name, kAttachment.name);
     EXPECT_EQ(one.media_type, kAttachment.media_type);
-    EXPECT_TRUE(std::ranges::equal(one.data, kData));
+    const std::span<const std::byte> data = one.data;
+    EXPECT_TRUE(std::ranges::equal(data, kData));
     ++attachments;
   }
   void operator()(const McapMetadata& one) {

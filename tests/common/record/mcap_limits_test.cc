@@ -1,7 +1,11 @@
 #include <cstring>
+#include <fstream>
+#include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include "common/record/mapped_file.h"
 #include "common/record/mcap_reader.h"
 #include "common/record/mcap_writer.h"
 
@@ -45,6 +49,90 @@ TEST(McapLimitsTest, ASmallFileCannotUnpackToALargeOne) {
   while (patient.next()) {
   }
   EXPECT_TRUE(patient.report().faults.empty()) << "below the limit all of it is read";
+}
+
+TEST(McapLimitsTest, AChunkIsNotReadThroughFillers) {
+  Bytes packed;
+  ASSERT_TRUE(ChunkCompressor{1}.compress(Bytes(50), packed));
+  append(packed, std::uint32_t{0x184D2A50});  // a frame that decompressors skip
+  append(packed, std::uint32_t{200});
+  packed.resize(packed.size() + 200);
+  EXPECT_EQ(ChunkDecompressor{1000}.decompress("zstd", packed, 50).error, "");
+  EXPECT_NE(ChunkDecompressor{100}.decompress("zstd", packed, 50).error, "");
+}
+
+/// What this process has in memory, now ("VmRSS:") or at most ("VmHWM:"). [kB]
+std::size_t resident(std::string_view line) {
+  std::ifstream status{"/proc/self/status"};
+  std::string word;
+  while (status >> word && word != line) {
+  }
+  std::size_t size = 0;
+  status >> size;
+  return size;
+}
+
+/// By how much memory grew at most while `work` ran. [kB]
+std::size_t growth(const auto& work) {
+  std::ofstream{"/proc/self/clear_refs"} << 5;  // the most begins anew
+  const std::size_t before = resident("VmRSS:");
+  work();
+  return resident("VmHWM:") - before;
+}
+
+TEST(McapLimitsTest, OfALongAttachmentOnlyAPieceIsInMemory) {
+  constexpr std::size_t kSize = std::size_t{96} << 20U;  // [bytes]
+  constexpr std::size_t kMost = 24 * 1024;               // [kB]
+  const std::string base = testing::TempDir() + "long_attachment_" + std::to_string(getpid());
+  std::ofstream{base + ".bin"}.close();
+  ASSERT_EQ(truncate((base + ".bin").c_str(), kSize), 0);
+  const auto data = MappedFile::open(base + ".bin");
+  ASSERT_TRUE(data);
+  EXPECT_LT(growth([&] {
+              auto sink = FileSink::create(base + ".mcap");
+              ASSERT_TRUE(sink);
+              McapWriter{*sink, {}}.add_attachment(
+                  {.name = "camera", .media_type = {}, .data = data->bytes()});
+            }),
+            kMost);
+  const auto file = MappedFile::open(base + ".mcap");
+  ASSERT_TRUE(file);
+  McapReader reader{file->bytes()};
+  EXPECT_LT(growth([&] {
+              while (const auto item = reader.next()) {
+                const auto* one = std::get_if<McapAttachment>(&*item);
+                EXPECT_TRUE(one == nullptr || one->data.size() == kSize);
+              }
+            }),
+            kMost);
+  EXPECT_EQ(reader.report().attachments, 1U);
+  EXPECT_EQ(reader.report().fault_count, 0U) << "the checksums are those of all pieces";
+  EXPECT_TRUE(reader.report().closed);
+  (void)std::remove((base + ".bin").c_str());
+  (void)std::remove((base + ".mcap").c_str());
+}
+
+TEST(McapLimitsTest, NamesThatACopyWouldKeepAreLimited) {
+  MemorySink sink;
+  {
+    McapWriter writer{sink, {}};
+    for (int k = 0; k < 5; ++k) {
+      writer.add_attachment({.name = "a name of 20 letters", .media_type = {}, .data = {}});
+      writer.add_metadata("another one of 26 letters.", {});
+    }
+  }
+  const auto read = [&](std::uint64_t limit) {
+    McapReader reader{sink.bytes(), {.names_size_max = limit}};
+    while (reader.next()) {
+    }
+    return reader.report();
+  };
+  constexpr std::uint64_t kBoth = 64 + 20 + 64 + 26;
+  EXPECT_EQ(read(5 * kBoth).fault_count, 0U);
+  EXPECT_EQ(read(5 * kBoth - 1).metadata, 4U);
+  EXPECT_EQ(read(5 * kBoth - 1).attachments, 5U);
+  EXPECT_EQ(read(kBoth).attachments, 1U);
+  EXPECT_GT(read(kBoth).fault_count, 0U);
 }
 
 }  // namespace

@@ -192,7 +192,8 @@ class RawFile {
   Bytes bytes_;
 };
 
-TEST(McapReaderTest, OutsideOfTheWindowNoChunkIsOpened) {
+/// Of 10 s, a message every 100 ms.
+Bytes ten_seconds() {
   MemorySink sink;
   {
     McapWriter writer{sink, {}};
@@ -202,7 +203,34 @@ TEST(McapReaderTest, OutsideOfTheWindowNoChunkIsOpened) {
       (void)writer.add_message({.channel = channel, .log_time = stamp, .publish_time = stamp}, 0);
     }
   }
-  McapReader reader{sink.bytes()};
+  return {sink.bytes().begin(), sink.bytes().end()};
+}
+
+TEST(McapReaderTest, OutsideOfTheWindowNoChunkIsLookedAtWhereThereIsAnIndex) {
+  const Bytes sound = ten_seconds();
+  Bytes file = sound;
+  std::size_t at = kMcapMagic.size();
+  while (static_cast<McapOpcode>(file[at]) != McapOpcode::Chunk) {
+    at += kMcapPrefixSize + ByteCursor{std::span{file}.subspan(at + 1)}.read<std::uint64_t>();
+  }
+  file[at + 8] = std::byte{0xFF};  // the first chunk's length reaches beyond any file's end
+  const auto messages = [](const Bytes& bytes) {
+    McapReader reader{bytes};
+    reader.only_between(5'000'000'000, 6'000'000'000);
+    while (reader.next()) {
+    }
+    EXPECT_EQ(reader.report().fault_count, 0U);
+    return reader.report().messages;
+  };
+  EXPECT_EQ(messages(file), messages(sound));
+  EXPECT_GE(messages(file), 11U);
+  file.resize(file.size() - 1);  // nobody closed it
+  EXPECT_EQ(messages(file), 0U);
+}
+
+TEST(McapReaderTest, OutsideOfTheWindowNoChunkIsOpened) {
+  const Bytes file = ten_seconds();
+  McapReader reader{file};
   reader.only_between(5'000'000'000, 6'000'000'000);
   std::uint64_t least = ~std::uint64_t{0};
   std::uint64_t most = 0;
@@ -285,15 +313,17 @@ TEST(McapReaderTest, WhatIsLongerThanAnySessionsIsNotTakenApart) {
       append(out, std::string_view{});
       append(out, entries);
     });
+    file.add_message(1);
     McapReader reader{file.bytes(), limits};
     std::size_t items = 0;
     while (reader.next()) ++items;
-    EXPECT_EQ(items + reader.report().fault_count, 2U);
+    EXPECT_EQ(items + reader.report().fault_count, 3U);
     return items;
   };
-  EXPECT_EQ(seen({}), 2U);
-  EXPECT_EQ(seen({.metadata_size_max = 1000}), 1U);
-  EXPECT_EQ(seen({.definitions_size_max = 1000}), 1U);
+  EXPECT_EQ(seen({}), 3U);
+  EXPECT_EQ(seen({.chunk_size_max = 21}), 2U) << "a message has 22 bytes";
+  EXPECT_EQ(seen({.metadata_size_max = 1000}), 2U);
+  EXPECT_EQ(seen({.definitions_size_max = 1000}), 1U) << "the channel, and with it its message";
 }
 
 TEST(McapReaderTest, OfMoreChunksThanAreKeptTheIndexIsOnlyCounted) {
@@ -351,6 +381,7 @@ TEST(McapReaderTest, MessageIndexMustPointAtEachMessageOfItsChunk) {
   };
   EXPECT_EQ(faults({0, message}), 0u);
   EXPECT_EQ(faults({}), 1u) << "an entry is missing";
+  EXPECT_EQ(faults({0, message, 0, message}), 1u) << "twice";
   EXPECT_EQ(faults({7, message}), 1u) << "another log time";
   EXPECT_EQ(faults({0, message + 1}), 1u) << "no record begins there";
   EXPECT_EQ(faults({0, records.size()}), 1u) << "behind the chunk";
@@ -409,6 +440,12 @@ TEST(McapReaderTest, OtherBytesAreNoMcapFile) {
   const std::string text = "site,d_mm,F_N";
   const auto report = read_all(std::as_bytes(std::span{text}));
   EXPECT_EQ(report.fault_count, 1u);
+}
+
+TEST(McapReaderTest, StatisticsOfMoreThanAllChannelsAreNotTakenApart) {
+  RawFile file;
+  file.add(McapOpcode::Statistics, [](Bytes& out) { out.resize(out.size() + (2u << 20) + 1); });
+  EXPECT_EQ(read_all(file.bytes()).fault_count, 1u);
 }
 
 TEST(McapReaderTest, StatisticsThatCountOtherwiseAreAFault) {
