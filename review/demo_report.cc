@@ -182,16 +182,22 @@ Json site_json(const SiteData& site, const Json& report, const std::string& path
   return json;
 }
 
-Json transitions_json(const SiteData& surgeon, const SiteData& patient) {
+/// [s] since the surgeon's file begins, on the surgeon's line of time.
+double instant(const SessionPair& session, const SiteData& site, TimePoint at) {
+  const bool surgeons = &site == &session.surgeon;
+  return seconds(elapsed(session.surgeon.began_at, surgeons ? at : session.time_line.surgeons(at)));
+}
+
+Json transitions_json(const SessionPair& session) {
   struct Entry {
     double t{};  ///< [s]
     const SiteData* site{};
     const Transition* transition{};
   };
   std::vector<Entry> entries;
-  for (const SiteData* site : {&surgeon, &patient}) {
+  for (const SiteData* site : {&session.surgeon, &session.patient}) {
     for (const Transition& transition : site->transitions) {
-      entries.push_back({seconds(elapsed(site->began_at, transition.at)), site, &transition});
+      entries.push_back({instant(session, *site, transition.at), site, &transition});
     }
   }
   std::stable_sort(
@@ -207,14 +213,14 @@ Json transitions_json(const SiteData& surgeon, const SiteData& patient) {
   return list;
 }
 
-/// The moments that the operators marked, each site's on its own line of time.
-Json marks_json(const SiteData& surgeon, const SiteData& patient) {
+/// The moments that the operators marked.
+Json marks_json(const SessionPair& session) {
   Json list = Json::array();
-  for (const SiteData* site : {&surgeon, &patient}) {
+  for (const SiteData* site : {&session.surgeon, &session.patient}) {
     for (const Note& note : site->notes) {
       if (note.code != static_cast<std::uint16_t>(record::NoteCode::Marked)) continue;
       list.push_back({{"site", record::site_name(site->site)},
-                      {"t_s", value(seconds(elapsed(site->began_at, note.at)))},
+                      {"t_s", value(instant(session, *site, note.at))},
                       {"number", value(note.detail)}});
     }
   }
@@ -223,13 +229,14 @@ Json marks_json(const SiteData& surgeon, const SiteData& patient) {
 
 }  // namespace
 
-std::string demo_report(const SiteData& surgeon,
-                        const SiteData& patient,
+std::string demo_report(const SessionPair& session,
                         const std::vector<Tap>& taps,
                         const Asked& asked,
                         const ProgramReports& reports,
                         const SessionPaths& paths,
                         const config::Json& metrics) {
+  const SiteData& surgeon = session.surgeon;
+  const SiteData& patient = session.patient;
   const Json surgeon_report = first_known({parsed(reports.surgeon), told_by(surgeon)});
   const Json patient_report = first_known({parsed(reports.patient), told_by(patient)});
   Json json;
@@ -252,8 +259,8 @@ std::string demo_report(const SiteData& surgeon,
   json["metrics"] = metrics;
   json["sites"]["surgeon"] = site_json(surgeon, surgeon_report, paths.surgeon);
   json["sites"]["patient"] = site_json(patient, patient_report, paths.patient);
-  json["transitions"] = transitions_json(surgeon, patient);
-  json["marks"] = marks_json(surgeon, patient);
+  json["transitions"] = transitions_json(session);
+  json["marks"] = marks_json(session);
   return json.dump(2) + '\n';
 }
 

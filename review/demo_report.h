@@ -7,6 +7,7 @@
 #include "common/config/json.h"
 #include "review/site_data.h"
 #include "review/taps.h"
+#include "review/time_line.h"
 
 namespace palp::review {
 
@@ -34,8 +35,7 @@ struct SessionPaths {
 };
 
 /// The JSON document `palp.demo/1`. `metrics`: as metrics_json().
-[[nodiscard]] std::string demo_report(const SiteData& surgeon,
-                                      const SiteData& patient,
+[[nodiscard]] std::string demo_report(const SessionPair& session,
                                       const std::vector<Tap>& taps,
                                       const Asked& asked,
                                       const ProgramReports& reports,

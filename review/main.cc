@@ -270,8 +270,8 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
   const ProgramReports reports{.surgeon = optional_text(flags.reports.surgeon),
                                .patient = optional_text(flags.reports.patient),
                                .relay = optional_text(flags.relay)};
-  const auto document = demo_report(
-      *surgeon, *patient, taps, flags.asked, reports, flags.sessions, metrics_json(judged));
+  const auto document =
+      demo_report(*session, taps, flags.asked, reports, flags.sessions, metrics_json(judged));
   if (flags.json) std::cout << document;
   if (!flags.page.empty()) {
     const std::string page = report_page(*session, curves, document);

@@ -26,6 +26,18 @@ std::optional<ClockOffset> best_offset(const SiteData& site) {
   return best;
 }
 
+/// The link measures between times that count from each side's begin of the session. @returns how
+/// much later the other's line has that begin than the own one, in the session of `at`.
+Duration between_begins(const SiteData& own, const SiteData& other, TimePoint at) {
+  Duration between{};
+  for (const SessionSpan& mine : own.sessions) {
+    if (mine.began_at > at) break;
+    const auto same = std::ranges::find(other.sessions, mine.id, &SessionSpan::id);
+    if (same != other.sessions.end()) between = elapsed(mine.began_at, same->began_at);
+  }
+  return between;
+}
+
 template <class Timed>
 void keep_between(std::vector<Timed>& list, TimePoint from, TimePoint to, const auto& instant) {
   std::erase_if(list, [&](const Timed& one) { return instant(one) < from || instant(one) >= to; });
@@ -81,7 +93,7 @@ TimePoint TimeLine::surgeons(TimePoint patients) const noexcept {
 TimeLine time_line_of(const SiteData& surgeon, const SiteData& patient) {
   TimeLine line;
   if (const auto told = best_offset(surgeon)) {
-    return {.offset = told->offset,
+    return {.offset = told->offset + between_begins(surgeon, patient, told->at),
             .skew = told->skew,
             .at = told->at,
             .uncertainty = told->uncertainty,
@@ -89,9 +101,10 @@ TimeLine time_line_of(const SiteData& surgeon, const SiteData& patient) {
             .source = "the surgeon's clock exchange"};
   }
   if (const auto told = best_offset(patient)) {
-    return {.offset = -told->offset,
+    const Duration offset = told->offset + between_begins(patient, surgeon, told->at);
+    return {.offset = -offset,
             .skew = -told->skew,
-            .at = told->at + told->offset,
+            .at = told->at + offset,
             .uncertainty = told->uncertainty,
             .known = true,
             .source = "the patient's clock exchange"};

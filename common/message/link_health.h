@@ -15,7 +15,7 @@ namespace palp {
 /// takes longer than the other, the offset is wrong by half the difference, at most half the least
 /// round trip. So it is told and logged, and nothing that protects anybody rests on it.
 struct ClockOffset {
-  Duration offset{};       ///< peer's time - ours, at `at`
+  Duration offset{};       ///< peer's time - ours at `at`, each since its begin of the session
   double skew{};           ///< [s/s], the peer's clock gains so much on ours
   Duration uncertainty{};  ///< of the offset: half the least round trip, what no exchange can see
   TimePoint at{};

@@ -8,21 +8,26 @@
 namespace palp::review {
 namespace {
 
+SessionPair sample_pair() {
+  auto [surgeon, patient] = test::load(test::sample_session());
+  return pair_of(std::move(surgeon), std::move(patient)).value();
+}
+
 nlohmann::json report(const ProgramReports& reports = {}, const Asked& asked = {}) {
-  const auto session = test::load(test::sample_session());
+  const SessionPair session = sample_pair();
   const auto tissue = judge::TissueTable::parse(*session.patient.tissue_csv);
   const auto taps =
       match_taps(session.surgeon,
                  session.patient,
                  {},
                  test::find_excursions(test::hand_motion(3), test::kSurface, &*tissue));
-  return nlohmann::json::parse(demo_report(
-      session.surgeon, session.patient, taps, asked, reports, {"out/s.mcap", "out/p.mcap"}));
+  return nlohmann::json::parse(
+      demo_report(session, taps, asked, reports, {"out/s.mcap", "out/p.mcap"}));
 }
 
 TEST(DemoReportTest, FirstKeyIsTheSchema) {
-  const auto session = test::load(test::sample_session());
-  const std::string text = demo_report(session.surgeon, session.patient, {}, {}, {}, {});
+  const SessionPair session = sample_pair();
+  const std::string text = demo_report(session, {}, {}, {}, {});
   EXPECT_EQ(text.substr(0, 29), "{\n  \"schema\": \"palp.demo/1\",\n");
 }
 
@@ -143,13 +148,26 @@ TEST(DemoReportTest, DepthIsNullUnlessFoundAndIntervalUnlessGiven) {
   EXPECT_NEAR(json["depth"]["depth_mm"], 10.2, 1e-9);
 }
 
+TEST(DemoReportTest, BothSitesMomentsStandOnTheSurgeonsLine) {
+  SessionPair session = sample_pair();
+  session.time_line.offset = std::chrono::seconds{5};
+  Note mark;
+  mark.at = session.surgeon.began_at + std::chrono::milliseconds{5750};
+  mark.code = static_cast<std::uint16_t>(record::NoteCode::Marked);
+  session.patient.notes = {mark};
+  session.patient.transitions = {{.at = mark.at}};
+  const auto json = nlohmann::json::parse(demo_report(session, {}, {}, {}, {}));
+  EXPECT_NEAR(json["marks"].back()["t_s"], 0.75, 1e-9);
+  EXPECT_EQ(json["transitions"].back()["site"], "patient");
+  EXPECT_NEAR(json["transitions"].back()["t_s"], 0.75, 1e-9);
+}
+
 TEST(DemoReportTest, NumbersThatAreNoneAreNull) {
-  auto session = test::load(test::sample_session());
+  SessionPair session = sample_pair();
   session.patient.estimates[0].hash = std::numeric_limits<double>::quiet_NaN();
   session.patient.estimates[0].force_max = std::numeric_limits<double>::infinity();
   const auto taps = match_taps(session.surgeon, session.patient, {}, {});
-  const auto json =
-      nlohmann::json::parse(demo_report(session.surgeon, session.patient, taps, {}, {}, {}));
+  const auto json = nlohmann::json::parse(demo_report(session, taps, {}, {}, {}));
   EXPECT_EQ(json["taps"][0]["depth"]["h_n"], nullptr);
   EXPECT_EQ(json["taps"][0]["force_max_n"], nullptr);
   EXPECT_EQ(json["taps"][0]["stiffness_true_n_per_m"], nullptr);

@@ -19,10 +19,7 @@ std::string page_of(const std::string& outcome) {
   const auto taps = match_taps(pair.surgeon, pair.patient, pair.time_line, judged.excursions);
   Asked asked;
   asked.outcome = outcome;
-  return report_page(
-      pair,
-      curves,
-      demo_report(pair.surgeon, pair.patient, taps, asked, {}, {}, metrics_json(judged)));
+  return report_page(pair, curves, demo_report(pair, taps, asked, {}, {}, metrics_json(judged)));
 }
 
 TEST(ReportPageTest, NeedsNothingFromOutside) {

@@ -36,6 +36,21 @@ TEST(TimeLineTest, ThePatientsOffsetServesWhereTheSurgeonHasNone) {
   EXPECT_EQ(time_line_of({}, patient).surgeons(at_ms(7100)), at_ms(100));
 }
 
+/// One clock, and the patient's side begins the session 400 ms later: the link tells of -400 ms.
+TEST(TimeLineTest, AnOffsetCountsFromWhereEachSideBeganTheSession) {
+  SiteData surgeon;
+  SiteData patient;
+  surgeon.sessions = {{7, at_ms(50)}, {8, at_ms(100)}};
+  patient.sessions = {{6, at_ms(0)}, {8, at_ms(500)}};
+  surgeon.links = {told(-400ms, 2ms, at_ms(600))};
+  EXPECT_EQ(time_line_of(surgeon, patient).surgeons(at_ms(900)), at_ms(900));
+  patient.links = {told(400ms, 1ms, at_ms(700))};
+  surgeon.links.clear();
+  const TimeLine line = time_line_of(surgeon, patient);
+  EXPECT_EQ(line.surgeons(at_ms(900)), at_ms(900));
+  EXPECT_EQ(line.at, at_ms(700));
+}
+
 TEST(TimeLineTest, WallClocksServeWhereNoOffsetWasLogged) {
   SiteData surgeon;
   SiteData patient;
