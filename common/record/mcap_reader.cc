@@ -95,8 +95,9 @@ std::optional<McapItem> McapReader::next_in_chunk() {
 }
 
 std::optional<McapItem> McapReader::next_in_file() {
-  while (next_gap_ < gaps_.size() && gaps_[next_gap_].begin <= offset_) {
-    const Gap& gap = gaps_[next_gap_++];
+  while (window_ && window_->next_gap < window_->gaps.size() &&
+         window_->gaps[window_->next_gap].begin <= offset_) {
+    const Gap& gap = window_->gaps[window_->next_gap++];
     if (gap.begin == offset_) offset_ = gap.end;
   }
   const auto record = cut_record(file_, offset_);

@@ -160,17 +160,17 @@ class McapReader {
   std::size_t read_up_to_{};  ///< bytes in data_crc_
   std::size_t forgotten_{};   ///< bytes whose memory was given back
   std::uint32_t data_crc_{};
-  struct Window {
-    std::uint64_t from{};  ///< [ns]
-    std::uint64_t to{};    ///< [ns]
-  };
-  std::optional<Window> window_;
   struct Gap {
     std::uint64_t begin{};  ///< a chunk outside of the window
     std::uint64_t end{};    ///< behind its message indexes
   };
-  std::vector<Gap> gaps_;  ///< in order
-  std::size_t next_gap_{};
+  struct Window {
+    std::uint64_t from{};   ///< [ns]
+    std::uint64_t to{};     ///< [ns]
+    std::vector<Gap> gaps;  ///< in order
+    std::size_t next_gap{};
+  };
+  std::optional<Window> window_;
   bool ended_{};
   ChunkDecompressor decompressor_;
   std::span<const std::byte> chunk_;  ///< records of the open chunk

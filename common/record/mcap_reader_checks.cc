@@ -7,15 +7,14 @@
 namespace palp::record {
 
 void McapReader::only_between(std::uint64_t from, std::uint64_t to) {
-  window_ = {from, to};
+  window_ = Window{from, to, {}, 0};
   find_chunks_to_pass_over();
 }
 
 /// By the index at the end of a file that was closed. An index that lies leads to what is no record
 /// or is the wrong one, as any damage does.
 void McapReader::find_chunks_to_pass_over() {
-  gaps_.clear();
-  next_gap_ = 0;
+  std::vector<Gap>& gaps = window_->gaps;
   constexpr std::size_t kTail = kMcapPrefixSize + kMcapFooterSize + kMcapMagic.size();
   if (file_.size() < kTail) return;
   const std::size_t footer_at = file_.size() - kTail;
@@ -24,7 +23,7 @@ void McapReader::find_chunks_to_pass_over() {
   if (!footer || footer->opcode != McapOpcode::Footer) return;
   std::size_t at = ByteCursor{footer->content}.read<std::uint64_t>();
   if (at == 0) return;
-  while (at < footer_at && gaps_.size() < limits_.chunk_places_max) {
+  while (at < footer_at && gaps.size() < limits_.chunk_places_max) {
     const auto record = cut_record(file_, at);
     if (!record || record->opcode == McapOpcode::Footer) return;
     if (record->opcode != McapOpcode::ChunkIndex) continue;
@@ -35,12 +34,12 @@ void McapReader::find_chunks_to_pass_over() {
     const auto chunk = cursor.read<std::uint64_t>();
     cursor.take(cursor.read<std::uint32_t>());
     const auto indexes = cursor.read<std::uint64_t>();
-    const std::uint64_t before = gaps_.empty() ? 0 : gaps_.back().end;
+    const std::uint64_t before = gaps.empty() ? 0 : gaps.back().end;
     if (!cursor.ok() || begin < before || begin > footer_at || chunk > footer_at - begin ||
         indexes > footer_at - begin - chunk) {
       return;
     }
-    if (passes_over(first, last)) gaps_.push_back({begin, begin + chunk + indexes});
+    if (passes_over(first, last)) gaps.push_back({begin, begin + chunk + indexes});
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "common/record/notes.h"
 #include "tests/review/session_samples.h"
 
 namespace palp::review {

@@ -235,8 +235,7 @@ inline void expect_same_judgement(const lab::Scenario& scenario, Looked& looked)
     EXPECT_EQ(metrics[name].dump(), lab[name].dump()) << name;
   }
   EXPECT_EQ(metrics["unstable"], lab["unstable"]);
-  const nlohmann::json review =
-      nlohmann::json::parse(demo_report(pair.surgeon, pair.patient, taps, {}, {}, {}, told));
+  const nlohmann::json review = nlohmann::json::parse(demo_report(pair, taps, {}, {}, {}, told));
   expect_same_taps(lab["taps"], review["taps"]);
   expect_paired_by_time(lab["taps"], review["taps"], run, turns);
 
