@@ -243,24 +243,21 @@ TEST(PatientNodeTest, ComesOutOfHoldWithARamp) {
 }
 
 TEST(PatientNodeTest, EveryFaultOfADeviceStopsTheSite) {
-  const auto reason_after = [](auto&& fault) {
+  const auto reason_of = [](auto&& happens) {
     World world;
     world.engage();
-    fault(world.site);
+    happens(world.site);
     world.run(milliseconds{60});
     EXPECT_TRUE(world.site.halted);
     EXPECT_EQ(world.status().state, SiteState::Stopped);
     return static_cast<NoteCode>(world.recorder.all<Transition>().back().reason);
   };
-  EXPECT_EQ(reason_after([](FaultySite& site) { site.stage_faulted = true; }),
-            NoteCode::DeviceFault);
-  EXPECT_EQ(reason_after([](FaultySite& site) { site.stage_gives_nan = true; }),
-            NoteCode::DeviceFault);
-  EXPECT_EQ(reason_after([](FaultySite& site) { site.force = std::nan(""); }),
-            NoteCode::DeviceFault);
-  EXPECT_EQ(reason_after([](FaultySite& site) { site.saturated = true; }),
-            NoteCode::SensorSaturated);
-  EXPECT_EQ(reason_after([](FaultySite& site) { site.silent = true; }), NoteCode::SensorSilent);
+  const auto fault = NoteCode::DeviceFault;
+  EXPECT_EQ(reason_of([](FaultySite& site) { site.stage_faulted = true; }), fault);
+  EXPECT_EQ(reason_of([](FaultySite& site) { site.stage_gives_nan = true; }), fault);
+  EXPECT_EQ(reason_of([](FaultySite& site) { site.force = std::nan(""); }), fault);
+  EXPECT_EQ(reason_of([](FaultySite& site) { site.saturated = true; }), NoteCode::SensorSaturated);
+  EXPECT_EQ(reason_of([](FaultySite& site) { site.silent = true; }), NoteCode::SensorSilent);
 }
 
 TEST(PatientNodeTest, ASensorWhoseReadingStaysWhileTheTipMovesInContactStopsTheSite) {
