@@ -12,6 +12,7 @@ work=${PALP_KEEP:-$(mktemp -d)}
 mkdir -p "$work"
 script=$(basename "$0")
 running=()
+watching=()
 
 background() { # log command...: $! is its number
   local log=$1
@@ -24,6 +25,8 @@ stop_all() {
   wait 2>/dev/null
 }
 clean() {
+  # First, because stop_all waits for everything that runs.
+  [ ${#watching[@]} -eq 0 ] || standstill >/dev/null
   stop_all
   [ -n "${PALP_KEEP-}" ] || rm -rf "$work"
 }
@@ -64,7 +67,6 @@ END
     watching+=("$!")
   done
 }
-watching=()
 standstill() {
   kill "${watching[@]}" 2>/dev/null
   wait "${watching[@]}" 2>/dev/null
