@@ -96,11 +96,11 @@ void PatientControl::watch_devices(const Lapse& lapse) noexcept {
     return;
   }
   const DeviceWatch::Stuck stuck = watch_.judge({.tip = now_.position,
-                                                .target = now_.command,
-                                                .force = now_.contact_force,
-                                                .felt_at = force_sampled_at_,
-                                                .in_tissue = gate_.inside(now_.position)},
-                                               lapse);
+                                                 .target = now_.command,
+                                                 .force = now_.contact_force,
+                                                 .felt_at = force_sampled_at_,
+                                                 .in_tissue = gate_.inside(now_.position)},
+                                                lapse);
   find_fault(stuck.sensor, NoteCode::SensorStuck);
   find_fault(stuck.stage, NoteCode::StageStuck);
 }
