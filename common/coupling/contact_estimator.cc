@@ -12,6 +12,9 @@ constexpr double kPullMost = 5;        // [-], of the elastic force
 constexpr double kGridStep = 0.05e-3;  // [m]
 constexpr std::size_t kMiddle = 32;
 constexpr double kMeanGain = 0.1;            // per tick: 10 ms
+constexpr double kContactShare = 1.4;        // of a reading's deviation: six of that mean's
+constexpr int kReadings = 4;                 // on end, a step too high, are no contact
+constexpr double kClearly = 1.05;            // [-], above such a mean
 constexpr std::uint32_t kBox = 5;            // ticks per equation: what the pole lets through
 constexpr double kMisplaced = 2e-3;          // [m], below the surface as believed, and nothing felt
 constexpr std::uint32_t kForgetShapes = 60;  // ticks until the filtered shapes are zero again
@@ -32,11 +35,30 @@ constexpr double kSplineNoise = 3e-3;        // [N], of an equation at least
 constexpr double kAstray = 3e-3;             // [m], a surface above where the tip felt nothing
 constexpr std::int64_t kFollowed = 64;       // periods, in which all that is short settles
 
+/// What one reading moves the mean by [-]: a slow sensor's stands for several periods.
+double reading_share(const ContactEstimatorConfig& config) noexcept {
+  const double periods = 1 / (config.sensor.rate * config.period);
+  return periods > 1.01 ? 1 - std::pow(1 - kMeanGain, periods) : kMeanGain;
+}
+
+/// Deviation of the mean over a reading's [-].
+double mean_deviation(double share) noexcept { return std::sqrt(share / (2 - share)); }
+
+/// The mean from which there is contact at least. A quick sensor's is that of many readings; of a
+/// slow one a few that are a step too high would pass for a touch.
+double contact_force(const ContactEstimatorConfig& config) noexcept {
+  const double risen = 1 - std::pow(1 - reading_share(config), kReadings);
+  return std::max(config.detection_force, kClearly * risen * config.sensor.step);
+}
+
 }  // namespace
 
 ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcept
     : config_{config},
       gain_{LowPass{config.sensor.pole, config.period}.gain()},
+      contact_share_{kContactShare *
+                     (mean_deviation(reading_share(config)) / mean_deviation(kMeanGain))},
+      contact_force_{contact_force(config)},
       sensed_{.tip = {config.sensor.pole, config.period}},
       swing_{config.period} {
   expected_[1] = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
@@ -367,8 +389,7 @@ void ContactEstimator::step(double position, double force, std::int64_t periods)
   if (periods > 1 && sensed_.started) follow(position, force, periods - 1);
   const double halfway = sense(position, force);
   watch_surface();
-  // Six standard deviations of a mean over 10 ms.
-  const double threshold = std::max(config_.detection_force, 1.4 * noise_.deviation());
+  const double threshold = std::max(contact_force_, contact_share_ * noise_.deviation());
   const bool contact = sensed_.force_mean >= threshold && noise_.known();
   if (placed_ && !contact && sensed_.tip.value() > centre_ + kMisplaced) placed_ = false;
   doubt(threshold);

@@ -139,7 +139,9 @@ class ContactEstimator {
   };
 
   ContactEstimatorConfig config_;
-  double gain_;  ///< [-], of the transducer's pole
+  double gain_;           ///< [-], of the transducer's pole
+  double contact_share_;  ///< [-], of a reading's deviation: a mean from which there is contact
+  double contact_force_;  ///< [N], such a mean at least
   Sensed sensed_;
   SensorNoise noise_;
 

@@ -8,6 +8,7 @@
 
 #include "common/core/filters.h"
 #include "common/core/place.h"
+#include "common/core/random.h"
 #include "common/coupling/contact_model.h"
 
 namespace palp::coupling {
@@ -203,6 +204,32 @@ TEST(ContactEstimatorTest, SixReadingsOfOneStepInARowAreNoContact) {
     estimator.step(-5e-3, tick >= 1000 && tick < 1006 ? 0.05 : 0);
   }
   EXPECT_EQ(estimator.model().version, 0U);
+}
+
+/// A transducer of the paper's steps in quiet air, read as often as its device can.
+TEST(ContactEstimatorTest, NoiseIsNoContactHoweverSlowTheSensorIs) {
+  for (const double rate : {50.0, 100.0, 200.0, 500.0, 1000.0}) {
+    for (const double noise : {5e-3, 10e-3, 15e-3, 25e-3}) {
+      ContactEstimatorConfig config;
+      config.sensor.rate = rate;
+      ContactEstimator estimator{config};
+      const RandomStream draws{7, static_cast<std::uint64_t>(rate)};
+      const auto reading = [&](double number) {
+        return config.sensor.step *
+               std::round(noise * draws.normal(static_cast<std::uint64_t>(number)) /
+                          config.sensor.step);
+      };
+      for (int tick = 0; tick < 60'000; ++tick) {
+        // As the two readings round it say, one after the other.
+        const double read = tick * config.period * rate;
+        const double before = reading(std::floor(read));
+        const double share = read - std::floor(read);
+        estimator.step(-5e-3, before + share * (reading(std::floor(read) + 1) - before));
+        ASSERT_EQ(estimator.model().version, 0U)
+            << rate << " Hz, " << noise << " N, after " << tick << " ms";
+      }
+    }
+  }
 }
 
 TEST(ContactEstimatorTest, WhatProvesToBeNoiseIsTakenBack) {
