@@ -12,7 +12,8 @@ constexpr double kPullMost = 5;        // [-], of the elastic force
 constexpr double kGridStep = 0.05e-3;  // [m]
 constexpr std::size_t kMiddle = 32;
 constexpr double kMeanGain = 0.1;            // per tick: 10 ms
-constexpr double kContactShare = 1.4;        // of a reading's deviation: six of that mean's
+constexpr double kContactShare = 1.4;        // of a reading's deviation: six of the mean's at 1 kHz
+constexpr double kDeviations = 5;            // of the mean's, where fewer readings make it
 constexpr int kReadings = 4;                 // on end, a step too high, are no contact
 constexpr double kClearly = 1.05;            // [-], above such a mean
 constexpr std::uint32_t kBox = 5;            // ticks per equation: what the pole lets through
@@ -56,8 +57,7 @@ double contact_force(const ContactEstimatorConfig& config) noexcept {
 ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcept
     : config_{config},
       gain_{LowPass{config.sensor.pole, config.period}.gain()},
-      contact_share_{kContactShare *
-                     (mean_deviation(reading_share(config)) / mean_deviation(kMeanGain))},
+      contact_share_{std::max(kContactShare, kDeviations * mean_deviation(reading_share(config)))},
       contact_force_{contact_force(config)},
       sensed_{.tip = {config.sensor.pole, config.period}},
       swing_{config.period} {

@@ -68,14 +68,18 @@ def account_of(path: Path) -> Account:
     for at, tick in messages(path, "surgeon/tick"):
         position, force = tick["position_m"], tick["force_n"]
         account.engaged += tick["state"] == ENGAGED
+        stood = position
         if before is not None:
             late = at - before[0] > LATE_NS
             account.late += late
             account.add(-force * (position - before[1]), late)
+            # The force of a late tick is still that of where the hand was before.
+            stood = before[1] if late else position
         before = at, position
-        recent = [one for one in recent if at - one[0] <= 10_000_000] + [(at, force, position)]
-        steps = (unexplained(force - f, position - p) for _, f, p in recent)
-        account.step_max = max(account.step_max, max(steps))
+        recent = [one for one in recent if at - one[0] <= 10_000_000]
+        steps = [unexplained(force - f, position - p) for _, f, p in recent]
+        recent.append((at, force, stood))
+        account.step_max = max(account.step_max, *steps, 0.0)
     return account
 
 
