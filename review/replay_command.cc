@@ -113,7 +113,11 @@ std::string describe(const WhatIf& result, const ReplayAsk& ask) {
             " from the session's, while both were engaged (" + std::to_string(result.engaged) +
             " ticks)\n" + "motion gate: acted in " + std::to_string(result.gate_acted) +
             " ticks, would have in " + std::to_string(result.gate_would) + '\n' +
-            "state: another one in " + std::to_string(result.other_state) + " ticks\n";
+            "state: another one in " + std::to_string(result.other_state) + " ticks\n" +
+            "what would have happened shows the lab: palp-lab run SCENARIO --coupling " +
+            ask.coupling +
+            ", where SCENARIO has surgeon { hand { master: \"recording:FILE\" } }, " +
+            "the surgeon's file\n";
   }
   for (const OtherEstimate& one : result.estimates) {
     const DepthEstimate& stroke = one.logged ? *one.logged : *one.other;
