@@ -11,11 +11,6 @@ namespace {
 constexpr double kPullMost = 5;        // [-], of the elastic force
 constexpr double kGridStep = 0.05e-3;  // [m]
 constexpr std::size_t kMiddle = 32;
-constexpr double kMeanGain = 0.1;            // per tick: 10 ms
-constexpr double kContactShare = 1.4;        // of a reading's deviation: six of the mean's at 1 kHz
-constexpr double kDeviations = 5;            // of the mean's, where fewer readings make it
-constexpr int kReadings = 4;                 // on end, a step too high, are no contact
-constexpr double kClearly = 1.05;            // [-], above such a mean
 constexpr std::uint32_t kBox = 5;            // ticks per equation: what the pole lets through
 constexpr double kMisplaced = 2e-3;          // [m], below the surface as believed, and nothing felt
 constexpr std::uint32_t kForgetShapes = 60;  // ticks until the filtered shapes are zero again
@@ -36,29 +31,12 @@ constexpr double kSplineNoise = 3e-3;        // [N], of an equation at least
 constexpr double kAstray = 3e-3;             // [m], a surface above where the tip felt nothing
 constexpr std::int64_t kFollowed = 64;       // periods, in which all that is short settles
 
-/// What one reading moves the mean by [-]: a slow sensor's stands for several periods.
-double reading_share(const ContactEstimatorConfig& config) noexcept {
-  const double periods = 1 / (config.sensor.rate * config.period);
-  return periods > 1.01 ? 1 - std::pow(1 - kMeanGain, periods) : kMeanGain;
-}
-
-/// Deviation of the mean over a reading's [-].
-double mean_deviation(double share) noexcept { return std::sqrt(share / (2 - share)); }
-
-/// The mean from which there is contact at least. A quick sensor's is that of many readings; of a
-/// slow one a few that are a step too high would pass for a touch.
-double contact_force(const ContactEstimatorConfig& config) noexcept {
-  const double risen = 1 - std::pow(1 - reading_share(config), kReadings);
-  return std::max(config.detection_force, kClearly * risen * config.sensor.step);
-}
-
 }  // namespace
 
 ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcept
     : config_{config},
       gain_{LowPass{config.sensor.pole, config.period}.gain()},
-      contact_share_{std::max(kContactShare, kDeviations * mean_deviation(reading_share(config)))},
-      contact_force_{contact_force(config)},
+      onset_{config.detection_force, config.sensor, config.period},
       sensed_{.tip = {config.sensor.pole, config.period}},
       swing_{config.period} {
   expected_[1] = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
@@ -389,7 +367,7 @@ void ContactEstimator::step(double position, double force, std::int64_t periods)
   if (periods > 1 && sensed_.started) follow(position, force, periods - 1);
   const double halfway = sense(position, force);
   watch_surface();
-  const double threshold = std::max(contact_force_, contact_share_ * noise_.deviation());
+  const double threshold = onset_.force(noise_.deviation());
   const bool contact = sensed_.force_mean >= threshold && noise_.known();
   if (placed_ && !contact && sensed_.tip.value() > centre_ + kMisplaced) placed_ = false;
   doubt(threshold);

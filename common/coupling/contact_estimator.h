@@ -9,6 +9,7 @@
 #include "common/core/place.h"
 #include "common/core/time.h"
 #include "common/coupling/breathing_estimator.h"
+#include "common/coupling/contact_onset.h"
 #include "common/coupling/sensor_noise.h"
 #include "common/coupling/spline_estimator.h"
 #include "common/message/port_sample.h"
@@ -139,9 +140,8 @@ class ContactEstimator {
   };
 
   ContactEstimatorConfig config_;
-  double gain_;           ///< [-], of the transducer's pole
-  double contact_share_;  ///< [-], of a reading's deviation: a mean from which there is contact
-  double contact_force_;  ///< [N], such a mean at least
+  double gain_;  ///< [-], of the transducer's pole
+  ContactOnset onset_;
   Sensed sensed_;
   SensorNoise noise_;
 
