@@ -114,7 +114,7 @@ std::string describe(const WhatIf& result, const ReplayAsk& ask) {
             " ticks)\n" + "motion gate: acted in " + std::to_string(result.gate_acted) +
             " ticks, would have in " + std::to_string(result.gate_would) + '\n' +
             "state: another one in " + std::to_string(result.other_state) + " ticks\n" +
-            "what would have happened shows the lab: palp-lab run SCENARIO --coupling " +
+            "the lab shows what would have happened: palp-lab run SCENARIO --coupling " +
             ask.coupling +
             ", where SCENARIO has surgeon { hand { master: \"recording:FILE\" } }, " +
             "the surgeon's file\n";
