@@ -250,7 +250,10 @@ void declare_depth(config::CommandLine& line, DepthFlags& flags) {
   line.whole("--reference-taps", flags.reference_taps, {.min = 0, .max = 100}, "beside it, before");
   line.number("--rtt-ms", flags.rtt_ms, {.min = 0, .max = 5000, .unit = "ms"}, "round trip");
   line.number("--loss", flags.loss, {.min = 0, .max = 1}, "share of datagrams lost each way");
-  line.text("--coupling", flags.coupling, "NAME", "instead of the standard scenario's");
+  line.text("--coupling",
+            flags.coupling,
+            "NAME",
+            "instead of the standard scenario's: direct, wave, tdpa or mmt");
   line.toggle(
       "--wide", flags.wide, "as many phantoms from a range wider than the prior's, not a fifth");
   line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "processes at a time");

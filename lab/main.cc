@@ -183,7 +183,12 @@ int main(int argc, char** argv) {
            arguments.coupling,
            "NAME",
            "instead of the scenario's: direct, wave, tdpa or mmt");
-  run.text("--phantom", arguments.phantom, "P", "instead of the scenario's; as palp-patient's");
+  run.text("--phantom",
+           arguments.phantom,
+           "P",
+           "instead of the scenario's: paper-5mm, paper-10mm, paper-15mm, paper-20mm, paper-25mm, "
+           "none, closed-form[:DEPTH_MM], random:SEED, file:PATH or words: 'ball depth=12 radius=8 "
+           "ratio=200'");
   run.toggle("--bare", arguments.bare, "raw telegrams, no session log: the laws alone");
   run.text("--session-files",
            arguments.session_files,

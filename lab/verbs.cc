@@ -347,11 +347,11 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   };
   auto& monte = line.verb("montecarlo", "a set of scenarios: errors, energies, stability");
   set_flags(monte, true);
-  monte.text("--coupling", arguments.coupling, "NAME", "the law; mmt");
+  monte.text("--coupling", arguments.coupling, "NAME", "direct, wave, tdpa or mmt; mmt");
   declare_spread(monte, arguments, kMontecarlo);
   auto& liar = line.verb("adversary", "random cases with a patient site that lies");
   set_flags(liar, false);
-  liar.text("--coupling", arguments.coupling, "NAME", "the law; mmt");
+  liar.text("--coupling", arguments.coupling, "NAME", "direct, wave, tdpa or mmt; mmt");
   declare_spread(liar, arguments, kAdversary);
   auto& side_by_side = line.verb("compare", "a set with every coupling");
   set_flags(side_by_side, true);
@@ -362,7 +362,10 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   declare_spread(stability, arguments, kMap);
   auto& axes = line.verb("sweep", "all combinations of settings: PATH=VALUE,VALUE,...");
   axes.text("--scenario", arguments.scenario, "NAME", "what they change; standard");
-  axes.text("--coupling", arguments.coupling, "NAME", "instead of the scenario's");
+  axes.text("--coupling",
+            arguments.coupling,
+            "NAME",
+            "instead of the scenario's: direct, wave, tdpa or mmt");
   axes.whole("--repeats", arguments.repeats, {.min = 1, .max = 100000}, "seeds of each; 1");
   axes.text("--tissue", arguments.tissue, "PHANTOM", "instead of the scenario's");
   axes.text("--metric", arguments.metric, "NAME", "what the picture shows; tap_a_error");

@@ -210,7 +210,10 @@ ExitStatus run_replay(ReplayFlags& flags) {
 void declare(config::CommandLine& line, ReplayFlags& flags) {
   line.arguments("FILE", flags.files, "session files of one run of a site, the first one first");
   line.required();
-  line.text("--coupling", flags.ask.coupling, "NAME", "what would this one's half have said?");
+  line.text("--coupling",
+            flags.ask.coupling,
+            "NAME",
+            "what would its half have said? direct, wave, tdpa or mmt");
   line.choice("--estimator", flags.ask.estimator, {"bayes", "paper"}, "and this estimator?");
   line.text("--set", flags.set, "PATH=VALUE", "and with this setting of the site?");
 }

@@ -87,7 +87,8 @@ void Associations::collect(Attempt& attempt, TimePoint now) {
   if (attempt.handshake.state() == State::Failed && !std::exchange(attempt.told, true)) {
     const DtlsFailure& failure = attempt.handshake.failure();
     failure_ = {"the handshake with " + attempt.peer.to_string() + " failed: " + failure.sentence,
-                failure.hopeless};
+                failure.hopeless,
+                failure.silent};
   }
   std::optional<DtlsResult> result = attempt.handshake.take_result();
   if (!result) return;

@@ -24,7 +24,14 @@ DtlsFailure failure_of_silence(bool certificates) {
       std::string{"no answer"} + (certificates ? "" : ", or another pre-shared key") +
           ": start the patient site there and let UDP through to its port (firewall, router), or"
           " let both sites meet at a relay (--through)",
-      false};
+      false,
+      true};
+}
+
+std::string silence_in_room(const std::string& relay) {
+  return "the other site does not answer by way of the relay at " + relay +
+         ": start it there, with the same --room, and its folder from the same run of"
+         " 'palp-surgeon certificates'";
 }
 
 /// A table of what people can do about it. The first three are what check_peer() in credentials.cc

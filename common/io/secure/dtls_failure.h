@@ -10,11 +10,14 @@ struct DtlsFailure {
   /// Found by this site's own look at the peer's certificate: the next attempt ends alike. What the
   /// peer only says about us is never that, since anybody can say it in its name.
   bool hopeless{};
+  bool silent{};  ///< nothing came back
 };
 
 /// Nothing came back. `certificates`: else a pre-shared key, and another one is not answered
 /// either.
 [[nodiscard]] DtlsFailure failure_of_silence(bool certificates);
+/// The same of the other site in a room of the relay at `relay`, in one whole sentence.
+[[nodiscard]] std::string silence_in_room(const std::string& relay);
 /// `verdict`: an X509_V_ERR_..., but not X509_V_OK, about the peer's certificate.
 [[nodiscard]] DtlsFailure failure_of_certificate(long verdict);
 /// How our protocol names itself in a handshake (RFC 7301): `palp/` and its version. Sites whose

@@ -317,6 +317,7 @@ void DtlsSession::tell_failure(TimePoint now, SessionEndpointOutput& out) {
   told_ = failure->sentence;
   told_at_ = now;
   out.event = link::Refused{std::move(failure->sentence), false};
+  out.unanswered = failure->silent;
 }
 
 std::unique_ptr<SessionEndpoint> make_session_endpoint(const DtlsSessionConfig& config,

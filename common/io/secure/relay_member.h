@@ -32,6 +32,8 @@ class RelayMember {
   [[nodiscard]] const Endpoint& relay() const noexcept { return relay_; }
   /// What has become of the session between the two sites.
   enum class SessionIs : std::uint8_t { None, Live, Silent };
+  /// As far as the relay has said.
+  [[nodiscard]] bool both_are_in() const noexcept { return seat_ == Seat::Both; }
   /// Often. nullopt: nothing to send.
   [[nodiscard]] std::optional<RelayMessage::Bytes> tick(TimePoint now, SessionIs session);
   /// A datagram that begins as a message of a relay does. @returns what to send back.

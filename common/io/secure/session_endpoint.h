@@ -18,6 +18,7 @@ namespace palp::io {
 /// What a SessionEndpoint wants done after an input, in the order of the members.
 struct SessionEndpointOutput {
   std::optional<link::SessionEvent> event;
+  bool unanswered{};  ///< it refuses because nothing came back
   /// With Established: for the new session. Alone: replaces that of the present one.
   std::unique_ptr<link::PacketProtection> protection;
   std::optional<Endpoint> moved_to;  ///< the peer of the present session now has this address

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "common/core/time.h"
 #include "common/io/net/endpoint.h"
+#include "common/io/secure/relay_member.h"
 #include "common/io/secure/session_endpoint.h"
 #include "common/link/session.h"
 
@@ -31,6 +33,11 @@ struct SessionNews {
   PeerIdentity identity;  ///< of the newest session
 };
 
+/// Why there is no session; nullopt: where both meet at a relay, that has said why nobody answers.
+/// `unanswered`: the refusal is this site's own, for want of an answer.
+[[nodiscard]] std::optional<std::string> refusal_text(const link::Refused& refused,
+                                                      bool unanswered,
+                                                      const std::optional<RelayMember>& relay);
 /// Of an Established one, told by a site of that role: with whom, and what that was proven by.
 [[nodiscard]] std::string session_sentence(link::Role role,
                                            const Endpoint& peer,

@@ -165,8 +165,7 @@ void SessionServer::Io::close(const std::string& why) {
 
 std::optional<SessionNews> SessionServer::Io::news() {
   SessionNews news;
-  if (!news_.try_dequeue(news)) return std::nullopt;
-  return news;
+  return news_.try_dequeue(news) ? std::optional{std::move(news)} : std::nullopt;
 }
 
 void SessionServer::Io::run_round() {
@@ -232,7 +231,8 @@ void SessionServer::Io::carry_out(SessionEndpointOutput output, const Endpoint& 
     if (const auto* session = std::get_if<link::Established>(&*output.event)) {
       meet(*session, std::move(output.protection), from);
     } else if (const auto* refused = std::get_if<link::Refused>(&*output.event)) {
-      tell(SessionNews::Kind::Refused, from, refusal_opening() + refused->text, refused->final);
+      const auto why = refusal_text(*refused, output.unanswered, relay_);
+      if (why) tell(SessionNews::Kind::Refused, from, refusal_opening() + *why, refused->final);
     } else if (const auto* closed = std::get_if<link::Closed>(&*output.event)) {
       tell(SessionNews::Kind::Closed, connected_, "the session is over: " + closed->text);
       leave();

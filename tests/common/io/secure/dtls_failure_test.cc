@@ -39,6 +39,15 @@ TEST(DtlsFailureTest, WhatThePeerOnlySaysIsNeverHopeless) {
   }
 }
 
+TEST(DtlsFailureTest, SilenceSaysWhatToStartAndIsNeverHopeless) {
+  const DtlsFailure failure = failure_of_silence(true);
+  EXPECT_TRUE(failure.silent);
+  EXPECT_FALSE(failure.hopeless);
+  EXPECT_THAT(failure.sentence, HasSubstr("start the patient site"));
+  EXPECT_THAT(silence_in_room("h:1"), HasSubstr("--room"));
+  EXPECT_FALSE(failure_of_handshake(0).silent);
+}
+
 TEST(DtlsFailureTest, AnUnknownReasonKeepsItsWords) {
   EXPECT_EQ(failure_of_handshake(0).sentence, "no reason given");
   EXPECT_THAT(failure_of_certificate(X509_V_ERR_OUT_OF_MEM).sentence, HasSubstr("refused"));

@@ -96,6 +96,21 @@ TEST_F(RelayMemberTest, PeopleAreToldOnceOfEachChange) {
   EXPECT_THAT(member_.take_news()->sentence, HasSubstr("does not answer"));
 }
 
+TEST_F(RelayMemberTest, WhyNobodyAnswersInARoomTheRelayKnowsBetter) {
+  const link::Refused silence{"the handshake failed: no answer: let both meet at a relay", false};
+  EXPECT_EQ(refusal_text(silence, true, std::nullopt), silence.text);
+  std::optional<RelayMember> member{std::move(member_)};
+  EXPECT_FALSE(refusal_text(silence, true, member)) << "the relay says that it is not there";
+  EXPECT_EQ(refusal_text(silence, false, member), silence.text) << "the other site has spoken";
+  member_ = std::move(*member);
+  join(1);
+  member.emplace(std::move(member_));
+  const auto why = refusal_text(silence, true, member);
+  ASSERT_TRUE(why);
+  EXPECT_THAT(*why, HasSubstr("by way of the relay at 198.51.100.9:9100"));
+  EXPECT_THAT(*why, testing::Not(HasSubstr("let both meet")));
+}
+
 TEST(RoomKeyTest, ShortOrBlankNamesAreRefused) {
   EXPECT_FALSE(RoomKey::from_name("short"));
   EXPECT_FALSE(RoomKey::from_name("with a blank inside"));
