@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iterator>
 
 #include "common/config/json.h"
@@ -11,6 +12,7 @@
 #include "common/core/printable.h"
 #include "common/core/whole_file.h"
 #include "study/answer_posterior.h"
+#include "study/compare_command.h"
 #include "study/curve_fit.h"
 
 namespace palp::study {
@@ -159,7 +161,8 @@ std::string header_text(const Task& task, bool curve) {
 void declare_fit(config::CommandLine& line, FitFlags& flags) {
   line.argument("FILE",
                 flags.file,
-                "trials, tab-separated: level_ln, correct; condition, trial_type if wanted");
+                "trials, tab-separated: level_ln, correct; condition, trial_type if wanted; or the "
+                "folder of a study, whose fit.tsv is written");
   line.required();
   line.whole("--intervals",
              flags.intervals,
@@ -199,6 +202,10 @@ Result<FitStatement> fit_statement(const std::vector<ConditionAnswers>& conditio
 }
 
 ExitStatus run_fit(const FitFlags& flags) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(flags.file, ignored)) {
+    return run_fit_study(flags.file, flags.report);
+  }
   const auto text = read_whole_file(flags.file, std::size_t{64} << 20);
   if (!text) return config::refusal("palp-study", text.error());
   const auto conditions = parse_answers(*text, flags.file);

@@ -1,26 +1,85 @@
 /// palp-study: what observers tell apart.
 
+#include <cstdio>
+#include <mutex>
+#include <string>
+
 #include "common/config/command_line.h"
 #include "common/config/program_run.h"
 #include "common/io/process/parallel.h"
+#include "site_program/build_info.h"
+#include "study/compare_command.h"
 #include "study/fit_command.h"
+#include "study/keep_command.h"
+#include "study/plan_command.h"
+#include "study/report_command.h"
+#include "study/run_command.h"
 #include "study/simulate_command.h"
 
+namespace palp::study {
+namespace {
+
+using config::ExitStatus;
+
+void for_each_index(std::size_t count, const std::function<void(std::size_t)>& work) {
+  io::for_each_index(count, io::processors(), work);
+}
+
+ExitStatus run(const RunFlags& flags) {
+  std::mutex one_line;
+  return run_run(
+      flags,
+      [&](const Study& study) -> Result<Observer> {
+        return formula_participants(study, flags.people);
+      },
+      for_each_index,
+      [&](const std::string& line) {
+        const std::lock_guard lock{one_line};
+        (void)std::fputs(line.c_str(), stdout);
+        (void)std::fflush(stdout);
+      });
+}
+
+}  // namespace
+}  // namespace palp::study
+
 int main(int argc, char** argv) {
+  using namespace palp::study;  // NOLINT(google-build-using-namespace)
   palp::config::CommandLine line{
-      "palp-study", "Just noticeable differences: methods tried on known observers, fits."};
-  palp::study::SimulateFlags simulate;
+      "palp-study", "Just noticeable differences: studies planned, simulated, fitted, reported."};
+  PlanFlags plan;
+  declare_plan(line.verb("plan", "schedule and pre-registration of a study"), plan);
+  RunFlags run_flags;
+  declare_run(line.verb("run", "simulated participants go through a study"), run_flags);
+  SimulateFlags simulate;
   declare_simulate(line.verb("simulate", "does a method find a known truth?"), simulate);
-  palp::study::FitFlags fit;
-  declare_fit(line.verb("fit", "JND and bias from a table of trials"), fit);
-  palp::study::PowerFlags power;
+  FitFlags fit;
+  declare_fit(line.verb("fit", "JND and bias from a table of trials, or of a study"), fit);
+  std::string compared;
+  declare_compare(line.verb("compare", "do a study's conditions differ?"), compared);
+  StudyReportFlags report;
+  declare_report(line.verb("report", "a study as one page of HTML"), report);
+  KeepFlags exported;
+  declare_export(line.verb("export", "a study's answers for other tools"), exported);
+  KeepFlags checked;
+  declare_check(line.verb("check", "is a study as it was registered?"), checked);
+  KeepFlags withdrawn;
+  declare_withdraw(line.verb("withdraw", "deletes a participant"), withdrawn);
+  PowerFlags power;
   declare_power(line.verb("power", "how many participants a comparison needs"), power);
+  const std::string made_by = std::string{palp::site_program::version()} + ", commit " +
+                              std::string{palp::site_program::git_commit()};
   return palp::config::run_program(line, argc, argv, [&]() -> palp::config::ExitStatus {
     const std::string verb = line.chosen_verb();
+    if (verb == "plan") return run_plan(plan, made_by);
+    if (verb == "run") return run(run_flags);
     if (verb == "fit") return run_fit(fit);
+    if (verb == "compare") return run_compare(compared);
+    if (verb == "report") return run_report(report);
+    if (verb == "export") return run_export(exported);
+    if (verb == "check") return run_check(checked);
+    if (verb == "withdraw") return run_withdraw(withdrawn);
     if (verb == "power") return run_power(power);
-    return run_simulate(simulate, [](std::size_t count, const auto& work) {
-      palp::io::for_each_index(count, palp::io::processors(), work);
-    });
+    return run_simulate(simulate, for_each_index);
   });
 }

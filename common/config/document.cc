@@ -78,5 +78,6 @@ bool Document::is_switch(std::string_view path) const {
 Document surgeon_document() { return Document{std::make_unique<proto::config::SurgeonConfig>()}; }
 Document patient_document() { return Document{std::make_unique<proto::config::PatientConfig>()}; }
 Document scenario_document() { return Document{std::make_unique<proto::config::LabScenario>()}; }
+Document study_document() { return Document{std::make_unique<proto::config::Study>()}; }
 
 }  // namespace palp::config

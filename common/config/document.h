@@ -53,9 +53,10 @@ class Document {
   std::unique_ptr<google::protobuf::Message> settings_;
 };
 
-/// All defaults: SurgeonConfig, PatientConfig and LabScenario of proto/config.proto.
+/// All defaults: SurgeonConfig, PatientConfig, LabScenario and Study of proto/config.proto.
 [[nodiscard]] Document surgeon_document();
 [[nodiscard]] Document patient_document();
 [[nodiscard]] Document scenario_document();
+[[nodiscard]] Document study_document();
 
 }  // namespace palp::config

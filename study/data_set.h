@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "common/core/result.h"
+#include "study/study_file.h"
+#include "study/trial_row.h"
+
+/// A study's folder, in the form of BIDS: who finds what where.
+///
+///     dataset_description.json README participants.tsv participants.json task-TASK_beh.json
+///     sub-01/ses-01/beh/sub-01_ses-01_task-TASK_run-01_beh.tsv     a line for each trial
+///     code/study.textproto schedule.json plan.json preregistration.md key.json
+///     derivatives/palp-study/                                      what fit, compare, report say
+namespace palp::study {
+
+/// "sub-07"; `participant` from 0.
+[[nodiscard]] std::string participant_id(std::size_t participant);
+
+/// Where everything lies below a folder.
+struct DataSet {
+  std::string folder;
+
+  [[nodiscard]] std::string code(const std::string& name) const;
+  [[nodiscard]] std::string derived(const std::string& name) const;
+  [[nodiscard]] std::string trials_folder(const std::string& id) const;
+  /// Of a participant's block, from 1.
+  [[nodiscard]] std::string trials(const std::string& id,
+                                   std::string_view task,
+                                   std::size_t block) const;
+  /// Identifiers of those whose folders are there, in order.
+  [[nodiscard]] std::vector<std::string> participants() const;
+  /// participants.tsv follows what is there. The error is a CannotOpen.
+  [[nodiscard]] Result<void> list_participants(const std::string& kind) const;
+};
+
+/// A study that was planned, with what registration says of it.
+struct PlannedStudy {
+  DataSet data{};
+  Study study{};
+  std::string study_text{};
+  /// Study file and schedule are still those that were registered.
+  bool registered{};
+  std::string why_not{};  ///< !registered
+};
+[[nodiscard]] Result<PlannedStudy> open_study(const std::string& folder);
+
+/// All answers of a participant.
+struct ParticipantRows {
+  std::string id;
+  std::vector<TrialRow> rows;
+};
+[[nodiscard]] Result<std::vector<ParticipantRows>> read_rows(const PlannedStudy& planned);
+
+/// SHA-256 in hexadecimal digits.
+[[nodiscard]] std::string fingerprint(std::string_view text);
+
+/// A folder and those above it. The error is a CannotOpen.
+[[nodiscard]] Result<void> make_folder(const std::string& path);
+
+}  // namespace palp::study

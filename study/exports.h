@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "study/data_set.h"
+
+/// A study's answers as other tools read them. Practice is left out. Pure.
+namespace palp::study {
+
+inline constexpr std::string_view kExportFormats[]{
+    "psignifit", "quickpsy", "palamedes", "psychopy", "lme4"};
+
+/// - psignifit: rows of level, right ones, all: its data matrix; a block for each participant and
+///   condition, begun by a comment line ("#");
+/// - quickpsy: tidy CSV, a row a trial: participant, condition, level, response;
+/// - palamedes: a .m script that fills StimLevels, NumPos, OutOfNum, a row for each participant and
+///   condition;
+/// - psychopy: wide CSV as its TrialHandler writes it: participant, session, trials.thisN,
+///   trials.intensity, trials.response, trials.rt, condition;
+/// - lme4: CSV, a row a trial: participant, condition, level, correct, trial; for
+///   glmer(correct ~ level * condition + (1 | participant), binomial("probit")).
+/// nullopt: no such format.
+[[nodiscard]] std::optional<std::string> export_text(std::string_view format,
+                                                     const std::vector<ParticipantRows>& rows);
+
+}  // namespace palp::study

@@ -1,0 +1,194 @@
+#include "study/run_command.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <vector>
+
+#include "common/core/whole_file.h"
+#include "study/journal.h"
+#include "study/replay_rows.h"
+
+namespace palp::study {
+namespace {
+
+using config::ExitCode;
+using config::ExitStatus;
+
+constexpr std::size_t kTableMax = std::size_t{64} << 20;  // [bytes]
+
+/// What all participants of a run share.
+struct Runner {
+  const PlannedStudy& planned;
+  const AnswerTable& table;
+  const Observer& observer;
+  const std::function<void(const std::string&)>& say;
+  bool each{};
+};
+
+/// As a row has it, so that a run that was cut short goes on from the very same number.
+double milliseconds(double value) { return std::round(value * 1e3) / 1e3; }
+
+struct BlockEnd {
+  double clock{};  ///< [s], since the participant's first trial
+  bool excluded{};
+  std::size_t answered{};  ///< in this run
+};
+
+/// The rows of an earlier run, told to the block again.
+Result<RowsFile> rows_before(const std::string& path, const Study& study) {
+  const auto text = read_whole_file(path, kTableMax);
+  if (!text) return RowsFile{};
+  return parse_rows(*text, path, study.task.two_sided);
+}
+
+Result<BlockEnd> run_block(const Runner& runner,
+                           std::size_t participant,
+                           std::size_t number,
+                           const BlockPlan& plan,
+                           double clock) {
+  const Study& study = runner.planned.study;
+  const std::string id = participant_id(participant);
+  const std::string path = runner.planned.data.trials(id, task_name(study), number);
+  const std::string code = condition_code(study, plan.condition);
+  const auto before = rows_before(path, study);
+  if (!before) return tl::unexpected(before.error());
+  Block block{study, runner.table, plan};
+  if (auto told = replay_rows(block, before->rows, code); !told) return fail(path, told.error());
+  auto journal = Journal::open(path, before->whole);
+  if (!journal) return tl::unexpected(journal.error());
+  if (before->whole == 0) {
+    if (auto added = journal->add(row_header()); !added) return tl::unexpected(added.error());
+  }
+  BlockEnd end{.clock = clock, .excluded = false, .answered = 0};
+  if (!before->rows.empty()) {
+    const TrialOutcome& last = before->rows.back().outcome;
+    end.clock = milliseconds(last.onset + last.duration);
+  }
+  while (!block.done()) {
+    const TrialAsk ask = block.next();
+    TrialRow row{.ask = ask,
+                 .outcome = runner.observer({participant, plan.condition}, ask),
+                 .condition = code,
+                 .block = number,
+                 .kind = "simulated",
+                 .believed_mean = 0,
+                 .believed_sd = 0,
+                 .two_sided = study.task.two_sided};
+    row.outcome.onset = end.clock;
+    row.outcome.duration = milliseconds(row.outcome.duration);
+    block.told(row.yes());
+    const Marginal believed = block.believed(ask.track);
+    row.believed_mean = believed.mean;
+    row.believed_sd = believed.sd;
+    if (auto added = journal->add(row_text(row)); !added) return tl::unexpected(added.error());
+    end.clock = milliseconds(end.clock + row.outcome.duration);
+    ++end.answered;
+    if (runner.each) {
+      runner.say(id + " block " + std::to_string(number) + " trial " +
+                 std::to_string(ask.number + 1) + " answered\n");
+    }
+  }
+  end.excluded = block.excluded();
+  return end;
+}
+
+/// @returns trials answered now.
+Result<std::size_t> run_participant(const Runner& runner, std::size_t participant) {
+  const Study& study = runner.planned.study;
+  const std::string id = participant_id(participant);
+  if (auto made = make_folder(runner.planned.data.trials_folder(id)); !made) {
+    return tl::unexpected(made.error());
+  }
+  std::size_t answered = 0;
+  double clock = 0;
+  std::size_t number = 0;
+  for (const BlockPlan& plan : participant_plan(study, participant)) {
+    const auto end = run_block(runner, participant, ++number, plan, clock);
+    if (!end) return tl::unexpected(end.error());
+    answered += end->answered;
+    if (end->excluded) break;
+    clock = milliseconds(end->clock + study.rest);
+  }
+  return answered;
+}
+
+/// Those that are to go through the study, without those who withdrew.
+Result<std::vector<std::size_t>> chosen(const RunFlags& flags, const PlannedStudy& planned) {
+  const std::size_t count = planned.study.participants;
+  if (flags.participant && *flags.participant > count) {
+    return fail("--participant is " + std::to_string(*flags.participant) + ", the study has " +
+                std::to_string(count));
+  }
+  const std::string withdrawn =
+      read_whole_file(planned.data.code("withdrawn.txt")).value_or(std::string{});
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (flags.participant && *flags.participant != i + 1) continue;
+    if (withdrawn.find(participant_id(i) + '\n') == std::string::npos) {
+      out.push_back(i);
+    } else if (flags.participant) {
+      return fail(participant_id(i) + " has withdrawn");
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void declare_run(config::CommandLine& line, RunFlags& flags) {
+  line.argument("FOLDER", flags.folder, "of a planned study");
+  line.required();
+  line.whole("--participant",
+             flags.participant,
+             {.min = 1, .max = 999},
+             "this one alone; otherwise all, those who withdrew left out");
+  line.choice(
+      "--observer",
+      flags.observer,
+      {"formula", "felt"},
+      "who answers: a formula that knows no condition, or somebody who feels whole sessions "
+      "in virtual time");
+  line.number("--weber",
+              flags.people.weber,
+              {.min = 0.01, .max = 1},
+              "median Weber fraction of the observers with their own finger");
+  line.number("--spread",
+              flags.people.spread,
+              {.min = 0, .max = 1},
+              "standard deviation of ln JND from one to the next");
+  line.number("--lapse", flags.people.lapse, {.min = 0, .max = 0.5}, "share of answers guessed");
+  line.toggle("--each", flags.each, "print a line for each answered trial");
+  line.footer(
+      "Goes on where an earlier run stood: every answer is on the disk before the next trial "
+      "begins.\nScreen and lines name neither condition nor level.");
+}
+
+ExitStatus run_run(const RunFlags& flags,
+                   const MakeObserver& make_observer,
+                   const ForEachIndex& for_each_index,
+                   const std::function<void(const std::string&)>& say) {
+  const auto planned = open_study(flags.folder);
+  if (!planned) return config::refusal("palp-study", planned.error());
+  const auto who = chosen(flags, *planned);
+  if (!who) return config::refusal("palp-study", who.error());
+  const auto observer = make_observer(planned->study);
+  if (!observer) return config::refusal("palp-study", observer.error());
+  const AnswerTable table = table_of(planned->study);
+  const Runner runner{*planned, table, *observer, say, flags.each};
+  std::vector<Result<std::size_t>> ends(who->size());
+  for_each_index(who->size(), [&](std::size_t i) { ends[i] = run_participant(runner, (*who)[i]); });
+  std::size_t answered = 0;
+  for (const auto& end : ends) {
+    if (!end) return config::refusal("palp-study", end.error());
+    answered += *end;
+  }
+  const auto listed = planned->data.list_participants("simulated");
+  if (!listed) return config::refusal("palp-study", listed.error());
+  std::string text = std::to_string(who->size()) + " participants through, " +
+                     std::to_string(answered) + " trials answered now\n";
+  if (!planned->registered) text += "warning: " + planned->why_not + "\n";
+  return {ExitCode::Done, text};
+}
+
+}  // namespace palp::study

@@ -1,0 +1,139 @@
+#include "study/schedule.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "common/config/json.h"
+#include "common/core/random.h"
+#include "study/williams.h"
+
+namespace palp::study {
+namespace {
+
+using config::Json;
+
+constexpr std::size_t kRunMax = 4;
+constexpr std::size_t kDecoys = 4;
+
+// Streams of one study: some for all, then kStreams for each block of each participant.
+enum : std::uint64_t { kCodes = 1, kBlocks = 16, kStreams = 16 };
+enum : std::uint64_t { kSides, kPracticeSides, kTracks, kCatches, kPlaces, kLevels };
+
+std::uint64_t stream_of(std::size_t participant, std::size_t condition, std::uint64_t what) {
+  return kBlocks + (participant * kConditionsMax + condition) * kStreams + what;
+}
+
+/// 0 to count-1 in an order drawn by seed.
+std::vector<std::size_t> drawn_order(std::size_t count, std::uint64_t seed, std::uint64_t stream) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return random_bits(seed, stream, i); });
+  return order;
+}
+
+/// Which of the slots are catch trials: one in each equal stretch.
+std::vector<bool> catches(const Study& study, std::uint64_t stream) {
+  const auto count =
+      static_cast<std::size_t>(std::lround(study.catch_share * static_cast<double>(study.trials)));
+  const std::size_t all = study.trials + count;
+  std::vector<bool> out(all);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t from = i * all / count;
+    const std::size_t to = (i + 1) * all / count;
+    const double share = random_uniform(study.seed, stream, i);
+    out[from + static_cast<std::size_t>(share * static_cast<double>(to - from))] = true;
+  }
+  return out;
+}
+
+/// The tracks take turns in rounds, each of which has an order of its own.
+std::size_t track_of(const Study& study, std::size_t trial, std::uint64_t stream) {
+  const std::size_t round = trial / study.tracks;
+  return drawn_order(study.tracks, random_bits(study.seed, stream, round), 0)[trial % study.tracks];
+}
+
+Json slots_json(const std::vector<Slot>& slots) {
+  Json out = Json::array();
+  for (const Slot& slot : slots) {
+    out.push_back(Json{{"type", to_string(slot.kind)},
+                       {"track", slot.track},
+                       {"second", slot.second},
+                       {"decoy", slot.decoy}});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<bool> balanced_draw(std::size_t count, std::uint64_t seed, std::uint64_t stream) {
+  // Never a longer run than allowed, and never so many left of one that they could not be placed.
+  std::size_t left[2]{count / 2, count / 2};
+  left[random_bits(seed, stream, count) & 1] += count % 2;
+  std::vector<bool> out;
+  std::size_t run = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = static_cast<double>(left[1]) / static_cast<double>(left[0] + left[1]);
+    bool one = random_uniform(seed, stream, i) < share;
+    for (const bool wanted : {false, true}) {
+      // Another one now, and what is left of `wanted` would not fit between what is left of those.
+      if (left[wanted] > kRunMax * left[!wanted]) one = wanted;
+    }
+    if (!out.empty() && run == kRunMax && out.back() == one) one = !one;
+    if (left[one] == 0) one = !one;
+    run = !out.empty() && out.back() == one ? run + 1 : 1;
+    --left[one];
+    out.push_back(one);
+  }
+  return out;
+}
+
+std::vector<BlockPlan> participant_plan(const Study& study, std::size_t participant) {
+  const auto square = williams_square(study.conditions.size());
+  std::vector<BlockPlan> blocks;
+  for (const std::size_t condition : square[participant % square.size()]) {
+    const auto stream = [&](std::uint64_t what) { return stream_of(participant, condition, what); };
+    const auto decoy = [&](std::size_t i) {
+      return static_cast<std::size_t>(random_bits(study.seed, stream(kPlaces), i) % kDecoys);
+    };
+    BlockPlan block{.condition = condition, .stream = stream(kLevels)};
+    const std::vector<bool> is_catch = catches(study, stream(kCatches));
+    const auto sides = balanced_draw(is_catch.size(), study.seed, stream(kSides));
+    std::size_t trial = 0;
+    for (std::size_t i = 0; i < is_catch.size(); ++i) {
+      const TrialKind kind = is_catch[i] ? TrialKind::Catch : TrialKind::Trial;
+      const std::size_t track = is_catch[i] ? 0 : track_of(study, trial++, stream(kTracks));
+      block.trials.push_back({kind, track, sides[i], decoy(i)});
+    }
+    const std::size_t practice = study.practice.right > 0 ? study.practice.trials_max : 0;
+    const auto others = balanced_draw(practice, study.seed, stream(kPracticeSides));
+    for (std::size_t i = 0; i < practice; ++i) {
+      block.practice.push_back({TrialKind::Practice, 0, others[i], decoy(is_catch.size() + i)});
+    }
+    blocks.push_back(std::move(block));
+  }
+  return blocks;
+}
+
+std::string condition_code(const Study& study, std::size_t condition) {
+  const auto order = drawn_order(study.conditions.size(), study.seed, kCodes);
+  const auto at = std::ranges::find(order, condition) - order.begin();
+  return std::string(1, static_cast<char>('A' + at));
+}
+
+std::string schedule_text(const Study& study) {
+  Json out{{"schema", "palp.study_schedule/1"}, {"study", study.name}, {"seed", study.seed}};
+  out["participants"] = Json::array();
+  for (std::size_t p = 0; p < study.participants; ++p) {
+    Json blocks = Json::array();
+    for (const BlockPlan& block : participant_plan(study, p)) {
+      blocks.push_back(Json{{"condition", condition_code(study, block.condition)},
+                            {"practice", slots_json(block.practice)},
+                            {"trials", slots_json(block.trials)}});
+    }
+    out["participants"].push_back(std::move(blocks));
+  }
+  return out.dump() + "\n";
+}
+
+}  // namespace palp::study

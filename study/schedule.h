@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "study/study_file.h"
+
+/// Who does what in which order: all of it drawn from the study's seed before anybody is asked.
+/// Pure.
+namespace palp::study {
+
+enum class TrialKind : std::uint8_t {
+  Trial,
+  Catch,     ///< at the easiest level: shows who does not attend
+  Practice,  ///< easy, and told afterwards whether right
+};
+
+[[nodiscard]] constexpr std::string_view to_string(TrialKind kind) noexcept {
+  switch (kind) {
+    case TrialKind::Trial:
+      return "trial";
+    case TrialKind::Catch:
+      return "catch";
+    case TrialKind::Practice:
+      return "practice";
+  }
+  return "?";
+}
+
+/// What is known of a trial before its level is.
+struct Slot {
+  TrialKind kind{};
+  std::size_t track{};  ///< of TrialKind::Trial
+  /// The second interval holds the stronger stimulus; two-sided tasks: of easy trials only.
+  bool second{};
+  std::size_t decoy{};  ///< place by way of which the stage travels, 0 to 3
+};
+
+/// All of a participant under one condition.
+struct BlockPlan {
+  std::size_t condition{};
+  std::uint64_t stream{};        ///< of random numbers, its own
+  std::vector<Slot> practice{};  ///< as many as there may be
+  std::vector<Slot> trials{};
+};
+
+/// Blocks in the order of a row of a Williams square. `participant` from 0.
+[[nodiscard]] std::vector<BlockPlan> participant_plan(const Study& study, std::size_t participant);
+
+/// The letter that stands for a condition on every screen and in every file; the letters are dealt
+/// out by the seed.
+[[nodiscard]] std::string condition_code(const Study& study, std::size_t condition);
+
+/// `count` answers to "the second?", as even as can be and never more than 4 equal ones on end.
+[[nodiscard]] std::vector<bool> balanced_draw(std::size_t count,
+                                              std::uint64_t seed,
+                                              std::uint64_t stream);
+
+/// The schedule of all participants as JSON, with codes in place of conditions: what is registered
+/// and hashed.
+[[nodiscard]] std::string schedule_text(const Study& study);
+
+}  // namespace palp::study

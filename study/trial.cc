@@ -1,0 +1,71 @@
+#include "study/trial.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palp::study {
+
+Trial::Trial(int taps, bool practice, const TrialTimes& times) noexcept
+    : taps_wanted_{taps}, practice_{practice}, times_{times} {}
+
+void Trial::enter(TrialStage stage, TimePoint now) noexcept {
+  stage_ = stage;
+  entered_at_ = now;
+}
+
+Duration Trial::length(TimePoint now) const noexcept {
+  return began_at_ ? now - *began_at_ : Duration{};
+}
+
+bool Trial::by_decoy(TimePoint now) const noexcept {
+  return stage_ == TrialStage::Travel && 2 * (now - entered_at_) < times_.travel;
+}
+
+void Trial::explore(TimePoint now, const TrialInput& in) noexcept {
+  force_max_ = std::max(force_max_, std::abs(in.force));
+  if (in.contact) contact_ += now - last_;
+  if (touching_ && !in.contact) ++taps_[interval_];
+  touching_ = in.contact;
+  const bool enough = taps_[interval_] >= taps_wanted_ && !in.contact;
+  if (!enough && now - entered_at_ < times_.explore_max) return;
+  touching_ = false;
+  if (interval_ == 0) {
+    interval_ = 1;
+    enter(TrialStage::Travel, now);
+  } else {
+    enter(TrialStage::Answer, now);
+  }
+}
+
+void Trial::tick(TimePoint now, const TrialInput& in) noexcept {
+  if (!began_at_) {
+    began_at_ = entered_at_ = last_ = now;
+  }
+  if (!in.pedal && stage_ != TrialStage::Done && stage_ != TrialStage::Told) {
+    enter(TrialStage::Ended, now);
+  }
+  switch (stage_) {
+    case TrialStage::Travel:
+      if (now - entered_at_ >= times_.travel) enter(TrialStage::Explore, now);
+      break;
+    case TrialStage::Explore:
+      explore(now, in);
+      break;
+    case TrialStage::Answer:
+      if (in.answer) {
+        answer_ = in.answer;
+        response_time_ = now - entered_at_;
+        enter(practice_ ? TrialStage::Told : TrialStage::Done, now);
+      }
+      break;
+    case TrialStage::Told:
+      if (now - entered_at_ >= times_.told) enter(TrialStage::Done, now);
+      break;
+    case TrialStage::Done:
+    case TrialStage::Ended:
+      break;
+  }
+  last_ = now;
+}
+
+}  // namespace palp::study

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "common/core/time.h"
+
+namespace palp::study {
+
+enum class TrialStage : std::uint8_t {
+  Travel,   ///< to the place of the next interval, by way of the decoy; takes the same each time
+  Explore,  ///< the hand taps
+  Answer,   ///< which one? without a limit
+  Told,     ///< practice: right or wrong is shown
+  Done,
+  Ended,  ///< the participant let go of the pedal: the trial is given again later
+};
+
+struct TrialTimes {
+  Duration travel{std::chrono::milliseconds{1500}};
+  Duration explore_max{std::chrono::seconds{8}};
+  Duration told{std::chrono::seconds{1}};
+};
+
+/// What happened since the last tick.
+struct TrialInput {
+  double force{};                ///< [N], that the hand was given, any sign
+  bool contact{};                ///< the tip touches, whether the hand is told or not
+  bool pedal{true};              ///< held
+  std::optional<bool> answer{};  ///< "the second"
+};
+
+/// One trial of two intervals as a state machine: it moves only in tick(now), and knows neither
+/// device nor screen. Counts taps by contacts that end. An answer counts in TrialStage::Answer
+/// only. A value.
+class Trial {
+ public:
+  /// `taps` >= 1 of an interval end it, once out of the tissue, or explore_max does.
+  Trial(int taps, bool practice, const TrialTimes& times) noexcept;
+
+  /// `now` does not go back. The first call begins the trial.
+  void tick(TimePoint now, const TrialInput& in) noexcept;
+
+  [[nodiscard]] TrialStage stage() const noexcept { return stage_; }
+  /// 0 or 1: the interval felt now, or travelled to.
+  [[nodiscard]] std::size_t interval() const noexcept { return interval_; }
+  /// First half of a travel: the stage makes for the decoy.
+  [[nodiscard]] bool by_decoy(TimePoint now) const noexcept;
+  [[nodiscard]] std::optional<bool> answer() const noexcept { return answer_; }
+  [[nodiscard]] Duration response_time() const noexcept { return response_time_; }
+  [[nodiscard]] int taps() const noexcept { return taps_[0] + taps_[1]; }
+  [[nodiscard]] double force_max() const noexcept { return force_max_; }  ///< [N], magnitude
+  [[nodiscard]] Duration contact() const noexcept { return contact_; }
+  [[nodiscard]] Duration length(TimePoint now) const noexcept;  ///< since the trial began
+
+ private:
+  void enter(TrialStage stage, TimePoint now) noexcept;
+  void explore(TimePoint now, const TrialInput& in) noexcept;
+
+  int taps_wanted_;
+  bool practice_;
+  TrialTimes times_;
+  TrialStage stage_{TrialStage::Travel};
+  std::size_t interval_{};
+  std::optional<TimePoint> began_at_;
+  TimePoint entered_at_{};
+  TimePoint last_{};
+  bool touching_{};
+  std::array<int, 2> taps_{};
+  double force_max_{};  ///< [N]
+  Duration contact_{};
+  std::optional<bool> answer_;
+  Duration response_time_{};
+};
+
+}  // namespace palp::study

@@ -1,0 +1,199 @@
+#include "study/trial_row.h"
+
+#include <array>
+#include <cstdio>
+#include <optional>
+
+#include "common/config/number.h"
+#include "common/core/printable.h"
+
+namespace palp::study {
+namespace {
+
+std::string digits(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.9g", value);
+  return text.data();
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> out;
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = line.find('\t', begin);
+    out.push_back(line.substr(begin, end - begin));
+    if (end == std::string_view::npos) return out;
+    begin = end + 1;
+  }
+}
+
+std::optional<TrialKind> kind_of(std::string_view text) {
+  for (const TrialKind kind : {TrialKind::Trial, TrialKind::Catch, TrialKind::Practice}) {
+    if (to_string(kind) == text) return kind;
+  }
+  return std::nullopt;
+}
+
+// Places of the columns in a line.
+enum Cell : std::size_t {
+  kOnset,
+  kDuration,
+  kKind,
+  kResponseTime,
+  kBlock,
+  kTrial,
+  kTrack,
+  kCondition,
+  kLevel,
+  kInterval,
+  kResponse,
+  kCorrect,
+  kMean,
+  kSd,
+  kTaps,
+  kForce,
+  kContact,
+  kWho,
+  kCount
+};
+
+Result<TrialRow> row_of(const std::vector<std::string_view>& cells, bool two_sided) {
+  std::array<double, kCount> number{};
+  for (const Cell at : {kOnset,
+                        kDuration,
+                        kResponseTime,
+                        kBlock,
+                        kTrial,
+                        kTrack,
+                        kLevel,
+                        kInterval,
+                        kResponse,
+                        kCorrect,
+                        kMean,
+                        kSd,
+                        kTaps,
+                        kForce,
+                        kContact}) {
+    const auto value = config::parse_number(cells[at]);
+    if (!value) {
+      return fail(std::string{row_columns()[at].name} + " is \"" + printable(cells[at]) +
+                  "\", expected a number");
+    }
+    number[at] = *value;
+  }
+  const auto kind = kind_of(cells[kKind]);
+  const auto whole = [&](Cell at) { return static_cast<std::size_t>(number[at]); };
+  if (!kind || number[kBlock] < 1 || number[kTrial] < 1 || number[kTrack] < 0) {
+    return fail("trial_type, block, trial or track is none");
+  }
+  TrialRow row{.ask = {.kind = *kind,
+                       .number = whole(kTrial) - 1,
+                       .track = whole(kTrack),
+                       .level = number[kLevel],
+                       .second = number[kInterval] == 2,
+                       .decoy = 0},
+               .outcome = {.second = number[kResponse] == 2,
+                           .onset = number[kOnset],
+                           .duration = number[kDuration],
+                           .response_time = number[kResponseTime],
+                           .taps = static_cast<int>(number[kTaps]),
+                           .force_max = number[kForce],
+                           .contact = number[kContact]},
+               .condition = std::string{cells[kCondition]},
+               .block = whole(kBlock),
+               .kind = std::string{cells[kWho]},
+               .believed_mean = number[kMean],
+               .believed_sd = number[kSd],
+               .two_sided = two_sided};
+  if (number[kCorrect] != (row.yes() ? 1 : 0)) {
+    return fail("correct does not follow from interval and response");
+  }
+  return row;
+}
+
+}  // namespace
+
+bool TrialRow::yes() const noexcept {
+  return two_sided ? outcome.second : outcome.second == ask.second;
+}
+
+const std::vector<Column>& row_columns() {
+  static const std::vector<Column> columns{
+      {"onset", "when the trial began, since the participant's first", "s"},
+      {"duration", "of the trial", "s"},
+      {"trial_type", "trial, catch (the easiest level) or practice", ""},
+      {"response_time", "from the question to the answer", "s"},
+      {"block", "of the participant, from 1", ""},
+      {"trial", "in the block, from 1", ""},
+      {"track", "which of the interleaved tracks, from 0", ""},
+      {"condition", "code; the key is kept apart", ""},
+      {"level_ln", "logarithm of the ratio of stiffnesses", "1"},
+      {"interval", "which held the stiffer tissue, 1 or 2; two-sided: of easy trials only", ""},
+      {"response", "which was called the stiffer, 1 or 2", ""},
+      {"correct", "1: right; two-sided tasks: the second was called the stiffer", ""},
+      {"posterior_mean", "of ln JND, by the track, after the answer", "1"},
+      {"posterior_sd", "of the same", "1"},
+      {"taps", "of both intervals", ""},
+      {"force_max_n", "largest force the hand was given", "N"},
+      {"contact_s", "time in contact", "s"},
+      {"kind", "who answered: person, pilot (no approval was named) or simulated", ""}};
+  return columns;
+}
+
+std::string row_header() {
+  std::string text;
+  for (const Column& one : row_columns()) {
+    if (!text.empty()) text += '\t';
+    text += one.name;
+  }
+  return text + '\n';
+}
+
+std::string row_text(const TrialRow& row) {
+  const std::array<std::string, kCount> cells{digits(row.outcome.onset),
+                                              digits(row.outcome.duration),
+                                              std::string{to_string(row.ask.kind)},
+                                              digits(row.outcome.response_time),
+                                              std::to_string(row.block),
+                                              std::to_string(row.ask.number + 1),
+                                              std::to_string(row.ask.track),
+                                              row.condition,
+                                              digits(row.ask.level),
+                                              row.ask.second ? "2" : "1",
+                                              row.outcome.second ? "2" : "1",
+                                              row.yes() ? "1" : "0",
+                                              digits(row.believed_mean),
+                                              digits(row.believed_sd),
+                                              std::to_string(row.outcome.taps),
+                                              digits(row.outcome.force_max),
+                                              digits(row.outcome.contact),
+                                              row.kind};
+  std::string text;
+  for (const std::string& cell : cells) text += (text.empty() ? "" : "\t") + cell;
+  return text + '\n';
+}
+
+Result<RowsFile> parse_rows(std::string_view text, const std::string& name, bool two_sided) {
+  RowsFile out;
+  for (std::size_t number = 1, begin = 0;; ++number) {
+    const std::size_t end = text.find('\n', begin);
+    if (end == std::string_view::npos) break;
+    const std::string_view line = text.substr(begin, end - begin);
+    begin = end + 1;
+    if (number == 1) {
+      if (std::string{line} + '\n' != row_header()) {
+        return fail(name + ": the first line does not name the columns of this version");
+      }
+    } else {
+      const std::string where = name + ", line " + std::to_string(number);
+      const auto cells = cells_of(line);
+      if (cells.size() != kCount) return fail(where + " has another number of cells");
+      auto row = row_of(cells, two_sided);
+      if (!row) return fail(where, row.error());
+      out.rows.push_back(std::move(*row));
+    }
+    out.whole = begin;
+  }
+  return out;
+}
+
+}  // namespace palp::study

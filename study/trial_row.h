@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/core/result.h"
+#include "study/block.h"
+
+/// Trials as lines of a table, as BIDS has it: what is written down before the next trial begins.
+/// Pure.
+namespace palp::study {
+
+/// What came out of a trial.
+struct TrialOutcome {
+  bool second{};           ///< the participant chose the second interval
+  double onset{};          ///< [s], since the participant's first trial began
+  double duration{};       ///< [s]
+  double response_time{};  ///< [s]
+  int taps{};              ///< of both intervals
+  double force_max{};      ///< [N], magnitude of what the hand was given
+  double contact{};        ///< [s]
+};
+
+struct TrialRow {
+  TrialAsk ask{};
+  TrialOutcome outcome{};
+  std::string condition{};  ///< code
+  std::size_t block{};      ///< of the participant, from 1
+  std::string kind{};       ///< "person", "pilot" or "simulated"
+  double believed_mean{};   ///< [-], of ln JND, by the trial's track after the answer
+  double believed_sd{};     ///< [-]
+  bool two_sided{};
+
+  /// Right; at a two-sided task "the second is stiffer".
+  [[nodiscard]] bool yes() const noexcept;
+};
+
+/// The first line, with its end.
+[[nodiscard]] std::string row_header();
+[[nodiscard]] std::string row_text(const TrialRow& row);
+
+/// The rows of a file as row_text() wrote them. A last line without its end was never finished:
+/// it is left out, and `whole` says how many bytes stand before it.
+struct RowsFile {
+  std::vector<TrialRow> rows;
+  std::size_t whole{};  ///< [bytes]
+};
+[[nodiscard]] Result<RowsFile> parse_rows(std::string_view text,
+                                          const std::string& name,
+                                          bool two_sided);
+
+/// Column by column: name, meaning, unit or levels: for task-*_beh.json.
+struct Column {
+  std::string_view name;
+  std::string_view meaning;
+  std::string_view unit;  ///< empty: none
+};
+[[nodiscard]] const std::vector<Column>& row_columns();
+
+}  // namespace palp::study
