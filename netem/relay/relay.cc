@@ -287,16 +287,15 @@ void Relay::show(TimePoint now) noexcept {
     const auto i = static_cast<std::size_t>(direction);
     const Channel& channel = this->channel(direction);
     const RelayTraffic& traffic = traffic_[i];
-    shown.ways[i] = {
-        .counters = channel.counters(),
-        .forwarded = traffic.forwarded,
-        .late_releases = traffic.late_releases,
-        .socket_errors = socket_errors(direction),
-        .changes = channel.impaired_path().changes_applied(),
-        .in_flight = channel.in_flight(),
-        .delay_p50 = traffic.delay.quantile(0.5),
-        .delay_p99 = traffic.delay.quantile(0.99),
-        .error_p99 = traffic.release_error.quantile(0.99)};
+    shown.ways[i] = {.counters = channel.counters(),
+                     .forwarded = traffic.forwarded,
+                     .late_releases = traffic.late_releases,
+                     .socket_errors = socket_errors(direction),
+                     .changes = channel.impaired_path().changes_applied(),
+                     .in_flight = channel.in_flight(),
+                     .delay_p50 = traffic.delay.quantile(0.5),
+                     .delay_p99 = traffic.delay.quantile(0.99),
+                     .error_p99 = traffic.release_error.quantile(0.99)};
   }
   status.put(shown);
 }

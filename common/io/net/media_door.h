@@ -26,10 +26,10 @@ struct MediaSession {
 struct MediaDoor {
   static constexpr std::size_t kDatagrams = 64;
 
-  SpscQueue<SideDatagram> heard{kDatagrams};      ///< writer: io, reader: video
-  SpscQueue<MediaSession> sessions{16};           ///< writer: io, reader: video
-  SpscQueue<SideDatagram> letters{kDatagrams};    ///< to `from`; writer: video, reader: io
-  SpscQueue<Endpoint> wanted{4};                  ///< writer: video, reader: io
+  SpscQueue<SideDatagram> heard{kDatagrams};           ///< writer: io, reader: video
+  SpscQueue<MediaSession> sessions{16};                ///< writer: io, reader: video
+  SpscQueue<SideDatagram> letters{kDatagrams};         ///< to `from`; writer: video, reader: io
+  SpscQueue<Endpoint> wanted{4};                       ///< writer: video, reader: io
   SpscQueue<std::unique_ptr<DatagramSocket>> ways{4};  ///< writer: io, reader: video
 };
 

@@ -21,8 +21,8 @@
 namespace palp::io {
 namespace {
 
-using link::Role;
 using link::PlaneKeys;
+using link::Role;
 using link::SessionKeys;
 
 constexpr unsigned kRepeatFirst = 200'000;  // [us]; RFC 6347 allows less than its second
