@@ -5,6 +5,7 @@
 #include "common/core/mailbox.h"
 #include "common/core/pointer_report.h"
 #include "common/core/spsc_queue.h"
+#include "monitor/camera_feed.h"
 
 namespace palp::monitor {
 
@@ -21,6 +22,7 @@ struct Controls {
   SpscQueue<Request>* requests{};     ///< reader: main
   Mailbox<std::uint32_t>* stops{};    ///< reader: rt; one more: stop now
   Mailbox<PointerReport>* pointer{};  ///< reader: rt
+  CameraFeed* camera{};               ///< pictures, and who wants them
 };
 
 }  // namespace palp::monitor

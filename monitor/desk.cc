@@ -17,6 +17,9 @@ using record::Topic;
 constexpr std::array kLive{Topic::TickView, Topic::Link, Topic::Event, Topic::Depth};
 constexpr std::uint32_t kStatusChannel = 100;
 constexpr std::uint32_t kClientChannel = 101;
+constexpr std::uint32_t kCameraChannel = 102;
+constexpr std::uint32_t kJpegChannel = 103;
+constexpr std::uint32_t kVideoChannel = 104;
 constexpr Duration kTellWayStep = std::chrono::milliseconds{100};  ///< of an answer waited for
 constexpr std::size_t kKeptMax = 200;
 constexpr std::size_t kSubscriptionsMax = 64;
@@ -31,6 +34,30 @@ constexpr std::uint32_t kTake = 5;
 constexpr std::uint32_t kGive = 6;
 
 std::uint32_t channel_id(Topic topic) noexcept { return static_cast<std::uint32_t>(topic) + 1; }
+
+bool is_camera(std::uint32_t channel) noexcept {
+  return channel == kCameraChannel || channel == kJpegChannel;
+}
+
+Channel camera_channel(link::Role site, bool jpeg) {
+  const video::CameraFormat format = video::camera_format(jpeg);
+  Channel channel = channel_of({.topic = {},
+                                .name = std::string{record::site_name(site)} + "/" + format.topic,
+                                .schema = format.schema,
+                                .descriptors = format.descriptors});
+  channel.id = jpeg ? kJpegChannel : kCameraChannel;
+  return channel;
+}
+
+void add_camera(link::Role site, std::vector<Channel>& channels) {
+  channels.push_back(camera_channel(site, false));
+  channels.push_back(camera_channel(site, true));
+  channels.push_back({.id = kVideoChannel,
+                      .topic = std::string{record::site_name(site)} + "/video",
+                      .encoding = "json",
+                      .schema_name = "palp.monitor.Video",
+                      .schema = video_schema()});
+}
 
 std::vector<Channel> channels_of(link::Role site) {
   std::vector<Channel> channels;
@@ -67,7 +94,9 @@ Desk::Desk(const DeskConfig& config, Controls controls)
     : config_{config},
       controls_{controls},
       channels_{channels_of(config.site)},
-      services_{services_of(controls)} {}
+      services_{services_of(controls)} {
+  if (controls_.camera != nullptr) add_camera(config.site, channels_);
+}
 
 std::uint32_t Desk::join(Right right, TimePoint now) {
   if (right == Right::None || clients_.size() >= kClientsMax) return 0;
@@ -98,6 +127,23 @@ void Desk::leave(std::uint32_t client, TimePoint now) {
     (void)ask(Request::Kind::PilotGave, client);
   }
   clients_.erase(client);
+  want_pictures();
+}
+
+/// Nobody looks: nothing has to be sent.
+void Desk::want_pictures() {
+  if (controls_.camera == nullptr) return;
+  wish_.watched = std::ranges::any_of(clients_, [](const auto& client) {
+    return std::ranges::any_of(client.second.subscriptions,
+                               [](const auto& one) { return is_camera(one.second); });
+  });
+  controls_.camera->wishes.put(wish_);
+}
+
+void Desk::want_key(Client& client) {
+  client.needs_key = true;
+  ++wish_.keys;
+  want_pictures();
 }
 
 void Desk::heard_pong(std::uint32_t number, Duration round_trip, TimePoint now) {
@@ -152,6 +198,7 @@ bool Desk::hear_text(std::uint32_t number, std::string_view text, TimePoint now)
   }
   if (said->op == ClientText::Op::Unsubscribe) {
     for (const std::uint32_t id : said->ids) client.subscriptions.erase(id);
+    want_pictures();
   } else if (said->op == ClientText::Op::Unadvertise) {
     if (std::ranges::find(said->ids, client.pointer_channel) != said->ids.end()) {
       client.publishes = false;
@@ -170,6 +217,7 @@ void Desk::subscribe(Client& client, const ClientText::Subscription& wanted) {
   if (!client.subscriptions.emplace(wanted.id, wanted.channel).second) {
     return tell(client, Level::Warning, "this subscription exists");
   }
+  if (is_camera(wanted.channel)) want_key(client);
   for (const Kept& one : kept_) {
     if (one.channel != wanted.channel) continue;
     client.outbox.push(
@@ -299,6 +347,29 @@ void Desk::publish(const LiveStatus& status) {
   told_ = status.stamp;
   const std::string json = status_json(status, pilot_, clients_.size());
   send(kStatusChannel, status.stamp, std::as_bytes(std::span{json}));
+}
+
+/// To a client that missed one, what rests on that one is of no use.
+void Desk::publish(const video::CameraFrame& frame, std::uint64_t stamp) {
+  const std::uint32_t channel = frame.jpeg ? kJpegChannel : kCameraChannel;
+  const auto message = video::camera_message(frame, stamp);
+  for (auto& [number, client] : clients_) {
+    for (const auto& [id, wanted] : client.subscriptions) {
+      if (wanted != channel) continue;
+      if (client.outbox.take_broken()) want_key(client);
+      if (client.needs_key && !frame.key) continue;
+      client.needs_key = false;
+      client.outbox.push({.text = false,
+                          .passing = true,
+                          .chained = true,
+                          .body = message_bytes(id, stamp, message)});
+    }
+  }
+}
+
+void Desk::publish(const VideoShown& shown, std::uint64_t stamp) {
+  const std::string json = video_json(shown);
+  send(kVideoChannel, stamp, std::as_bytes(std::span{json}));
 }
 
 }  // namespace palp::monitor

@@ -54,6 +54,9 @@ class Desk {
 
   void publish(const LiveMessage& message);
   void publish(const LiveStatus& status);
+  /// `stamp`: of the capture, ns since 1970.
+  void publish(const video::CameraFrame& frame, std::uint64_t stamp);
+  void publish(const VideoShown& shown, std::uint64_t stamp);
 
  private:
   struct Client {
@@ -61,6 +64,7 @@ class Desk {
     Outbox outbox{kWaitingMax};
     std::map<std::uint32_t, std::uint32_t> subscriptions;  ///< of ids to channels
     std::uint32_t pointer_channel{};
+    bool needs_key{};  ///< of the camera nothing else is of use to it
     bool publishes{};
     double budget{kMessagesPerSecond};  ///< [-], messages it may send at once
     TimePoint heard_at{};
@@ -80,6 +84,8 @@ class Desk {
   [[nodiscard]] std::string serve(std::uint32_t number, const ClientBytes& call, TimePoint now);
   /// Empty: the program will hear of it. Else why not.
   [[nodiscard]] std::string ask(Request::Kind kind, std::uint32_t client);
+  void want_pictures();
+  void want_key(Client& client);
   void tell_way(Client& client, Duration round_trip);
   void end_press(Client& client, const std::optional<PointerReport>& report);
   void tell(Client& client, Level level, std::string_view sentence);
@@ -99,6 +105,7 @@ class Desk {
   Pilot pilot_;
   std::deque<Kept> kept_;  ///< events and depths so far, for who comes late
   std::uint64_t told_{};   ///< stamp of the newest status
+  CameraWish wish_;
 };
 
 }  // namespace palp::monitor

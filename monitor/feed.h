@@ -55,6 +55,8 @@ class Feed {
   Feed(link::Role site, const record::WallClock& clock, Duration period);
 
   [[nodiscard]] link::Role site() const noexcept { return site_; }
+  /// [ns] since 1970, on the file's line. Thread: any.
+  [[nodiscard]] std::uint64_t stamp(TimePoint at) const noexcept { return clock_.stamp(at); }
 
   /// Each record that the session file gets, in the same order. Thread: record.
   void take(const Record& record) noexcept;

@@ -15,10 +15,19 @@ void Outbox::push(Frame frame) {
       ++one;
       continue;
     }
-    waiting_ -= one->body.size();
-    ++dropped_;
-    one = frames_.erase(one);
+    broken_ = broken_ || one->chained;
+    give_way(one);
   }
+  if (!broken_) return;
+  for (one = std::next(frames_.begin(), sending_ ? 1 : 0); one != frames_.end();) {
+    one->chained ? give_way(one) : void(++one);
+  }
+}
+
+void Outbox::give_way(std::list<Frame>::iterator& one) {
+  waiting_ -= one->body.size();
+  ++dropped_;
+  one = frames_.erase(one);
 }
 
 void Outbox::pop() {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <list>
 #include <string>
+#include <utility>
 
 namespace palp::monitor {
 
@@ -11,6 +12,7 @@ namespace palp::monitor {
 struct Frame {
   bool text{};     ///< else bytes
   bool passing{};  ///< a newer one makes up for its loss
+  bool chained{};  ///< of the camera: it rests on the chained one before it
   std::string body;
 };
 
@@ -33,18 +35,23 @@ class Outbox {
   void pop();
 
   [[nodiscard]] std::size_t waiting() const noexcept { return waiting_; }  ///< [bytes]
+  /// Since the last call a chained frame gave way, and all that waited behind it with it.
+  [[nodiscard]] bool take_broken() noexcept { return std::exchange(broken_, false); }
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
   [[nodiscard]] bool hopeless() const noexcept {
     return waiting_ > 2 * bound_ || staying_ > kStayingMax;
   }
 
  private:
+  void give_way(std::list<Frame>::iterator& one);
+
   std::size_t bound_;  ///< [bytes]
   std::list<Frame> frames_;
   std::size_t waiting_{};
   std::size_t staying_{};  ///< of the frames
   std::uint64_t dropped_{};
   bool sending_{};
+  bool broken_{};
 };
 
 }  // namespace palp::monitor

@@ -292,8 +292,12 @@ class Server::Io {
   beast::error_code open(const asio::ip::address& address);
   void accept(Listener& listener);
   void take(tcp::socket socket);
+  void publish_camera();
 
   Feed& feed_;
+  CameraFeed* camera_;
+  video::CameraFrame frame_;
+  TimePoint shown_at_{};  ///< what was told of the video last
   Shared shared_;
   asio::io_context context_{1};
   /// A round has its length also while nothing is asked of any socket.
@@ -306,6 +310,7 @@ class Server::Io {
 
 Server::Io::Io(const ServerConfig& config, Controls controls, Feed& feed)
     : feed_{feed},
+      camera_{controls.camera},
       shared_{.access = Access{config.tokens, config.origins},
               .desk = Desk{config.desk, controls}} {
   listen(config.port);
@@ -369,9 +374,20 @@ void Server::Io::take(tcp::socket socket) {
   connections_.emplace_back(shared_, std::move(socket)).start();
 }
 
+void Server::Io::publish_camera() {
+  while (camera_->frames.take(frame_)) {
+    shared_.desk.publish(frame_, feed_.stamp(frame_.captured_at));
+  }
+  const VideoShown& shown = camera_->shown.get();
+  if (std::exchange(shown_at_, shown.at) != shown.at) {
+    shared_.desk.publish(shown, feed_.stamp(shown.at));
+  }
+}
+
 void Server::Io::work(TimePoint now) {
   while (feed_.next(message_)) shared_.desk.publish(message_);
   shared_.desk.publish(feed_.status());
+  if (camera_ != nullptr) publish_camera();
   for (Connection& one : connections_) {
     one.pump();
     one.ping(now);

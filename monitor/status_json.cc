@@ -76,4 +76,20 @@ std::string status_schema() { return schema_of(status_json({}, {}, 0)); }
 
 std::string client_schema() { return schema_of(client_json({})); }
 
+std::string video_json(const VideoShown& shown) {
+  Json json;
+  json["sending"] = shown.state == video::VideoState::Sending;
+  json["state"] = video::to_string(shown.state);
+  json["age_ms"] = seconds(shown.age) * 1e3;
+  json["kbps"] = shown.kbps;
+  json["fps"] = shown.fps;
+  json["standing_ms"] = seconds(shown.standing) * 1e3;
+  json["delivered"] = shown.delivered;
+  json["repaired"] = shown.repaired;
+  json["not_shown"] = shown.not_shown;
+  return json.dump();
+}
+
+std::string video_schema() { return schema_of(video_json({})); }
+
 }  // namespace palp::monitor

@@ -18,6 +18,7 @@
 #include "patient_site/devices/device_rig.h"
 #include "patient_site/devices_command.h"
 #include "patient_site/display.h"
+#include "patient_site/drawn_camera.h"
 #include "patient_site/estimator_worker.h"
 #include "patient_site/patient_node.h"
 #include "patient_site/phantom.h"
@@ -27,6 +28,7 @@
 #include "patient_site/tare_rule.h"
 #include "patient_site/tissue_record.h"
 #include "site_program/build_info.h"
+#include "site_program/camera_sending.h"
 #include "site_program/check_command.h"
 #include "site_program/exit_status.h"
 #include "site_program/impaired_reception.h"
@@ -62,6 +64,7 @@ void declare_flags(config::CommandLine& line, config::Document& document, std::s
   line.knob("--devices", "devices");
   line.knob("--phantom", "simulated_phantom.phantom");
   line.knob("--surface-offset-mm", "simulated_phantom.surface_offset_mm");
+  line.knob("--camera", "camera.source");
   site_program::declare_session_flags(line);
 }
 
@@ -143,6 +146,7 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   runner.protection = settings->protection;
   runner.wrap_transport = std::move(*wrap);
   runner.loop = settings->loop;
+  runner.with_media = settings->camera.any();
   auto info =
       site_program::session_info(link::Role::Patient, "palp-patient", settings->seed, document);
   info.metadata.emplace_back("coupling", settings->coupling.name);
@@ -168,6 +172,15 @@ std::unique_ptr<DeviceRig> start_devices(const std::optional<DevicePlans>& plans
   return plans ? std::make_unique<DeviceRig>(*plans, std::max(0, priority - 1)) : nullptr;
 }
 
+/// Null where there is none. `recording` outlives it.
+std::unique_ptr<video::Camera> make_camera(const Settings& settings,
+                                           site_program::Recording& recording) {
+  if (settings.camera.source == "test") return std::make_unique<video::TestCamera>();
+  if (settings.camera.source != "phantom") return nullptr;
+  return std::make_unique<DrawnCamera>(recording.camera()->force().tip(),
+                                       settings.simulation.surface_offset);
+}
+
 /// A patient site in real time, its parts in the order in which they need each other.
 /// Thread: main.
 class Program {
@@ -183,7 +196,8 @@ class Program {
         recording_{settings_.record,
                    proven(std::move(plan.info)),
                    2,
-                   settings_.monitor.serve ? std::optional{settings_.loop.period} : std::nullopt},
+                   settings_.monitor.serve ? std::optional{settings_.loop.period} : std::nullopt,
+                   settings_.camera.any()},
         worker_{depth::with_sensor(settings_.estimator, plan.facts.sensor),
                 {contact_, depth_, recording_.recorder(1)}},
         node_{settings_.node,
@@ -199,6 +213,7 @@ class Program {
                      {"version", std::string{site_program::version()}}},
                     recording_,
                     std::nullopt},
+        camera_{make_camera(settings_, recording_)},
         began_at_{clock_.now()},
         estimator_{"palp-estimator", kEstimatorPause, [this](TimePoint) { listen(); }} {}
   ~Program() { runner_.halt(); }
@@ -240,12 +255,14 @@ class Program {
   EstimatorWorker worker_;
   PatientNode node_;
   site_program::Monitoring monitoring_;
+  std::unique_ptr<video::Camera> camera_;  ///< null: none
   io::SteadyClock clock_;
   TimePoint began_at_;
   site_program::StatusLine line_;
   site_program::RoundTrips round_trips_;
   Histogram latencies_;  ///< of estimates; written by the estimator's thread, read after its end
   io::BackgroundLoop estimator_;
+  std::unique_ptr<site_program::CameraSending> sending_;  ///< null: nothing is sent
 };
 
 std::optional<ExitStatus> Program::await_devices(io::Terminal& terminal) {
@@ -276,6 +293,14 @@ void Program::tare() {
 
 ExitStatus Program::run(io::Terminal& terminal) {
   if (auto ended = await_devices(terminal)) return *ended;
+  if (camera_) {
+    sending_ = std::make_unique<site_program::CameraSending>(
+        site_program::CameraSendingConfig{.jpeg = settings_.camera.jpeg,
+                                          .max_kbps = settings_.camera.rate_max_kbps},
+        *camera_,
+        runner_.media_door(),
+        *recording_.camera());
+  }
   runner_.start(link_, [this](TimePoint now) { node_.tick(now); });
   std::printf("listening on %s\n", runner_.local().c_str());
   std::fflush(stdout);
@@ -334,6 +359,7 @@ void Program::show(const PatientStatus& status, TimePoint now) {
 }
 
 void Program::stop(site_program::SiteReport& report) {
+  sending_.reset();
   runner_.stop("the patient site has ended");
   estimator_.stop();
   const PatientStatus& status = node_.status().get();

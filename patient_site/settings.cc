@@ -165,6 +165,13 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
   made.impairment = settings::make_impairment(message.impairment());
   made.record = *record;
   made.monitor = settings::make_monitor(message.monitor());
+  auto camera = settings::make_camera(message.camera());
+  if (!camera) return fail(camera.error().text);
+  if (camera->source == "phantom" && made.stage != "sim") {
+    return fail("camera 'phantom' is drawn beside a simulated stage; this stage is '" + made.stage +
+                "'");
+  }
+  made.camera = std::move(*camera);
   made.duration = from_seconds(message.duration_s());
   made.seed = message.seed();
   return made;

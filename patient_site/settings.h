@@ -39,6 +39,7 @@ struct Settings {
   settings::ImpairmentSettings impairment;
   settings::RecordSettings record;
   settings::MonitorSettings monitor;
+  settings::CameraSettings camera;
   Duration duration{};  ///< 0: until told to stop
   std::uint64_t seed{1};
 };

@@ -46,7 +46,10 @@ Monitoring::Monitoring(const settings::MonitorSettings& settings,
   monitor::Controls controls;
   if (site) {
     tokens_.control = draw_token();
-    controls = {.requests = &requests_, .stops = site->stops, .pointer = site->pointer};
+    controls = {.requests = &requests_,
+                .stops = site->stops,
+                .pointer = site->pointer,
+                .camera = site->camera};
   }
   const std::string site_name{record::site_name(feed->site())};
   monitor::ServerConfig config{.desk = {.site = feed->site(),

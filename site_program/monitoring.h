@@ -22,6 +22,7 @@ namespace palp::site_program {
 struct MonitoredSite {
   Mailbox<std::uint32_t>* stops{};
   Mailbox<PointerReport>* pointer{};
+  monitor::CameraFeed* camera{};
 };
 
 /// The live page of a site's session, and what its clients ask of the program. A page that cannot

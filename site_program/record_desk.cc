@@ -16,6 +16,9 @@ namespace {
 /// More than any tick has; what is more is written all the same.
 constexpr std::size_t kTickRecords = 256;
 
+/// What is shown at once, in clients' messages a second: 50, however often the thread comes round.
+constexpr Duration kFeedEvery = std::chrono::milliseconds{18};
+
 std::string zone_text(Duration zone) {
   const auto minutes = std::chrono::duration_cast<std::chrono::minutes>(zone).count();
   std::array<char, 48> text{};
@@ -62,7 +65,8 @@ bool shown_elsewhere(record::NoteCode code) {
 RecordDesk::RecordDesk(const settings::RecordSettings& settings,
                        record::SessionInfo info,
                        std::size_t writer_count,
-                       std::optional<Duration> live_period)
+                       std::optional<Duration> live_period,
+                       bool with_camera)
     : prefix_{settings.files}, info_{std::move(info)} {
   if (!prefix_.empty() || !settings.file.empty()) {
     open(prefix_.empty() ? settings.file : next_path());
@@ -71,6 +75,7 @@ RecordDesk::RecordDesk(const settings::RecordSettings& settings,
   if (live_period) {  // on the file's line of time, where there is one
     feed_.emplace(info_.site, sink_ ? info_.clock : wall_clock(), *live_period);
   }
+  if (with_camera) camera_.emplace();
   tick_.reserve(kTickRecords);
   for (std::size_t i = 0; i <= writer_count; ++i) {  // the last is the maker's own
     queues_.push_back(std::make_unique<record::QueueRecorder>(settings.queue_records));
@@ -97,6 +102,7 @@ void RecordDesk::open(const std::string& path) {
                                 record::utc_text(info_.clock.stamp(info_.opened_at)));
   }
   writer_.emplace(*sink_, info_);
+  if (camera_) camera_->begin_file();
   if (!writer_->failed()) return;
   file_fault_ = sink_->fault();
   writer_.reset();
@@ -130,7 +136,7 @@ void RecordDesk::close_file() {
 
 void RecordDesk::work(TimePoint now) {
   const bool last = closing_;  // what was queued before that is written
-  drain();
+  drain(now);
   if (writer_) writer_->flush_if_due(now);
   keep_watch(now);
   if (!last) return;
@@ -145,7 +151,7 @@ void RecordDesk::work(TimePoint now) {
   account_.dropped = dropped_ + lost_;
 }
 
-void RecordDesk::drain() {
+void RecordDesk::drain(TimePoint now) {
   for (const auto& queue : queues_) {
     const bool ticks = queue == queues_.front() && !prefix_.empty();
     queue->drain([&](const Record& record) {
@@ -155,7 +161,14 @@ void RecordDesk::drain() {
     });
   }
   count_dropped();
-  if (feed_) feed_->tell(writer_ && !writer_->failed());
+  if (feed_ && now - fed_at_ >= kFeedEvery) {
+    fed_at_ = now;
+    feed_->tell(writer_ && !writer_->failed());
+  }
+  if (camera_) {
+    camera_->force().tell();
+    camera_->write_to(writer_ ? &*writer_ : nullptr, info_.site, info_.clock);
+  }
   write_peer();
 }
 
@@ -213,6 +226,7 @@ std::string RecordDesk::fault() const {
 void RecordDesk::write(const Record& record) {
   tell_of(record);
   if (feed_) feed_->take(record);
+  if (camera_) camera_->force().take(record);
   if (writer_) {
     (void)writer_->write(record);
   } else if (!file_fault_.empty()) {

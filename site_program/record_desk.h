@@ -15,6 +15,7 @@
 #include "common/record/session_writer.h"
 #include "common/settings/site_settings.h"
 #include "monitor/feed.h"
+#include "site_program/camera_recording.h"
 #include "site_program/disk_forecast.h"
 
 namespace palp::site_program {
@@ -49,7 +50,8 @@ class RecordDesk {
   RecordDesk(const settings::RecordSettings& settings,
              record::SessionInfo info,
              std::size_t writer_count,
-             std::optional<Duration> live_period);
+             std::optional<Duration> live_period,
+             bool with_camera);
 
   /// Writes what waits; once close() was said, the last of it, and closes the file.
   void work(TimePoint now);
@@ -63,6 +65,8 @@ class RecordDesk {
 
   /// Null where nobody looks on.
   [[nodiscard]] monitor::Feed* feed() noexcept { return feed_ ? &*feed_ : nullptr; }
+  /// Null where no picture is sent or looked at.
+  [[nodiscard]] CameraRecording* camera() noexcept { return camera_ ? &*camera_ : nullptr; }
   [[nodiscard]] record::Recorder& recorder(std::size_t writer) { return *queues_.at(writer); }
   /// Into the queue behind those of the writers. Thread: the maker's.
   void note(const Note& note) noexcept { (void)queues_.back()->record(note); }
@@ -73,7 +77,7 @@ class RecordDesk {
   [[nodiscard]] const Need& need() noexcept { return need_.get(); }  ///< Thread: the maker's.
 
  private:
-  void drain();
+  void drain(TimePoint now);
   void count_dropped();
   void write(const Record& record);
   void write_tick(const Record& record);
@@ -100,6 +104,8 @@ class RecordDesk {
   std::optional<record::SessionWriter> writer_;
   std::vector<std::unique_ptr<record::QueueRecorder>> queues_;
   std::optional<monitor::Feed> feed_;
+  TimePoint fed_at_{};
+  std::optional<CameraRecording> camera_;
   SpscQueue<News> news_{kNewsMax};                ///< reader: the maker
   SpscQueue<io::PeerIdentity> peers_{kPeersMax};  ///< writer: the maker
   std::optional<io::PeerIdentity> peer_;          ///< in no file yet

@@ -10,6 +10,8 @@ namespace palp::site_program {
 namespace {
 
 constexpr Duration kPause = std::chrono::milliseconds{20};
+/// A drawn picture is as old as the newest record.
+constexpr Duration kCameraPause = std::chrono::milliseconds{4};
 /// A record thread that has not come back for so long stands before a disk that does not answer.
 constexpr Duration kSilence = std::chrono::seconds{2};
 /// What a good disk may need for the last of a session.
@@ -20,11 +22,15 @@ constexpr Duration kPatience = std::chrono::seconds{10};
 Recording::Recording(const settings::RecordSettings& settings,
                      record::SessionInfo info,
                      std::size_t writer_count,
-                     std::optional<Duration> live_period)
-    : desk_{std::make_unique<RecordDesk>(settings, std::move(info), writer_count, live_period)},
+                     std::optional<Duration> live_period,
+                     bool with_camera)
+    : desk_{std::make_unique<RecordDesk>(
+          settings, std::move(info), writer_count, live_period, with_camera)},
       began_{io::SteadyClock{}.now()},
       loop_{std::make_unique<io::BackgroundLoop>(
-          "palp-record", kPause, [desk = desk_.get()](TimePoint now) { desk->work(now); })} {}
+          "palp-record", with_camera ? kCameraPause : kPause, [desk = desk_.get()](TimePoint now) {
+            desk->work(now);
+          })} {}
 
 Recording::~Recording() {
   try {

@@ -20,12 +20,13 @@ namespace palp::site_program {
 class Recording {
  public:
   /// `info.opened_at` and its clock are filled in here. `live_period`: of the site's ticks, where
-  /// somebody looks on: then there is a feed().
+  /// somebody looks on: then there is a feed(). `with_camera`: then there is a camera().
   /// @throws std::runtime_error with one sentence where the file cannot be created or begun.
   Recording(const settings::RecordSettings& settings,
             record::SessionInfo info,
             std::size_t writer_count,
-            std::optional<Duration> live_period = {});
+            std::optional<Duration> live_period = {},
+            bool with_camera = false);
   /// As stop().
   ~Recording();
   Recording(const Recording&) = delete;
@@ -34,6 +35,8 @@ class Recording {
   [[nodiscard]] record::Recorder& recorder(std::size_t writer) { return desk_->recorder(writer); }
   /// What the site's monitor shows; null where nobody looks on. Until stop().
   [[nodiscard]] monitor::Feed* feed() noexcept { return desk_->feed(); }
+  /// For the thread of the video; null where there is none. Until stop().
+  [[nodiscard]] CameraRecording* camera() noexcept { return desk_->camera(); }
   /// What a client asked for.
   void note(record::NoteCode code, double detail, TimePoint now) noexcept {
     desk_->note(Note{.at = now, .code = static_cast<std::uint16_t>(code), .detail = detail});

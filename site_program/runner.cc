@@ -31,6 +31,7 @@ Runner::Runner(const RunnerConfig& config) : loop_{config.loop} {
   }
   server.wrap_transport = config.wrap_transport;
   server.priority = io_priority(loop_.priority);
+  if (config.with_media) server.media = &door_;
   if (!config.protection.identity.empty()) {
     auto credentials = io::Credentials::read(config.protection.identity, config.session.role);
     if (!credentials) throw std::runtime_error{credentials.error().text};

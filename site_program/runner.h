@@ -25,6 +25,7 @@ struct RunnerConfig {
   settings::ProtectionSettings protection;
   io::TransportWrap wrap_transport;
   settings::LoopSettings loop;
+  bool with_media{};  ///< the site has a thread for video
 };
 
 /// Runs a site in real time: the threads rt and io, and what lies between them. Thread: its
@@ -38,6 +39,8 @@ class Runner {
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
+  /// For the thread of the video, where there is one; it ends before this.
+  [[nodiscard]] io::MediaDoor& media_door() noexcept { return door_; }
   [[nodiscard]] std::string local() const { return server_->local().to_string(); }
   /// Ticks from now on until stop(), which comes before the end of all that `tick` refers to and of
   /// the link.
@@ -66,6 +69,7 @@ class Runner {
   settings::LoopSettings loop_;
   std::unique_ptr<io::Credentials> credentials_;  ///< null: plain datagrams
   io::LinkUpdateDesk desk_;
+  io::MediaDoor door_;
   std::unique_ptr<io::SessionServer> server_;
   std::unique_ptr<io::PeriodicThread> rt_;
   io::ServiceNotice service_;

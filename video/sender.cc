@@ -69,14 +69,15 @@ std::uint16_t Sender::refers_back(const FrameNature& nature) const noexcept {
   return static_cast<std::uint16_t>(std::min<std::uint32_t>(back, 0xFFFF));
 }
 
-void Sender::take(const Picture& picture, Duration captured, TimePoint now) {
+std::optional<EncodedFrame> Sender::take(const Picture& picture, Duration captured, TimePoint now) {
   auto frame = encoder_.encode(picture, order(now));
   if (!frame || frame->bytes.empty() || frame->bytes.size() > kFrameSizeMax) {
     key_wanted_ = key_wanted_ || !frame || frame->bytes.size() > kFrameSizeMax;
     ++counts_.skipped;
-    return;
+    return std::nullopt;
   }
   put_in_line(*frame, captured, now);
+  return frame;
 }
 
 void Sender::put_in_line(const EncodedFrame& frame, Duration captured, TimePoint now) {

@@ -33,8 +33,9 @@ class Sender {
 
   /// A picture would be encoded: asked for at each of the camera's, in order.
   [[nodiscard]] bool wants_picture(TimePoint now);
-  /// Encodes it and puts its fragments in line. `captured`: since the session began.
-  void take(const Picture& picture, Duration captured, TimePoint now);
+  /// Encodes it and puts its fragments in line. `captured`: since the session began. @returns the
+  /// frame, unless it was left out.
+  std::optional<EncodedFrame> take(const Picture& picture, Duration captured, TimePoint now);
   /// The surgeon's report. `round_trip`: of the link, 0: not known.
   void hear(const Report& report, Duration round_trip, TimePoint now);
   /// The next payload that may leave by `now`; nullopt: none.

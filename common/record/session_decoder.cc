@@ -100,6 +100,9 @@ Verdict decode_named(message::MessageList<Messages...> /*list*/,
   return verdict;
 }
 
+/// Foxglove's, of the camera: no record tells of a picture.
+constexpr std::string_view kPictureSchemas{"foxglove.Compressed"};
+
 }  // namespace
 
 Verdict SessionDecoder::decode(std::string_view schema,
@@ -107,7 +110,7 @@ Verdict SessionDecoder::decode(std::string_view schema,
                                TimePoint at,
                                Parts& parts) noexcept {
   parts.clear();
-  if (schema == kLogLineSchema) return Verdict::View;
+  if (schema == kLogLineSchema || schema.starts_with(kPictureSchemas)) return Verdict::View;
   if (!schema.starts_with(message::kLogPackage)) return Verdict::Unknown;
   std::string_view name = schema.substr(message::kLogPackage.size());
   if (name.size() < 2 || name.front() != '.') return Verdict::Unknown;

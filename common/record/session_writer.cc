@@ -32,6 +32,7 @@ SessionCounts& SessionCounts::operator+=(const SessionCounts& other) noexcept {
   for (std::size_t type = 0; type < by_type.size(); ++type) by_type[type] += other.by_type[type];
   views += other.views;
   log_lines += other.log_lines;
+  foreign += other.foreign;
   misplaced += other.misplaced;
   return *this;
 }
@@ -114,6 +115,21 @@ bool SessionWriter::write_alone(const Record& record) {
   }
   ++counts_.by_type[record.index()];
   if (prepared->topic == Topic::Event) write_log_line(record, prepared->at);
+  return true;
+}
+
+std::uint16_t SessionWriter::add_topic(const ForeignTopic& topic) {
+  const auto schema = mcap_.add_schema(topic.schema, "protobuf", topic.descriptors);
+  foreign_.push_back({.id = mcap_.add_channel(schema, topic.name, "protobuf")});
+  return static_cast<std::uint16_t>(foreign_.size() - 1);
+}
+
+bool SessionWriter::write(std::uint16_t topic, TimePoint at, std::span<const std::byte> message) {
+  if (closed_) return false;
+  std::byte* place = place_for(foreign_.at(topic), clock_.stamp(at), message.size());
+  if (place == nullptr) return false;
+  std::memcpy(place, message.data(), message.size());
+  ++counts_.foreign;
   return true;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -46,10 +47,13 @@ struct SessionCounts {
   std::array<std::uint64_t, std::variant_size_v<Record>> by_type{};  ///< in the order of Record
   std::uint64_t views{};                                             ///< of ticks
   std::uint64_t log_lines{};                                         ///< of events
+  std::uint64_t foreign{};                                           ///< of others' schemas
   std::uint64_t misplaced{};  ///< records that have no topic at this site
   [[nodiscard]] std::uint64_t records() const noexcept;
   /// Messages of the file: records, and what says the same once more.
-  [[nodiscard]] std::uint64_t messages() const noexcept { return records() + views + log_lines; }
+  [[nodiscard]] std::uint64_t messages() const noexcept {
+    return records() + views + log_lines + foreign;
+  }
 };
 
 /// Writes one site's session file: each Record on its topic, stamped with its own instant on the
@@ -67,6 +71,15 @@ class SessionWriter {
 
   /// @returns false: not written, and counted.
   bool write(const Record& record);
+  /// Of another schema than ours; the file has it from now on. @returns its number for write().
+  struct ForeignTopic {
+    std::string name;    ///< "patient/camera"
+    std::string schema;  ///< full name of the message
+    Bytes descriptors;   ///< FileDescriptorSet
+  };
+  std::uint16_t add_topic(const ForeignTopic& topic);
+  /// A message there, of that instant. @returns false: not written, and counted.
+  bool write(std::uint16_t topic, TimePoint at, std::span<const std::byte> message);
   /// Facts that become known while it runs: a metadata record of that name.
   void add_facts(const std::string& name, const McapMap& facts);
   /// Total of records that a full queue dropped; shown in the next link status and the summary.
@@ -112,6 +125,7 @@ class SessionWriter {
   SessionEncoder encoder_;
   std::array<Channel, kTopicCount> channels_{};
   Channel log_channel_;
+  std::vector<Channel> foreign_;
   GivenGatherer gatherer_;
   TickView view_;
   WallClock clock_;

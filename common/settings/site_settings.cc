@@ -101,6 +101,16 @@ Result<RecordSettings> make_record(const proto::config::Record& message) {
       .file = message.file(), .files = message.files(), .queue_records = message.queue_records()};
 }
 
+Result<CameraSettings> make_camera(const proto::config::Camera& message) {
+  const std::string& source = message.source();
+  if (source != "none" && source != "phantom" && source != "test") {
+    return fail("unknown camera '" + source + "'; there are: none, phantom, test");
+  }
+  return CameraSettings{.source = source,
+                        .jpeg = message.codec() == "jpeg",
+                        .rate_max_kbps = message.rate_max_kbps()};
+}
+
 MonitorSettings make_monitor(const proto::config::Monitor& message) {
   return {.serve = message.serve(),
           .port = static_cast<std::uint16_t>(message.port()),

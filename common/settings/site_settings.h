@@ -10,6 +10,7 @@
 #include "common/link/link.h"
 
 namespace palp::proto::config {
+class Camera;
 class Coupling;
 class Impairment;
 class Link;
@@ -56,6 +57,15 @@ struct MonitorSettings {
   std::string origin{};      ///< of a page from elsewhere that may ask too; empty: none
 };
 
+/// Of the patient site's pictures.
+struct CameraSettings {
+  std::string source{"none"};
+  bool jpeg{};
+  double rate_max_kbps{1000};  ///< [kbit/s]
+
+  [[nodiscard]] bool any() const noexcept { return source != "none"; }
+};
+
 /// Of the link: who may hear and say something on it.
 struct ProtectionSettings {
   bool insecure{};         ///< plain datagrams are accepted
@@ -73,6 +83,8 @@ struct ProtectionSettings {
 [[nodiscard]] ProtectionSettings make_protection(const proto::config::Link& message);
 [[nodiscard]] LoopSettings make_loop(const proto::config::Loop& message);
 [[nodiscard]] ImpairmentSettings make_impairment(const proto::config::Impairment& message);
+/// The sentence lists the sources there are.
+[[nodiscard]] Result<CameraSettings> make_camera(const proto::config::Camera& message);
 [[nodiscard]] MonitorSettings make_monitor(const proto::config::Monitor& message);
 /// The sentence says that both were asked for.
 [[nodiscard]] Result<RecordSettings> make_record(const proto::config::Record& message);

@@ -5,11 +5,11 @@ namespace {
 
 constexpr std::size_t kShortest = 13;  ///< [bytes] of any datagram of ours: a record's header
 
-/// A telegram, a control message or a record of a handshake, by its first byte (WIRE.md).
+/// A telegram, a control message, video or a record of a handshake, by its first byte (WIRE.md).
 bool looks_like_ours(std::span<const std::byte> datagram) noexcept {
   if (datagram.size() < kShortest) return false;
   const auto first = std::to_integer<unsigned>(datagram[0]);
-  return (first >= 0x80 && first <= 0x83) || (first >= 20 && first <= 63);
+  return (first >= 0x80 && first <= 0x85) || (first >= 20 && first <= 63);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <time.h>
 
+#include "common/io/net/media_door.h"
 #include "common/io/realtime/realtime.h"
 
 namespace palp::netem {
@@ -35,9 +36,12 @@ timespec to_timespec(Duration span) noexcept {
 
 Relay::Relay(const RelayConfig& config)
     : client_side_{DatagramSocket::bound(config.listen, config.datagram_max)},
-      server_side_{DatagramSocket::connected(config.forward, config.datagram_max)},
+      server_side_{DatagramSocket::connected(config.forward, config.datagram_max),
+                   DatagramSocket::connected(config.forward, config.datagram_max)},
       forward_{config.forward},
-      own_ends_{CapturedEnd{client_side_.local()}, CapturedEnd{server_side_.local()}},
+      client_end_{client_side_.local()},
+      server_ends_{CapturedEnd{server_side_[kForce].local()},
+                   CapturedEnd{server_side_[kVideo].local()}},
       start_{monotonic_now()},
       up_{config.up, config.seed, Direction::Up, config.in_flight_max, start_, config.datagram_max},
       down_{config.down,
@@ -77,8 +81,7 @@ bool Relay::serve(Duration span) {
 
 RelayTraffic Relay::traffic(Direction direction) const {
   RelayTraffic traffic = traffic_[static_cast<std::size_t>(direction)];
-  traffic.socket_errors =
-      direction == Direction::Up ? server_side_.errors() : client_side_.errors();
+  traffic.socket_errors = socket_errors(direction);
   return traffic;
 }
 
@@ -87,15 +90,18 @@ void Relay::drain(Readable readable) noexcept {
     const auto datagrams = client_side_.receive();
     if (datagrams.empty()) break;
     for (std::size_t i = 0; i < datagrams.size(); ++i) {
-      clients_.heard(client_side_.sender_of(i), datagrams[i].bytes, datagrams[i].arrived_at);
+      const ReceivedDatagram& one = datagrams[i];
+      clients_[lane_of(one.bytes)].heard(client_side_.sender_of(i), one.bytes, one.arrived_at);
     }
     push(Direction::Up, datagrams);
     if (datagrams.size() < kDatagramBatch) break;
   }
-  for (int batch = 0; readable.server_side && batch < kBatchesPerDrain; ++batch) {
-    const auto datagrams = server_side_.receive();
-    push(Direction::Down, datagrams);
-    if (datagrams.size() < kDatagramBatch) break;
+  for (DatagramSocket& socket : server_side_) {
+    for (int batch = 0; readable.server_side && batch < kBatchesPerDrain; ++batch) {
+      const auto datagrams = socket.receive();
+      push(Direction::Down, datagrams);
+      if (datagrams.size() < kDatagramBatch) break;
+    }
   }
 }
 
@@ -106,16 +112,25 @@ void Relay::push(Direction direction, std::span<const ReceivedDatagram> datagram
     const auto decisions = channel.push(datagram.bytes, datagram.arrived_at, datagram.tos);
     if (!recording_on_) continue;
     recording.decided(decisions, direction);
-    Crossing from = crossing(direction == Direction::Up ? 0 : 1);
+    Crossing from = crossing(direction == Direction::Up ? 0 : 1, lane_of(datagram.bytes));
     // Not always the client: a capture tells who it was.
     if (direction == Direction::Up) from.peer = CapturedEnd{client_side_.sender_of(i)};
     recording.crossed(from, datagram.bytes, datagram.arrived_at, false, datagram.tos);
   }
 }
 
-Crossing Relay::crossing(std::uint8_t side) const noexcept {
-  const CapturedEnd peer{side == 1 ? forward_ : client().value_or(io::Endpoint{})};
-  return {.own = own_ends_[side], .peer = peer, .side = side};
+std::size_t Relay::lane_of(std::span<const std::byte> datagram) noexcept {
+  return !datagram.empty() && datagram[0] == io::kMediaFirstByte ? kVideo : kForce;
+}
+
+Crossing Relay::crossing(std::uint8_t side, std::size_t lane) const noexcept {
+  const CapturedEnd peer{side == 1 ? forward_ : clients_[lane].client().value_or(io::Endpoint{})};
+  return {.own = side == 1 ? server_ends_[lane] : client_end_, .peer = peer, .side = side};
+}
+
+std::uint64_t Relay::socket_errors(Direction direction) const noexcept {
+  if (direction == Direction::Down) return client_side_.errors();
+  return server_side_[kForce].errors() + server_side_[kVideo].errors();
 }
 
 /// Changes whose time has come act on what arrives from now on.
@@ -151,10 +166,6 @@ Duration Relay::lead(Direction direction, TimePoint next) const noexcept {
 /// Sends what is due, in batches: their bytes stay where they are until the next push.
 void Relay::release(Direction direction, TimePoint now) noexcept {
   Channel& channel = way(direction);
-  DatagramSocket& socket = direction == Direction::Up ? server_side_ : client_side_;
-  const bool known = direction == Direction::Up || client().has_value();
-  const io::Endpoint* to = direction == Direction::Down && client() ? &*client() : nullptr;
-  const Crossing onto = recording_on_ ? crossing(direction == Direction::Up ? 1 : 0) : Crossing{};
   TimePoint before = now;
   for (auto next = channel.next_release(); next; next = channel.next_release()) {
     const TimePoint due = before + lead(direction, *next);
@@ -167,21 +178,36 @@ void Relay::release(Direction direction, TimePoint now) noexcept {
       ++count;
     }
     if (count == 0) return;
-    const std::size_t sent = known ? socket.send(std::span{batch_.outgoing}.first(count), to) : 0;
+    const std::size_t sent = send(direction, count);
     traffic_[static_cast<std::size_t>(direction)].unsent += count - sent;
     account(direction, sent, before);
-    if (recording_on_) {
-      for (std::size_t i = 0; i < count; ++i) {
-        if (batch_.leaving[i].open) recording.left(batch_.leaving[i], direction);
-        if (i < sent) {
-          recording.crossed(
-              onto, batch_.outgoing[i].bytes, monotonic_now(), true, batch_.outgoing[i].tos);
-        }
-      }
+    for (std::size_t i = 0; recording_on_ && i < count; ++i) {
+      if (batch_.leaving[i].open) recording.left(batch_.leaving[i], direction);
+      if (i >= sent) continue;
+      const OutgoingDatagram& one = batch_.outgoing[i];
+      const std::uint8_t side = direction == Direction::Up ? 1 : 0;
+      recording.crossed(
+          crossing(side, lane_of(one.bytes)), one.bytes, monotonic_now(), true, one.tos);
     }
     if (count < kDatagramBatch) return;
     before = monotonic_now();
   }
+}
+
+/// The first `count` of the batch, with a call for each stretch of the same kind.
+std::size_t Relay::send(Direction direction, std::size_t count) noexcept {
+  std::size_t sent = 0;
+  for (std::size_t from = 0, end = 0; from < count; from = end) {
+    const std::size_t lane = lane_of(batch_.outgoing[from].bytes);
+    for (end = from + 1; end < count && lane_of(batch_.outgoing[end].bytes) == lane;) ++end;
+    const std::span stretch = std::span{batch_.outgoing}.subspan(from, end - from);
+    if (direction == Direction::Up) {
+      sent += server_side_[lane].send(stretch, nullptr);
+    } else if (const auto& to = clients_[lane].client()) {
+      sent += client_side_.send(stretch, &*to);
+    }
+  }
+  return sent;
 }
 
 void Relay::account(Direction direction, std::size_t sent, TimePoint before) noexcept {
@@ -206,8 +232,10 @@ void Relay::rebind_if_asked() {
   const std::uint64_t asked = up_.impaired_path().rebinds() + down_.impaired_path().rebinds();
   if (asked == rebinds_) return;
   rebinds_ = asked;
-  server_side_.reconnect(forward_);
-  own_ends_[1] = CapturedEnd{server_side_.local()};
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    server_side_[lane].reconnect(forward_);
+    server_ends_[lane] = CapturedEnd{server_side_[lane].local()};
+  }
 }
 
 /// Waits in the kernel until something arrives or shortly before the next release; then it looks
@@ -224,8 +252,9 @@ Relay::Readable Relay::rest(TimePoint now, TimePoint until) noexcept {
     timing_.slept(monotonic_now());
     return {.client_side = true, .server_side = true};
   }
-  std::array<pollfd, 3> watched{{{client_side_.descriptor(), POLLIN, 0},
-                                 {server_side_.descriptor(), POLLIN, 0},
+  std::array<pollfd, 4> watched{{{client_side_.descriptor(), POLLIN, 0},
+                                 {server_side_[kForce].descriptor(), POLLIN, 0},
+                                 {server_side_[kVideo].descriptor(), POLLIN, 0},
                                  {stop_descriptor_, POLLIN, 0}}};
   const TimePoint wake = std::max(next - timing_.spin(), now);
   const timespec wait = to_timespec(wake - now);
@@ -238,13 +267,14 @@ Relay::Readable Relay::rest(TimePoint now, TimePoint until) noexcept {
     if (ready == 0) timing_.woken(monotonic_now() - wake);
   }
   if (ready <= 0) return {};
-  stopped_ = (watched[2].revents & POLLIN) != 0;
-  return {.client_side = watched[0].revents != 0, .server_side = watched[1].revents != 0};
+  stopped_ = (watched[3].revents & POLLIN) != 0;
+  return {.client_side = watched[0].revents != 0,
+          .server_side = watched[1].revents != 0 || watched[2].revents != 0};
 }
 
 /// Both ways: which of them is next may change till then.
 void Relay::warm() noexcept {
-  if (up_.next_release()) server_side_.warm(nullptr);
+  if (up_.next_release()) server_side_[kForce].warm(nullptr);
   if (down_.next_release() && client()) client_side_.warm(&*client());
 }
 
@@ -257,16 +287,15 @@ void Relay::show(TimePoint now) noexcept {
     const auto i = static_cast<std::size_t>(direction);
     const Channel& channel = this->channel(direction);
     const RelayTraffic& traffic = traffic_[i];
-    shown.ways[i] = {
-        .counters = channel.counters(),
-        .forwarded = traffic.forwarded,
-        .late_releases = traffic.late_releases,
-        .socket_errors = direction == Direction::Up ? server_side_.errors() : client_side_.errors(),
-        .changes = channel.impaired_path().changes_applied(),
-        .in_flight = channel.in_flight(),
-        .delay_p50 = traffic.delay.quantile(0.5),
-        .delay_p99 = traffic.delay.quantile(0.99),
-        .error_p99 = traffic.release_error.quantile(0.99)};
+    shown.ways[i] = {.counters = channel.counters(),
+                     .forwarded = traffic.forwarded,
+                     .late_releases = traffic.late_releases,
+                     .socket_errors = socket_errors(direction),
+                     .changes = channel.impaired_path().changes_applied(),
+                     .in_flight = channel.in_flight(),
+                     .delay_p50 = traffic.delay.quantile(0.5),
+                     .delay_p99 = traffic.delay.quantile(0.99),
+                     .error_p99 = traffic.release_error.quantile(0.99)};
   }
   status.put(shown);
 }

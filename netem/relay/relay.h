@@ -80,7 +80,9 @@ struct RelayStatus {
 
 /// The impaired path as a process: two UDP ports with a Channel for each direction between them.
 /// Replies go to the client, which ClientChoice names, so a restarted surgeon with a new port
-/// becomes it and a stranger does not. A peer that vanishes is counted, nothing more.
+/// becomes it and a stranger does not. Video comes from another port of the surgeon's, and the
+/// patient tells it from force by that: its datagrams have a client and a socket of their own, and
+/// share the channels. A peer that vanishes is counted, nothing more.
 /// Thread: the one that serves it; it asks the clock and waits in the kernel, but spins the last
 /// 60 us before a release. commands, status and recording are the other thread's ends.
 class Relay {
@@ -93,9 +95,9 @@ class Relay {
 
   [[nodiscard]] io::Endpoint listening_on() const { return client_side_.local(); }
   /// Where the patient sees us.
-  [[nodiscard]] io::Endpoint forwarding_from() const { return server_side_.local(); }
+  [[nodiscard]] io::Endpoint forwarding_from() const { return server_side_[kForce].local(); }
   [[nodiscard]] const std::optional<io::Endpoint>& client() const noexcept {
-    return clients_.client();
+    return clients_[kForce].client();
   }
   /// Once it has been served.
   [[nodiscard]] bool real_time() const noexcept { return real_time_; }
@@ -132,9 +134,11 @@ class Relay {
   void take_commands(TimePoint now);
   void tell_laws(TimePoint now) noexcept;
   void release(Direction direction, TimePoint now) noexcept;
+  std::size_t send(Direction direction, std::size_t count) noexcept;
   void account(Direction direction, std::size_t sent, TimePoint before) noexcept;
   void rebind_if_asked();
-  [[nodiscard]] Crossing crossing(std::uint8_t side) const noexcept;
+  [[nodiscard]] std::uint64_t socket_errors(Direction direction) const noexcept;
+  [[nodiscard]] Crossing crossing(std::uint8_t side, std::size_t lane) const noexcept;
   [[nodiscard]] Duration lead(Direction direction, TimePoint next) const noexcept;
   [[nodiscard]] Readable rest(TimePoint now, TimePoint until) noexcept;
   void warm() noexcept;
@@ -143,10 +147,17 @@ class Relay {
     return direction == Direction::Up ? up_ : down_;
   }
 
+  /// By their first byte (WIRE.md); all that is not video is Force's.
+  static constexpr std::size_t kForce = 0;
+  static constexpr std::size_t kVideo = 1;
+  static constexpr std::size_t kLanes = 2;
+  [[nodiscard]] static std::size_t lane_of(std::span<const std::byte> datagram) noexcept;
+
   DatagramSocket client_side_;
-  DatagramSocket server_side_;
+  std::array<DatagramSocket, kLanes> server_side_;
   io::Endpoint forward_;
-  std::array<CapturedEnd, 2> own_ends_;  ///< of the sockets: 0 the client's, 1 the server's
+  CapturedEnd client_end_;                       ///< of our socket
+  std::array<CapturedEnd, kLanes> server_ends_;  ///< likewise
   TimePoint start_;
   Channel up_;
   Channel down_;
@@ -156,7 +167,7 @@ class Relay {
   bool stopped_{};
   bool recording_on_{};
   std::uint64_t rebinds_{};
-  ClientChoice clients_;
+  std::array<ClientChoice, kLanes> clients_;
   std::vector<RelayCommand> waiting_;    ///< commands whose time has not come
   std::array<RelayTraffic, 2> traffic_;  ///< by Direction
   ReleaseTiming timing_;

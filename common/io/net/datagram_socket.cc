@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "common/io/net/send_probe.h"
+#include "common/io/net/udp_socket.h"
 #include "common/link/transport.h"
 
 namespace palp::io {
@@ -151,6 +152,18 @@ DatagramSocket DatagramSocket::bound(const Endpoint& local, std::size_t datagram
 
 DatagramSocket DatagramSocket::connected(const Endpoint& peer, std::size_t datagram_max) {
   DatagramSocket socket{open_socket(peer), datagram_max};
+  socket.connect(peer);
+  return socket;
+}
+
+DatagramSocket DatagramSocket::sharing(const Endpoint& local,
+                                       const Endpoint& peer,
+                                       std::size_t datagram_max) {
+  DatagramSocket socket{open_socket(peer), datagram_max};
+  share_port(socket.descriptor_, true);
+  if (::bind(socket.descriptor_, local.address(), local.size()) != 0) {
+    cannot("cannot use " + local.to_string());
+  }
   socket.connect(peer);
   return socket;
 }

@@ -45,6 +45,12 @@ class DatagramSocket {
   static DatagramSocket connected(const Endpoint& peer,
                                   std::size_t datagram_max = link::kDatagramSizeMax);
 
+  /// The same from `local`, whose port its owner shares for the while (share_port).
+  /// @throws std::system_error.
+  static DatagramSocket sharing(const Endpoint& local,
+                                const Endpoint& peer,
+                                std::size_t datagram_max = link::kDatagramSizeMax);
+
   /// From another port of this machine on, as far as the peer can see; errors are counted on.
   /// @throws std::system_error.
   void reconnect(const Endpoint& peer);

@@ -1,6 +1,8 @@
 #include "common/io/secure/dtls_handshake.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <tuple>
@@ -19,6 +21,7 @@
 namespace palp::io {
 namespace {
 
+using link::PlaneKeys;
 using link::Role;
 using link::SessionKeys;
 
@@ -81,6 +84,19 @@ Openssl<BIO_METHOD> make_method() {
 
 unsigned repeat_after(SSL* /*ssl*/, unsigned last) {
   return last == 0 ? kRepeatFirst : std::min(kRepeatMax, last + last / 2);
+}
+
+/// RFC 5705. @returns false: the library would not.
+bool export_keys(SSL* ssl, std::string_view label, std::span<std::byte> keys) {
+  constexpr std::array<unsigned char, 1> kVersion{link::kProtocolVersion};
+  return SSL_export_keying_material(ssl,
+                                    reinterpret_cast<unsigned char*>(keys.data()),
+                                    keys.size(),
+                                    label.data(),
+                                    label.size(),
+                                    kVersion.data(),
+                                    kVersion.size(),
+                                    1) == 1;
 }
 
 }  // namespace
@@ -268,22 +284,17 @@ void DtlsHandshake::finish() {
     }
     result.peer_name = site_name(peer.get());
   }
-  constexpr char kLabel[] = "EXPORTER-palp-session";
-  constexpr std::array<unsigned char, 1> kVersion{link::kProtocolVersion};
   std::array<std::byte, SessionKeys::kExportedSize> exported{};
-  if (SSL_export_keying_material(ssl,
-                                 reinterpret_cast<unsigned char*>(exported.data()),
-                                 exported.size(),
-                                 kLabel,
-                                 sizeof kLabel - 1,
-                                 kVersion.data(),
-                                 kVersion.size(),
-                                 1) != 1) {
+  std::array<std::byte, PlaneKeys::kExportedSize> media{};
+  if (!export_keys(ssl, "EXPORTER-palp-session", exported) ||
+      !export_keys(ssl, "EXPORTER-palp-media", media)) {
     failure_ = {"no keys could be exported: " + openssl_complaint(), false};
     return;
   }
   result.keys = SessionKeys::from_exported(exported, role_);
+  result.media = PlaneKeys::from_exported(media, role_);
   OPENSSL_cleanse(exported.data(), exported.size());
+  OPENSSL_cleanse(media.data(), media.size());
   result_ = std::move(result);
   state_ = State::Done;
 }

@@ -22,6 +22,7 @@ using DtlsDatagram = std::vector<std::byte>;
 /// What a handshake leaves behind.
 struct DtlsResult {
   link::SessionKeys keys;
+  link::PlaneKeys media;         ///< of the session's video
   std::string peer_name;         ///< in the peer's certificate, for people
   std::string peer_fingerprint;  ///< SHA-256 of it; equal where it is the same peer
 };

@@ -120,6 +120,7 @@ void DtlsSession::establish(Association& by, const Endpoint& from, SessionEndpoi
   data_connection_ = std::get<link::Established>(*out.event).receive_connection;
   out.protection = std::make_unique<AeadProtection>(data_keys(by, key_id_));
   opener_ = std::make_unique<AeadProtection>(data_keys(by, key_id_));
+  out.media = by.proof.media;
   associations_.keep_only(present_, 0);
 }
 

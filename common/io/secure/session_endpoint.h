@@ -12,6 +12,7 @@
 #include "common/io/secure/associations.h"
 #include "common/link/packet_protection.h"
 #include "common/link/session.h"
+#include "common/link/traffic_keys.h"
 
 namespace palp::io {
 
@@ -21,6 +22,8 @@ struct SessionEndpointOutput {
   bool unanswered{};  ///< it refuses because nothing came back
   /// With Established: for the new session. Alone: replaces that of the present one.
   std::unique_ptr<link::PacketProtection> protection;
+  /// With Established, where it is protected: for its video.
+  std::optional<link::PlaneKeys> media;
   std::optional<Endpoint> moved_to;  ///< the peer of the present session now has this address
   Endpoint moved_from;  ///< had that one before, and is heard and told there too; none: it is not
   bool detours{};  ///< what was heard is a telegram for rt, from another address than the peer's

@@ -9,6 +9,7 @@
 #include "common/core/time.h"
 #include "common/io/net/endpoint.h"
 #include "common/io/net/link_update_desk.h"
+#include "common/io/net/media_door.h"
 #include "common/io/net/udp_socket.h"
 #include "common/io/secure/credentials.h"
 #include "common/io/secure/session_news.h"
@@ -30,6 +31,7 @@ struct SessionServerConfig {
   TransportWrap wrap_transport;      ///< empty: the link gets the socket itself
   int priority{};                    ///< SCHED_FIFO of the io thread, below rt's; 0: leave as it is
   const Credentials* credentials{};  ///< outlives the server; null: plain, for benches
+  MediaDoor* media{};                ///< outlives the server; null: video is foreign here
   Duration rekey_after{std::chrono::hours{1}};  ///< age of keys that the surgeon replaces
 };
 

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/io/net/media_door.h"
+#include "common/io/realtime/background_loop.h"
+#include "monitor/camera_feed.h"
+#include "site_program/camera_recording.h"
+
+namespace palp::site_program {
+
+/// The surgeon's site gets the pictures of the patient's and says what it got, on a thread and a
+/// socket of its own; they go to the session file and to whoever looks at the monitor.
+/// Thread: its maker's.
+class CameraWatching {
+ public:
+  /// All outlive it. `records`: there is a session file, so pictures are wanted although nobody
+  /// looks.
+  CameraWatching(bool records,
+                 io::MediaDoor& door,
+                 CameraRecording& recording,
+                 monitor::CameraFeed& feed);
+  ~CameraWatching();
+  CameraWatching(const CameraWatching&) = delete;
+  CameraWatching& operator=(const CameraWatching&) = delete;
+
+  /// Idempotent.
+  void stop();
+
+ private:
+  class Io;
+  std::unique_ptr<Io> io_;
+  std::unique_ptr<io::BackgroundLoop> loop_;
+};
+
+}  // namespace palp::site_program
