@@ -1,31 +1,49 @@
 #include "depth/depth_estimator.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "common/core/check.h"
 
 namespace palp::depth {
 namespace {
 
+DepthDatabase database_of(const DepthEstimatorConfig& config) {
+  if (config.database) return *config.database;
+  auto database = default_database();
+  PALP_CHECK(database.has_value(), "the database in the program is sound");
+  return std::move(*database);
+}
+
 std::variant<BayesEstimator, PaperEstimator> make(const DepthEstimatorConfig& config) {
   if (config.kind == EstimatorKind::Paper) return PaperEstimator{config.paper};
-  if (config.database) return BayesEstimator{*config.database, config.bayes, config.strokes};
-  const auto database = default_database();
-  PALP_CHECK(database.has_value(), "the database in the program is sound");
-  return BayesEstimator{*database, config.bayes, config.strokes};
+  return BayesEstimator{database_of(config), config.bayes, config.strokes};
+}
+
+std::optional<MapEstimator> make_map(const DepthEstimatorConfig& config) {
+  const DepthPrior& prior = config.bayes.prior;
+  if (config.kind == EstimatorKind::Paper || prior.shape != fem::InclusionShape::Ball) {
+    return std::nullopt;
+  }
+  return MapEstimator{
+      database_of(config), prior, config.bayes.stiffness, config.map, config.strokes};
 }
 
 }  // namespace
 
-DepthEstimatorConfig with_sensor(DepthEstimatorConfig config, const ForceSensorFacts& sensor) {
-  config.strokes.sensor = sensor;
+DepthEstimatorConfig with_devices(DepthEstimatorConfig config, const PatientDevices& devices) {
+  config.strokes.sensor = devices.sensor;
+  config.map.travel = std::min(config.map.travel, devices.stage.travel_side);
   return config;
 }
 
 DepthEstimator::DepthEstimator(const DepthEstimatorConfig& config)
-    : tracker_{config.strokes}, estimator_{make(config)} {}
+    : tracker_{config.strokes}, estimator_{make(config)}, map_{make_map(config)} {}
 
 std::optional<DepthEstimate> DepthEstimator::add(const ContactSample& sample) {
   const std::optional<Stroke> stroke = tracker_.take(sample);
   if (!stroke) return std::nullopt;
+  if (map_) map_->hear(*stroke);
   return std::visit([&](auto& estimator) { return estimator.judge(*stroke); }, estimator_);
 }
 

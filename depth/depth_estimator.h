@@ -7,6 +7,7 @@
 
 #include "depth/bayes_estimator.h"
 #include "depth/depth_database.h"
+#include "depth/map_estimator.h"
 #include "depth/paper_estimator.h"
 #include "depth/stroke_tracker.h"
 
@@ -23,15 +24,17 @@ struct DepthEstimatorConfig {
   StrokeTrackerConfig strokes;
   BayesEstimatorConfig bayes;
   PaperEstimatorConfig paper;
+  MapEstimatorConfig map;
   std::optional<DepthDatabase> database;  ///< nothing: the one in the program
 };
 
-/// `config` for strokes felt by that sensor.
-[[nodiscard]] DepthEstimatorConfig with_sensor(DepthEstimatorConfig config,
-                                               const ForceSensorFacts& sensor);
+/// `config` for strokes felt by that sensor, within the reach of that stage.
+[[nodiscard]] DepthEstimatorConfig with_devices(DepthEstimatorConfig config,
+                                                const PatientDevices& devices);
 
 /// Samples in, a depth for each stroke out: a tracker cuts the strokes, one of two estimators
-/// judges them. Thread: estimator; allocates.
+/// judges them. `bayes` for balls also says what the strokes at all places mean together.
+/// Thread: estimator; allocates.
 class DepthEstimator {
  public:
   explicit DepthEstimator(const DepthEstimatorConfig& config);
@@ -39,12 +42,16 @@ class DepthEstimator {
   /// @returns the estimate when a stroke's reversal was seen.
   [[nodiscard]] std::optional<DepthEstimate> add(const ContactSample& sample);
 
+  /// What all strokes say together, where the last one tells something new of it: a longer work.
+  [[nodiscard]] std::optional<MapReport> map() { return map_ ? map_->judge() : std::nullopt; }
+
   /// The loading branch that gave an estimate. Valid until the next add().
   [[nodiscard]] std::span<const StrokeSample> stroke() const noexcept { return tracker_.loading(); }
 
  private:
   StrokeTracker tracker_;
   std::variant<BayesEstimator, PaperEstimator> estimator_;
+  std::optional<MapEstimator> map_;  ///< nothing: of `paper`, and of cylinders
 };
 
 }  // namespace palp::depth

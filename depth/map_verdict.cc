@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
-
-#include "common/core/conventions.h"
 
 namespace palp::depth {
 namespace {
@@ -36,34 +33,6 @@ double share_outside(const MapLikelihood& likelihood, const MapPosterior& poster
 
 }  // namespace
 
-std::string_view reason_of(MapDoubt doubt) noexcept {
-  switch (doubt) {
-    case MapDoubt::Curve:
-      return "the force at a place grows as in no tissue that was assumed";
-    case MapDoubt::NotOneBall:
-      return "one ball does not explain the stiffness at every place";
-    case MapDoubt::TwoSides:
-      return "the inclusion may lie at either of two places";
-    case MapDoubt::Outside:
-      return "the inclusion may lie beyond the touched places";
-  }
-  return "?";
-}
-
-std::string_view remedy_of(MapDoubt doubt) noexcept {
-  switch (doubt) {
-    case MapDoubt::Curve:
-      return "tap slower and check the sensor's pole";
-    case MapDoubt::NotOneBall:
-      return "touch between the places that differ";
-    case MapDoubt::TwoSides:
-      return "touch beside the line of the touches";
-    case MapDoubt::Outside:
-      return "touch farther out on the stiff side";
-  }
-  return "?";
-}
-
 MapVerdict map_verdict(const MapLikelihood& likelihood,
                        const MapPosterior& posterior,
                        const MapVerdictConfig& config) {
@@ -87,39 +56,6 @@ MapVerdict map_verdict(const MapLikelihood& likelihood,
     out.doubts.push_back(MapDoubt::Outside);
   }
   return out;
-}
-
-std::string map_sentence(const MapPosterior& posterior, const MapVerdict& verdict) {
-  std::string text;
-  char words[320];
-  if (verdict.found) {
-    const auto mm = [](double metres) { return metres / kMillimetre; };
-    std::snprintf(words,
-                  sizeof words,
-                  "One round inclusion, if the tissue is otherwise even: at x %.1f mm (%.1f to "
-                  "%.1f), y %.1f mm (%.1f to %.1f), its top %.1f mm deep (%.1f to %.1f), radius "
-                  "%.1f mm (%.1f to %.1f).",
-                  mm(posterior.x.median),
-                  mm(posterior.x.low),
-                  mm(posterior.x.high),
-                  mm(posterior.y.median),
-                  mm(posterior.y.low),
-                  mm(posterior.y.high),
-                  mm(posterior.depth.median),
-                  mm(posterior.depth.low),
-                  mm(posterior.depth.high),
-                  mm(posterior.radius.median),
-                  mm(posterior.radius.low),
-                  mm(posterior.radius.high));
-    text = words;
-  } else {
-    text = "No inclusion found.";
-  }
-  for (const MapDoubt doubt : verdict.doubts) {
-    text.append(" Not trusted: ").append(reason_of(doubt)).append("; ");
-    text.append(remedy_of(doubt)).append(".");
-  }
-  return text;
 }
 
 }  // namespace palp::depth

@@ -1,26 +1,11 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <string_view>
 #include <vector>
 
+#include "common/core/map_doubt.h"
 #include "depth/map_posterior.h"
 
 namespace palp::depth {
-
-/// Why numbers are not to be trusted.
-enum class MapDoubt : std::uint8_t {
-  Curve,       ///< the force at a place grows as no tissue of the model does
-  NotOneBall,  ///< a place is stiffer or softer than one ball and the tissue's spread explain
-  TwoSides,    ///< the ball may lie on either side of the touches
-  Outside,     ///< the ball may well lie beyond the touched places
-};
-inline constexpr std::size_t kMapDoubts = 4;
-
-/// What is wrong and what helps, one sentence each.
-[[nodiscard]] std::string_view reason_of(MapDoubt doubt) noexcept;
-[[nodiscard]] std::string_view remedy_of(MapDoubt doubt) noexcept;
 
 /// What may be said of the touches as a whole.
 struct MapVerdict {
@@ -42,8 +27,5 @@ struct MapVerdictConfig {
 [[nodiscard]] MapVerdict map_verdict(const MapLikelihood& likelihood,
                                      const MapPosterior& posterior,
                                      const MapVerdictConfig& config = {});
-
-/// One sentence for a person, which says what was assumed.
-[[nodiscard]] std::string map_sentence(const MapPosterior& posterior, const MapVerdict& verdict);
 
 }  // namespace palp::depth

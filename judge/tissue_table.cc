@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "common/core/byte_order_mark.h"
 
@@ -95,6 +96,13 @@ Result<TissueTable> TissueTable::parse(std::string_view csv) {
     curve->rows.push_back({.indentation = metres, .force = *force});
   }
   return table;
+}
+
+void TissueTable::add(const Place& place, std::vector<Row> rows) {
+  const bool known = std::any_of(curves_.begin(), curves_.end(), [&](const Curve& one) {
+    return distance(one.place, place) <= kSamePlace;
+  });
+  if (!known) curves_.push_back({place, std::move(rows)});
 }
 
 std::optional<double> TissueTable::force(const Place& place, double indentation) const {

@@ -17,15 +17,19 @@ class TissueTable {
   /// B), d_mm, F_N; lines that begin with # are comments.
   [[nodiscard]] static Result<TissueTable> parse(std::string_view csv);
 
+  /// Of an indentation.
+  struct Row {
+    double indentation{};  ///< [m]
+    double force{};        ///< [N]
+  };
+  /// One more curve, its rows rising, unless one is known at this place.
+  void add(const Place& place, std::vector<Row> rows);
+
   /// [N] at indentation [m], linear between rows; nullopt: outside the table, or no curve is of
   /// this place.
   [[nodiscard]] std::optional<double> force(const Place& place, double indentation) const;
 
  private:
-  struct Row {
-    double indentation{};  ///< [m]
-    double force{};        ///< [N]
-  };
   struct Curve {
     Place place;
     std::vector<Row> rows;

@@ -33,6 +33,21 @@ void declare_locate(config::CommandLine& line, LocateFlags& flags) {
               flags.depth_max_mm,
               {.min = 5, .max = 27, .unit = "mm"},
               "deepest ball that is drawn, and that the estimator looks for");
+  line.text("--ball",
+            flags.ball,
+            "WORDS",
+            "the one ball of all cases: depth=10 radius=15 ratio=856 at=2,1 (from the middle)");
+  line.choice("--set",
+              flags.set,
+              {"mismatch"},
+              "worlds that are not as the estimator assumes, instead of phantoms as it does");
+  line.choice("--session",
+              flags.script,
+              {"map", "search"},
+              "whole sessions: a hand taps nine places, or searches");
+  line.number(
+      "--rtt-ms", flags.round_trip_ms, {.min = 0, .max = 2000, .unit = "ms"}, "of sessions");
+  line.number("--loss", flags.loss, {.min = 0, .max = 0.5}, "of sessions, each way");
   line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "threads at a time");
   line.report(flags.report, "palp.locate/1");
   line.text("--csv", flags.csv, "FILE", "a line per case");
@@ -40,13 +55,22 @@ void declare_locate(config::CommandLine& line, LocateFlags& flags) {
 }
 
 ExitStatus run_locate(const LocateFlags& flags, const Machine& machine) {
-  const LocateStudy study{.count = static_cast<std::uint32_t>(flags.count),
-                          .seed = flags.seed,
-                          .rows = static_cast<std::uint32_t>(flags.rows),
-                          .pitch = flags.pitch_mm * kMillimetre,
-                          .spread = flags.spread,
-                          .assumed_spread = flags.assumed_spread,
-                          .depth_max = flags.depth_max_mm * kMillimetre};
+  LocateStudy study{.count = static_cast<std::uint32_t>(flags.count),
+                    .seed = flags.seed,
+                    .rows = static_cast<std::uint32_t>(flags.rows),
+                    .pitch = flags.pitch_mm * kMillimetre,
+                    .spread = flags.spread,
+                    .assumed_spread = flags.assumed_spread,
+                    .depth_max = flags.depth_max_mm * kMillimetre,
+                    .mismatch = flags.set == "mismatch",
+                    .script = flags.script,
+                    .round_trip = 1e-3 * flags.round_trip_ms,
+                    .loss = flags.loss};
+  if (!flags.ball.empty()) {
+    if (const auto ball = take_ball(flags.ball, study); !ball) {
+      return config::refusal("palp-lab", ball.error());
+    }
+  }
   auto can = config::can_write_files({flags.report, flags.csv});
   if (can) can = plot::can_write_picture(flags.picture);
   if (!can) return {ExitCode::CannotOpen, "palp-lab: " + can.error().text};
@@ -63,7 +87,7 @@ ExitStatus run_locate(const LocateFlags& flags, const Machine& machine) {
         if (progress) progress(++done, cases.size());
       });
   for (const auto& [path, text] : {std::pair{flags.report, locate_report(study, cases, flags.csv)},
-                                   std::pair{flags.csv, locate_csv(cases)}}) {
+                                   std::pair{flags.csv, locate_csv(study, cases)}}) {
     if (path.empty()) continue;
     if (const auto written = config::write_whole_file(path, text); !written) {
       return {ExitCode::CannotOpen, "palp-lab: " + written.error().text};

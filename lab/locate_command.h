@@ -18,6 +18,11 @@ struct LocateFlags {
   double spread{};              ///< [-]
   double assumed_spread{0.05};  ///< [-]
   double depth_max_mm{27};
+  std::string ball{};
+  std::string set{};
+  std::string script{};
+  double round_trip_ms{};
+  double loss{};
   std::uint64_t cores{};  ///< 0: all
   std::string report{};
   std::string csv{};

@@ -14,7 +14,7 @@ using config::Json;
 using record::Topic;
 
 /// What a screen can take: 50 Hz and slower. The 1 kHz topics are in the file alone.
-constexpr std::array kLive{Topic::TickView, Topic::Link, Topic::Event, Topic::Depth};
+constexpr std::array kLive{Topic::TickView, Topic::Link, Topic::Event, Topic::Depth, Topic::Map};
 constexpr std::uint32_t kStatusChannel = 100;
 constexpr std::uint32_t kClientChannel = 101;
 constexpr std::uint32_t kCameraChannel = 102;
@@ -332,7 +332,8 @@ void Desk::send(std::uint32_t channel, std::uint64_t stamp, std::span<const std:
 
 void Desk::publish(const LiveMessage& message) {
   const std::uint32_t channel = channel_id(message.topic);
-  if (message.topic == Topic::Event || message.topic == Topic::Depth) {
+  if (message.topic == Topic::Event || message.topic == Topic::Depth ||
+      message.topic == Topic::Map) {
     std::string bytes(message.size, '\0');
     std::ranges::transform(
         message.payload(), bytes.begin(), [](std::byte one) { return static_cast<char>(one); });

@@ -21,7 +21,8 @@ bool is_slow(const Record& record) noexcept {
   return std::holds_alternative<LinkStatus>(record) || std::holds_alternative<Note>(record) ||
          std::holds_alternative<Transition>(record) ||
          std::holds_alternative<DepthEstimate>(record) ||
-         std::holds_alternative<DepthArrived>(record);
+         std::holds_alternative<DepthArrived>(record) ||
+         std::holds_alternative<MapEstimate>(record) || std::holds_alternative<MapArrived>(record);
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ _palp() {
         --style) candidates="screen single double" ;;
         --grip) candidates="light mid firm arm" ;;
         --phantom) candidates="paper-5mm paper-10mm paper-15mm paper-20mm paper-25mm none" ;;
-        --master) candidates="script:standard script:demo script:breath script:long pointer" ;;
+        --master) candidates="script:standard script:demo script:map script:search \
+          script:breath script:long pointer" ;;
         *) [ -n "$verb" ] || candidates=$verbs ;;
       esac
       ;;

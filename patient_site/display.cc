@@ -7,6 +7,7 @@
 #include "common/core/fitted_line.h"
 #include "common/core/number_text.h"
 #include "common/link/health_text.h"
+#include "common/message/map_text.h"
 #include "common/record/notes.h"
 
 namespace palp::patient {
@@ -15,6 +16,14 @@ namespace {
 std::string refusal_text(const PatientStatus& status) {
   if (status.place_refused == record::NoteCode::None) return {};
   return "(" + std::string{record::to_string(status.place_refused)} + ")";
+}
+
+/// Touches at several places say more than the last one alone.
+LinePart found_part(const PatientStatus& status) {
+  if (status.map.number != 0) {
+    return {.full = map_line(status.map), .brief = map_brief(status.map), .rank = 2};
+  }
+  return {.full = depth_line_of(status.depth), .brief = depth_brief_of(status.depth), .rank = 2};
 }
 
 }  // namespace
@@ -32,7 +41,7 @@ std::string status_line(const PatientStatus& status, std::size_t columns) {
        {.full = tip, .brief = tip, .rank = 5},
        {.full = contact, .brief = contact, .rank = 5},
        {.full = refusal_text(status), .brief = {}, .rank = 3},
-       {.full = depth_line_of(status.depth), .brief = depth_brief_of(status.depth), .rank = 2}}};
+       found_part(status)}};
   return fitted_line(parts, columns);
 }
 

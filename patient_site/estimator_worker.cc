@@ -20,8 +20,17 @@ std::size_t EstimatorWorker::drain() {
 
 void EstimatorWorker::publish(const DepthEstimate& estimate) {
   ++strokes_;
-  parts_.depth.put(estimate);
+  found_.depth = estimate;
+  parts_.found.put(found_);
   record(estimate);
+}
+
+void EstimatorWorker::judge_map() {
+  const auto map = estimator_.map();
+  if (!map) return;
+  found_.map = *map;
+  parts_.found.put(found_);
+  record(MapEstimate{.at = found_.depth.stroke_ended_at, .report = *map});
 }
 
 void EstimatorWorker::record(const Record& record) {

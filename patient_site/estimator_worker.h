@@ -5,20 +5,21 @@
 #include "common/core/mailbox.h"
 #include "common/core/spsc_queue.h"
 #include "common/message/depth.h"
+#include "common/message/map_report.h"
 #include "common/record/recorder.h"
 #include "depth/depth_estimator.h"
 
 namespace palp::patient {
 
 /// Runs the depth estimator beside the node: takes its samples from a queue, leaves estimates in a
-/// mailbox, and records it. Thread: estimator's, or the lab's; whoever
-/// calls drain(). Owns the estimator; the rest outlives it. The recorder is its own, not the
-/// node's.
+/// mailbox, and records them: each stroke's depth, and what all strokes say together.
+/// Thread: estimator's, or the lab's; whoever calls drain(). Owns the estimator; the rest outlives
+/// it. The recorder is its own, not the node's.
 class EstimatorWorker {
  public:
   struct Parts {
     SpscQueue<ContactSample>& contact;  ///< writer: rt; reader: this
-    Mailbox<DepthEstimate>& depth;      ///< writer: this; reader: rt
+    Mailbox<Findings>& found;           ///< writer: this; reader: rt
     record::Recorder& recorder;
   };
 
@@ -26,6 +27,9 @@ class EstimatorWorker {
 
   /// Works on what waits in the queue. @returns how many samples there were.
   std::size_t drain();
+  /// What the strokes at all places say together, where the last one is news: a longer work, for
+  /// after drain().
+  void judge_map();
 
   [[nodiscard]] std::uint64_t strokes() const noexcept { return strokes_; }
   /// Of the sample that showed the last stroke's reversal.
@@ -39,6 +43,7 @@ class EstimatorWorker {
 
   depth::DepthEstimator estimator_;
   Parts parts_;
+  Findings found_;
   std::uint64_t strokes_{};
   TimePoint reversal_at_{};
   std::uint64_t records_{};

@@ -198,8 +198,8 @@ class Program {
                    2,
                    settings_.monitor.serve ? std::optional{settings_.loop.period} : std::nullopt,
                    settings_.camera.any()},
-        worker_{depth::with_sensor(settings_.estimator, plan.facts.sensor),
-                {contact_, depth_, recording_.recorder(1)}},
+        worker_{depth::with_devices(settings_.estimator, plan.facts),
+                {contact_, found_, recording_.recorder(1)}},
         node_{settings_.node,
               {rig_ ? rig_->stage() : simulated_,
                rig_ ? rig_->sensor() : simulated_,
@@ -207,7 +207,7 @@ class Program {
                link_,
                recording_.recorder(0),
                contact_,
-               depth_}},
+               found_}},
         monitoring_{settings_.monitor,
                     {{"coupling", settings_.coupling.name},
                      {"version", std::string{site_program::version()}}},
@@ -251,7 +251,7 @@ class Program {
   site_program::Runner runner_;
   site_program::Recording recording_;
   SpscQueue<ContactSample> contact_{kContactSamples};  ///< writer: rt, reader: estimator
-  Mailbox<DepthEstimate> depth_;                       ///< writer: estimator, reader: rt
+  Mailbox<Findings> found_;                            ///< writer: estimator, reader: rt
   EstimatorWorker worker_;
   PatientNode node_;
   site_program::Monitoring monitoring_;
@@ -338,6 +338,7 @@ void Program::listen() {
   worker_.drain();
   if (worker_.strokes() != before) {
     latencies_.record(elapsed(worker_.reversal_at(), clock_.now()));
+    worker_.judge_map();
   }
 }
 

@@ -200,10 +200,11 @@ PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
   const bool place_asked = in.arrived.peer_heard && now_.state == SiteState::Engaged;
   const MotionAnswer answer =
       limit(wanted.target_position, place_asked ? in.arrived.peer.place : gate_.place(), lapse);
-  now_.depth = in.depth;
+  now_.depth = in.found.depth;
+  now_.map = in.found.map;
   return {.halt = answer.halt,
           .target = {answer.position, answer.place},
-          .to_peer = {{now_.state, now_.epoch, now_.place, depth_report()},
+          .to_peer = {{now_.state, now_.epoch, now_.place, depth_report(), map_report()},
                       account_.within_limits(wanted.to_surgeon)}};
 }
 
@@ -244,7 +245,7 @@ void PatientControl::record_readings(const PatientInputs& in) noexcept {
                                .age = elapsed(force.sampled_at, in.now),
                                .force = force.force,
                                .saturated = force.saturated});
-  account_.heard(in.link, in.arrived, in.depth.number);
+  account_.heard(in.link, in.arrived, in.found.depth.number);
 }
 
 void PatientControl::give_contact_sample() noexcept {
@@ -268,6 +269,12 @@ DepthReport PatientControl::depth_report() const noexcept {
           .depth_high = now_.depth.depth_high,
           .hash = now_.depth.hash,
           .place = now_.depth.place};
+}
+
+/// It is long and changes once a stroke: some telegrams say it, and one of them will arrive.
+MapReport PatientControl::map_report() const noexcept {
+  constexpr std::uint64_t kTicksApart = 20;
+  return account_.counts().ticks % kTicksApart == 0 ? now_.map : MapReport{};
 }
 
 }  // namespace palp::patient

@@ -10,6 +10,7 @@
 #include "common/coupling/any_coupling.h"
 #include "common/link/telegram.h"
 #include "common/message/depth.h"
+#include "common/message/map_report.h"
 #include "common/record/recorder.h"
 #include "common/record/site_account.h"
 #include "patient_site/device_watch.h"
@@ -38,7 +39,7 @@ struct PatientInputs {
   link::Arrivals arrived;  ///< its samples are valid until the next receive() of the link
   LinkHealth link;
   DeviceFacts peer_devices;  ///< says something where the session is another than a tick ago
-  DepthEstimate depth;       ///< newest; number 0: none yet
+  Findings found;            ///< newest
 };
 
 /// All that a tick wants done.
@@ -87,6 +88,7 @@ class PatientControl {
   [[nodiscard]] coupling::PatientInput law_input(const link::Arrivals& arrived) const noexcept;
   [[nodiscard]] MotionAnswer limit(double target, const Place& place, const Lapse& lapse) noexcept;
   [[nodiscard]] DepthReport depth_report() const noexcept;
+  [[nodiscard]] MapReport map_report() const noexcept;
   void give_contact_sample() noexcept;
   void record_readings(const PatientInputs& in) noexcept;
 

@@ -21,7 +21,7 @@ PatientInputs PatientNode::read(TimePoint now) noexcept {
   if (in.link.session_id != control_.status().link.session_id) {
     in.peer_devices = parts_.link.peer_devices();
   }
-  in.depth = parts_.depth.get();
+  in.found = parts_.found.get();
   return in;
 }
 

@@ -9,6 +9,7 @@
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
 #include "common/message/depth.h"
+#include "common/message/map_report.h"
 #include "common/record/recorder.h"
 #include "patient_site/force_sensor.h"
 #include "patient_site/patient_control.h"
@@ -30,7 +31,7 @@ class PatientNode {
     link::Link& link;
     record::Recorder& recorder;
     SpscQueue<ContactSample>& contact;  ///< writer: rt; reader: the estimator's thread
-    Mailbox<DepthEstimate>& depth;      ///< writer: the estimator's thread; reader: rt
+    Mailbox<Findings>& found;           ///< writer: the estimator's thread; reader: rt
   };
 
   PatientNode(const PatientConfig& config, Parts parts);

@@ -7,6 +7,7 @@
 #include "common/core/time.h"
 #include "common/link/telegram.h"
 #include "common/message/depth.h"
+#include "common/message/map_report.h"
 #include "common/record/notes.h"
 #include "common/record/site_account.h"
 
@@ -33,6 +34,7 @@ struct PatientStatus : record::SiteCounts {
   double surface{};                  ///< [m], as learned
   bool surface_known{};
   DepthEstimate depth;                   ///< newest; number 0: none yet
+  MapReport map;                         ///< newest; number 0: none yet
   std::uint64_t contact_samples{};       ///< given to the estimator
   std::uint64_t contact_samples_lost{};  ///< its queue was full
 };

@@ -128,6 +128,7 @@ Result<depth::DepthEstimatorConfig> make_estimator(const proto::config::Estimato
   const double block =
       config.database ? config.database->grid().block.youngs_modulus / 1e3 : kDatabaseKpa;
   config.bayes.stiffness.scale = message.youngs_modulus_kpa() / block;
+  config.map.place_spread = message.place_spread();
   config.bayes.stiffness.scale_stddev =
       config.bayes.stiffness.scale * message.youngs_modulus_spread();
   return config;
@@ -160,6 +161,9 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
   made.node.watch.force_limit = made.node.gate.force_limit;
   made.estimator_kind = message.estimator().kind();
   made.estimator = *estimator;
+  // The gate's travel lies half to either side of the middle.
+  made.estimator.map.travel =
+      0.5 * std::min(made.node.gate.plane.travel_x, made.node.gate.plane.travel_y);
   made.tip_radius = from_milli(message.tip_radius_mm());
   if (const auto same = check_database(made); !same) return fail(same.error().text);
   made.impairment = settings::make_impairment(message.impairment());

@@ -20,6 +20,8 @@ void describe_tissue(const Phantom& phantom,
   info.metadata.emplace_back("phantom_radius_mm", optional_text(phantom.radius, kMillimetre));
   info.metadata.emplace_back("phantom_ratio", optional_text(phantom.ratio, 1));
   info.metadata.emplace_back("phantom_shape", phantom.shape);
+  info.metadata.emplace_back("phantom_x_mm", config::number_text(phantom.axis.x / kMillimetre));
+  info.metadata.emplace_back("phantom_y_mm", config::number_text(phantom.axis.y / kMillimetre));
   info.attachments.push_back({"tissue.csv", "text/csv", tissue_csv(phantom)});
   if (!phantom.words.empty()) {
     info.attachments.push_back({"tissue.txt", "text/plain", phantom.words});

@@ -9,6 +9,7 @@
 #include "common/message/health_counters.h"
 #include "common/record/notes.h"
 #include "common/record/session_encoder.h"
+#include "review/map_json.h"
 
 namespace palp::review {
 namespace {
@@ -50,7 +51,9 @@ Json phantom_json(const SiteData& patient) {
           {"depth_mm", value(patient.number("phantom_depth_mm"))},
           {"radius_mm", value(patient.number("phantom_radius_mm"))},
           {"ratio", value(patient.number("phantom_ratio"))},
-          {"shape", value(patient.entry("phantom_shape"))}};
+          {"shape", value(patient.entry("phantom_shape"))},
+          {"x_mm", value(patient.number("phantom_x_mm"))},
+          {"y_mm", value(patient.number("phantom_y_mm"))}};
 }
 
 std::optional<double> round_trip_median_ms(const SiteData& site) {
@@ -256,6 +259,7 @@ std::string demo_report(const SessionPair& session,
     json["taps"].push_back(tap_json(tap, patient));
   }
   json["depth"] = depth_json(overall_depth(taps));
+  json["map"] = map_json(patient.map);
   json["metrics"] = metrics;
   json["sites"]["surgeon"] = site_json(surgeon, surgeon_report, paths.surgeon);
   json["sites"]["patient"] = site_json(patient, patient_report, paths.patient);

@@ -29,6 +29,7 @@ struct LoggedTick {
   std::optional<DeviceFacts> own_devices;
   std::optional<DeviceFacts> peer_devices;
   std::optional<DepthReport> depth;
+  std::optional<MapReport> map;
 
   void add(const Record& record) {
     records.push_back(record);
@@ -64,6 +65,7 @@ struct LoggedTick {
   void sort(const LinkStatus& one) { status = one.health; }
   void sort(const UserAsked& one) { user = one.command; }
   void sort(const DepthArrived& one) { depth = one.report; }
+  void sort(const MapArrived& one) { map = one.report; }
   void sort(const DevicesTold& one) { (one.of_peer ? peer_devices : own_devices) = one.facts; }
 };
 

@@ -54,14 +54,22 @@ tl::unexpected<Error> nothing() {
 
 using Estimates = std::map<std::uint32_t, DepthEstimate>;
 
-Estimates estimates_of(const RunBytes& files) {
-  Estimates found;
+/// What the estimator's thread said, by the number of the stroke.
+struct LoggedFindings {
+  Estimates estimates;
+  std::map<std::uint32_t, MapEstimate> maps;
+};
+
+LoggedFindings findings_of(const RunBytes& files) {
+  LoggedFindings found;
   for (const record::FileBytes& file : files) {
     record::SessionReader reader{file};
     while (const auto entry = reader.next()) {
-      const auto* estimate = std::get_if<DepthEstimate>(&entry->record);
-      if (estimate != nullptr && found.size() < kListMax)
-        found.emplace(estimate->number, *estimate);
+      if (const auto* estimate = std::get_if<DepthEstimate>(&entry->record)) {
+        if (found.estimates.size() < kListMax) found.estimates.emplace(estimate->number, *estimate);
+      } else if (const auto* map = std::get_if<MapEstimate>(&entry->record)) {
+        if (found.maps.size() < kListMax) found.maps.emplace(map->report.number, *map);
+      }
     }
   }
   return found;
@@ -94,6 +102,7 @@ class SurgeonAgain {
     in.peer_devices = tick.peer_devices.value_or(DeviceFacts{});
     in.arrived = tick.arrived();
     if (tick.depth) depth_ = *tick.depth;
+    if (tick.map) in.arrived.peer.map = *tick.map;
     if (tick.heard->depth_number != 0) in.arrived.peer.depth = depth_;
     recorder_.records.clear();
     (void)control_.step(in);
@@ -139,7 +148,7 @@ class PatientAgain {
     in.peer_devices = tick.peer_devices.value_or(DeviceFacts{});
     in.arrived = tick.arrived();
     if (const auto found = estimates_.find(tick.heard->depth_number); found != estimates_.end()) {
-      in.depth = found->second;
+      in.found.depth = found->second;
     }
     recorder_.records.clear();
     (void)control_.step(in);
@@ -169,7 +178,7 @@ class PatientAgain {
 class PatientRun {
  public:
   PatientRun(const RunBytes& files, const PatientParts& parts)
-      : parts_{parts}, ticks_{files}, estimates_{estimates_of(files)} {}
+      : parts_{parts}, ticks_{files}, findings_{findings_of(files)} {}
 
   /// The next tick, done again; nothing at the end, a sentence where the file lacks what it needs.
   Result<std::optional<LoggedTick>> next() {
@@ -180,21 +189,30 @@ class PatientRun {
     if (!site_ || tick->own_devices) {
       const DeviceFacts own = tick->own_devices.value_or(DeviceFacts{});
       if (!own.stage || !own.sensor) return lacks("no devices", *tick);
-      site_.emplace(
-          parts_.config, parts_.coupling, PatientDevices{*own.stage, *own.sensor}, estimates_);
+      site_.emplace(parts_.config,
+                    parts_.coupling,
+                    PatientDevices{*own.stage, *own.sensor},
+                    findings_.estimates);
       if (parts_.estimator) {
         depths_ = std::make_unique<depth::DepthEstimator>(
-            depth::with_sensor(*parts_.estimator, *own.sensor));
+            depth::with_devices(*parts_.estimator, {*own.stage, *own.sensor}));
       }
     }
     again_ = &site_->step(*tick);
     estimate_ = depths_ ? site_->estimate(*depths_) : std::nullopt;
+    map_.reset();
+    // Only where the site had the time for one.
+    if (estimate_ && findings_.maps.contains(estimate_->number)) {
+      if (const auto made = depths_->map()) map_ = MapEstimate{estimate_->stroke_ended_at, *made};
+    }
     return tick;
   }
   /// Of the tick that next() gave.
   [[nodiscard]] const std::vector<Record>& again() const { return *again_; }
   [[nodiscard]] const std::optional<DepthEstimate>& estimate() const { return estimate_; }
-  [[nodiscard]] const Estimates& logged() const { return estimates_; }
+  /// Where the file has one of this stroke.
+  [[nodiscard]] const std::optional<MapEstimate>& map() const { return map_; }
+  [[nodiscard]] const LoggedFindings& logged() const { return findings_; }
   [[nodiscard]] TimePoint began_at() const { return ticks_.began_at(); }
   [[nodiscard]] const std::string& lack() const { return ticks_.lack(); }
   /// As LoggedTicks::dropped_up_to_the_next_status().
@@ -203,11 +221,12 @@ class PatientRun {
  private:
   const PatientParts& parts_;
   LoggedTicks ticks_;
-  Estimates estimates_;
+  LoggedFindings findings_;
   std::optional<PatientAgain> site_;
   std::unique_ptr<depth::DepthEstimator> depths_;
   const std::vector<Record>* again_{};
   std::optional<DepthEstimate> estimate_;
+  std::optional<MapEstimate> map_;
 };
 
 const SiteTick* tick_of(const std::vector<Record>& records) {
@@ -265,13 +284,19 @@ Result<ReplayReport> replay_patient(const RunBytes& files, const PatientParts& p
       break;
     }
     if (!run.estimate()) continue;
-    const auto logged = run.logged().find(run.estimate()->number);
-    if (logged == run.logged().end()) {
+    const Estimates& estimates = run.logged().estimates;
+    const auto logged = estimates.find(run.estimate()->number);
+    if (logged == estimates.end()) {
       ++missing;
       continue;
     }
     ++report.estimates;
     report.difference = comparison.compare({logged->second}, {*run.estimate()}, run.began_at());
+    if (!report.difference.empty()) break;
+    if (!run.map()) continue;
+    ++report.maps;
+    const MapEstimate& told = run.logged().maps.at(run.estimate()->number);
+    report.difference = comparison.compare({told}, {*run.map()}, run.began_at());
     if (!report.difference.empty()) break;
   }
   if (report.ticks == 0) return nothing();
@@ -289,7 +314,7 @@ Result<WhatIf> what_if_patient(const RunBytes& files, const PatientParts& parts)
   double square = 0;
   std::uint64_t both = 0;
   std::map<std::uint32_t, OtherEstimate> estimates;
-  for (const auto& [number, estimate] : run.logged()) estimates[number].logged = estimate;
+  for (const auto& [number, estimate] : run.logged().estimates) estimates[number].logged = estimate;
   while (true) {
     const auto tick = run.next();
     if (!tick) return tl::unexpected(tick.error());

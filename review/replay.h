@@ -20,6 +20,7 @@ struct ReplayReport {
   std::uint64_t ticks{};
   std::uint64_t records{};    ///< of the site, made again and compared
   std::uint64_t estimates{};  ///< of the depth estimator, likewise
+  std::uint64_t maps{};       ///< of all strokes together, likewise
   /// The first, as "topic, time, field: what it was and became", the time since the run began;
   /// empty: every bit is the same.
   std::string difference;

@@ -9,6 +9,7 @@
 #include "judge/metric_table.h"
 #include "judge/run_judge.h"
 #include "judge/truth_judge.h"
+#include "patient_site/phantom.h"
 #include "review/phase_finder.h"
 #include "review/tick_source.h"
 #include "surgeon_site/script_source.h"
@@ -49,7 +50,7 @@ class ScriptFollower {
   ScriptFollower& operator=(const ScriptFollower&) = delete;
 
   [[nodiscard]] bool knows() const { return script_.has_value() && !changes_.empty(); }
-  judge::PhaseTag at(TimePoint now, bool counted) {
+  judge::PhaseTag at(TimePoint now, bool counted, const Place& hand) {
     while (next_ < changes_.size() && changes_[next_].at <= now) {
       present_ = changes_[next_++];
       broken_ = false;
@@ -58,7 +59,7 @@ class ScriptFollower {
     const bool within = present_.phase > 0 && knows() && present_.phase <= script_->phases().size();
     if (!within || broken_) return {};
     const Duration time = script_->phase(present_.phase).began_at + elapsed(present_.at, now);
-    return time < script_->length() ? finder_->at(time) : judge::PhaseTag{};
+    return time < script_->length() ? finder_->at(time, hand) : judge::PhaseTag{};
   }
 
  private:
@@ -146,7 +147,7 @@ class LoggedJudge {
     work_.add(motion_of(hand), tip, kPeriod);
     judge::RunTick tick;
     tick.at = seconds(elapsed(began_at_, hand.at));
-    tick.phase = script_.at(hand.at, counted);
+    tick.phase = script_.at(hand.at, counted, hand.place);
     tick.counted = counted;
     tick.hand = hand.position - surface_;
     tick.hand_velocity = hand.velocity;
@@ -195,6 +196,23 @@ judge::MetricsConfig config_of(const SiteData& surgeon) {
   return config;
 }
 
+/// A tissue in words is known everywhere: its curves where it was touched.
+void add_touched_places(const SiteData& patient, judge::TissueTable& table) {
+  if (!patient.tissue_words) return;
+  const auto phantom = patient::make_phantom(*patient.tissue_words);
+  if (!phantom || !phantom->block) return;
+  const auto field = patient::make_field(*phantom, 0);
+  constexpr double kStep = 20e-6;  // [m], as in tissue.csv
+  const int count = static_cast<int>(phantom->depth_max() / kStep + 1e-6);
+  for (const DepthEstimate& estimate : patient.estimates) {
+    std::vector<judge::TissueTable::Row> rows;
+    for (int i = 0; i <= count; ++i) {
+      rows.push_back({i * kStep, field->elastic_force(estimate.place, i * kStep)});
+    }
+    table.add(estimate.place, std::move(rows));
+  }
+}
+
 }  // namespace
 
 Result<std::optional<judge::TissueTable>> tissue_of(const SiteData& patient,
@@ -202,6 +220,7 @@ Result<std::optional<judge::TissueTable>> tissue_of(const SiteData& patient,
   if (!patient.tissue_csv) return std::optional<judge::TissueTable>{};
   auto table = judge::TissueTable::parse(*patient.tissue_csv);
   if (!table) return fail(path, table.error());
+  add_touched_places(patient, *table);
   return std::optional{std::move(*table)};
 }
 

@@ -60,6 +60,8 @@ class Collector {
   void operator()(const Transition& transition) { keep(data_.transitions, transition); }
   void operator()(const DepthEstimate& estimate) { keep(data_.estimates, estimate); }
   void operator()(const DepthArrived& arrived) { keep(data_.reports, arrived); }
+  void operator()(const MapEstimate& estimate) { data_.map = estimate.report; }
+  void operator()(const MapArrived& arrived) { data_.map = arrived.report; }
   void operator()(const PlantTruth& truth) {
     if (!data_.run_began) data_.run_began = TimePoint{elapsed(TimePoint{truth.run_time}, truth.at)};
   }
@@ -151,6 +153,7 @@ Result<SiteData> load_site(const record::FileBytes& file,
   data.records_dropped = reader.metadata("palp.summary", "records_dropped");
   data.settings = text_of(reader, "config.textproto");
   data.tissue_csv = text_of(reader, "tissue.csv");
+  data.tissue_words = text_of(reader, "tissue.txt");
   return data;
 }
 

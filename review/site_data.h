@@ -64,10 +64,12 @@ struct SiteData {
   std::optional<LinkStatus> last_link;
   std::vector<LinkPoint> links;                ///< all of them, or each second, fourth, ...
   std::vector<DepthArrived> reports;           ///< surgeon: each estimate as it arrived
+  MapReport map;                               ///< the last; number 0: none
   std::optional<TimePoint> run_began;          ///< surgeon: of a simulation of both sites
   record::McapMap metadata;                    ///< of the record `palp`
   record::McapMap peer;                        ///< of the record `palp.peer`
   std::optional<std::string> tissue_csv;       ///< attachment tissue.csv
+  std::optional<std::string> tissue_words;     ///< attachment tissue.txt
   std::optional<std::string> settings;         ///< attachment config.textproto
   std::optional<std::string> program_report;   ///< of the program, as JSON, where it was closed
   std::uint64_t records{};                     ///< decoded

@@ -6,6 +6,7 @@
 
 #include "common/core/median.h"
 #include "common/core/place_text.h"
+#include "common/message/map_text.h"
 #include "judge/depth_summary.h"
 #include "judge/stroke_pairing.h"
 #include "review/text.h"
@@ -153,7 +154,8 @@ std::optional<judge::DepthStatement> overall_depth(const std::vector<Tap>& taps)
 }
 
 std::string tap_table(const std::vector<Tap>& taps,
-                      const std::optional<judge::DepthStatement>& depth) {
+                      const std::optional<judge::DepthStatement>& depth,
+                      const MapReport& map) {
   std::string text{
       "place      stroke    indentation  force max  stiffness felt    true   error      h  "
       "verdict  depth  95 % interval\n"
@@ -182,6 +184,7 @@ std::string tap_table(const std::vector<Tap>& taps,
   if (taps.empty()) {
     text += "no stroke\n";
   }
+  if (map.number != 0) return text + "all places together: " + map_sentence(map) + '\n';
   text += "over the inclusion: ";
   if (!depth) return text + "no tap\n";
   if (!depth->depth) return text + depth->says + '\n';

@@ -49,8 +49,10 @@ void take_truth(std::vector<Tap>& taps,
 /// What all strokes over the inclusion say together, as the lab has it; nullopt: there is none.
 [[nodiscard]] std::optional<judge::DepthStatement> overall_depth(const std::vector<Tap>& taps);
 
-/// For people, one line each.
+/// For people, one line each, and last what the touches say together: `map`, where they were at
+/// several places, else `depth`.
 [[nodiscard]] std::string tap_table(const std::vector<Tap>& taps,
-                                    const std::optional<judge::DepthStatement>& depth);
+                                    const std::optional<judge::DepthStatement>& depth,
+                                    const MapReport& map);
 
 }  // namespace palp::review

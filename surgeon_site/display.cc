@@ -8,6 +8,7 @@
 #include "common/core/number_text.h"
 #include "common/core/place_text.h"
 #include "common/link/health_text.h"
+#include "common/message/map_text.h"
 #include "common/record/notes.h"
 
 namespace palp::surgeon {
@@ -37,6 +38,14 @@ std::string stage_text(const SurgeonStatus& status) {
   return "stage not at " + place_text(status.place) + " but at " + place_text(status.peer_place);
 }
 
+/// Touches at several places say more than the last one alone.
+LinePart found_part(const SurgeonStatus& status) {
+  if (status.map.number != 0) {
+    return {.full = map_line(status.map), .brief = map_brief(status.map), .rank = 2};
+  }
+  return {.full = depth_line_of(status.depth), .brief = depth_brief_of(status.depth), .rank = 2};
+}
+
 LinePart incomplete_part(const SurgeonStatus& status) {
   if (!status.force_incomplete) return {};
   return {
@@ -60,7 +69,7 @@ std::string status_line(const SurgeonStatus& status, std::size_t columns) {
         .rank = 7},
        incomplete_part(status),
        {.full = stage_text(status), .brief = {}, .rank = 3},
-       {.full = depth_line_of(status.depth), .brief = depth_brief_of(status.depth), .rank = 2},
+       found_part(status),
        bar_of(status.script),
        {.full = phase_text(status.script), .brief = {}, .rank = 3}}};
   return fitted_line(parts, columns);

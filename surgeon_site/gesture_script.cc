@@ -119,6 +119,30 @@ const Stretch& GestureScript::stretch_at(Duration script_time) const noexcept {
   return *(next - 1);
 }
 
+const Stretch* GestureScript::search_travel(Duration script_time) const noexcept {
+  const Stretch& stretch = stretch_at(script_time);
+  return stretch.searches && stretch.kind == StretchKind::Travel ? &stretch : nullptr;
+}
+
+void GestureScript::turn_to(Duration script_time, const Place& place) noexcept {
+  auto stretch = stretches_.begin() + (&stretch_at(script_time) - stretches_.data());
+  stretch->to_place = place;
+  for (++stretch; stretch != stretches_.end(); ++stretch) {
+    stretch->place = place;
+    if (stretch->kind == StretchKind::Travel) return;
+    stretch->to_place = place;
+  }
+}
+
+Duration GestureScript::leave_search(Duration script_time) noexcept {
+  auto stretch = stretches_.begin() + (&stretch_at(script_time) - stretches_.data());
+  const Place here = stretch->place;
+  while (stretch != stretches_.end() && stretch->searches) ++stretch;
+  if (stretch == stretches_.end()) return length_;
+  stretch->place = here;
+  return stretch->began_at;
+}
+
 Intent GestureScript::at(Duration script_time) const noexcept {
   const Duration inside = std::clamp(script_time, Duration{0}, length_);
   Intent intent;

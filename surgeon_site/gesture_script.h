@@ -39,6 +39,7 @@ struct Stretch {
   Place to_place{};    ///< where it ends: another one in Travel and Drag
   double depth{};      ///< [m], aimed at in plain tissue: taps and presses; otherwise 0
   double frequency{};  ///< [Hz]: Air
+  bool searches{};     ///< of a search: where it is, is decided as it begins
 };
 
 /// One line of a script: what a person would call one thing to do.
@@ -74,6 +75,14 @@ class GestureScript {
   GestureScript(std::vector<ReplayPoint> points,
                 std::vector<Stretch> stretches,
                 std::vector<ScriptPhase> phases);
+
+  /// The travel of a search that `script_time` is in; nullptr: it is in none.
+  [[nodiscard]] const Stretch* search_travel(Duration script_time) const noexcept;
+  /// That travel goes to `place`, and what follows up to the next one is there.
+  void turn_to(Duration script_time, const Place& place) noexcept;
+  /// The search is over where that travel began. @returns the script time behind the search, of a
+  /// travel from there.
+  [[nodiscard]] Duration leave_search(Duration script_time) noexcept;
 
   /// Before 0 and after the end: the ends, at rest.
   [[nodiscard]] Intent at(Duration script_time) const noexcept;

@@ -29,6 +29,9 @@ struct OperatorView {
   LinkState link{};
   double tip_position{};  ///< [m], as last heard from the patient site, patient's axis
   bool tip_known{};
+  std::uint32_t map{};    ///< number of the map, 0: none yet
+  Place next{};           ///< where it proposes the next touch
+  bool enough_touches{};  ///< it proposes none
 };
 
 /// Why a scripted operator let go for good.

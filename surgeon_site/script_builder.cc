@@ -17,7 +17,8 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr Duration kTravelMin = milliseconds{100};
-constexpr double kHertz = 1897.0;  ///< [N/m^1.5], see plain_force
+constexpr double kSearchDepth = 4e-3;  ///< [m], as deep as the standard palpation taps
+constexpr double kHertz = 1897.0;      ///< [N/m^1.5], see plain_force
 
 std::string millimetres(double length) {
   std::array<char, 32> text{};
@@ -170,6 +171,34 @@ ScriptBuilder& ScriptBuilder::drag(const Place& place, Duration span) {
   return *this;
 }
 
+ScriptBuilder& ScriptBuilder::search(std::uint32_t count, const Place& place) {
+  // A triangle about as wide as inclusions are: from three places on there is a map.
+  constexpr std::array kFirst{Place{-7e-3, -4e-3}, Place{7e-3, -4e-3}, Place{0, 8e-3}};
+  constexpr Duration kLeg = milliseconds{1000};  // of 60 mm at kTravelSpeed
+  if (position_ != kNearPlace) move(kNearPlace, milliseconds{500});
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Place& first = kFirst[i % kFirst.size()];
+    const Place to{place.x + first.x, place.y + first.y};
+    begin_phase("search, tap " + std::to_string(i + 1));
+    glide_as(StretchKind::Travel, to, kLeg);
+    stretches_.back().searches = true;
+    stretches_.back().index = i + 1;
+    Stretch tap;
+    tap.kind = StretchKind::Tap;
+    tap.index = 1;
+    tap.duration = milliseconds{1000};
+    tap.to = aim_for(kSearchDepth);
+    tap.depth = kSearchDepth;
+    tap.searches = true;
+    append(tap);
+    hold_as(StretchKind::Pause, milliseconds{500});
+    stretches_.back().searches = true;
+  }
+  begin_phase("to " + place_text(place));
+  glide_as(StretchKind::Travel, place, kLeg);
+  return *this;
+}
+
 GestureScript ScriptBuilder::build() const { return GestureScript{stretches_, phases_}; }
 
 GestureScript standard_script(const ScriptSetting& setting) {
@@ -201,6 +230,29 @@ GestureScript long_script(const ScriptSetting& setting) {
       script.lift(milliseconds{600}, milliseconds{2000});
     }
   }
+  return script.build();
+}
+
+GestureScript map_script(const ScriptSetting& setting) {
+  constexpr double kPitch =
+      10e-3;  // [m]: apart enough to tell size from depth, near enough to meet
+  ScriptBuilder script{setting.hand_stiffness};
+  script.hold(milliseconds{1000});
+  for (int row = -1; row <= 1; ++row) {
+    for (int column = -1; column <= 1; ++column) {
+      const int along = row % 2 == 0 ? -column : column;  // to and fro
+      script.travel({kSiteB.x + along * kPitch, kSiteB.y + row * kPitch});
+      if (script.position() != kNearPlace) script.move(kNearPlace, milliseconds{500});
+      script.taps(1, 4e-3, milliseconds{1000}, milliseconds{500});
+    }
+  }
+  script.lift(milliseconds{600}, milliseconds{500});
+  return script.build();
+}
+
+GestureScript search_script(const ScriptSetting& setting) {
+  ScriptBuilder script{setting.hand_stiffness};
+  script.hold(milliseconds{1000}).search(20, kSiteB).lift(milliseconds{600}, milliseconds{500});
   return script.build();
 }
 

@@ -38,6 +38,9 @@ class ScriptBuilder {
   /// There at the present height, no faster than kTravelSpeed. Nothing where it is there already.
   ScriptBuilder& travel(const Place& place);
   ScriptBuilder& drag(const Place& place, Duration span);  ///< the same, pressed
+  /// Taps until the map says that they are enough, `count` at most (3 or more), each where it
+  /// proposes; the first three round `place`. Then back there.
+  ScriptBuilder& search(std::uint32_t count, const Place& place);
 
   [[nodiscard]] double position() const noexcept { return position_; }  ///< [m], after all so far
   [[nodiscard]] Place place() const noexcept { return place_; }         ///< likewise
@@ -73,6 +76,12 @@ struct ScriptSetting {
 
 /// The same taps on both sites and one held press to 4 mm each, in 25 s.
 [[nodiscard]] GestureScript demo_script(const ScriptSetting& setting);
+
+/// One tap at each of nine places round B, three by three, 10 mm apart, in 25 s.
+[[nodiscard]] GestureScript map_script(const ScriptSetting& setting);
+
+/// A search of 20 taps at most, from B.
+[[nodiscard]] GestureScript search_script(const ScriptSetting& setting);
 
 /// `standard` with holds of 10 s: the last 40 % of them are a whole breath at 0.25 Hz.
 [[nodiscard]] GestureScript breath_script(const ScriptSetting& setting);

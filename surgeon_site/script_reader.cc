@@ -232,10 +232,25 @@ Result<void> add_drag(ScriptBuilder& script, const std::vector<std::string_view>
   return {};
 }
 
+Result<void> add_search(ScriptBuilder& script, const std::vector<std::string_view>& words) {
+  if (words.size() != 5 || words[2] != "taps" || words[3] != "from") {
+    return fail("expected 'search COUNT taps from PLACE'");
+  }
+  if (const auto clear = needs_clear(script, "search"); !clear) return clear;
+  constexpr Word kTaps{"COUNT", 3, 100, false, true};
+  const Result<double> count = read_word(kTaps, words[1]);
+  if (!count) return tl::unexpected(count.error());
+  const Result<Place> place = read_place(words[4]);
+  if (!place) return tl::unexpected(place.error());
+  script.search(static_cast<std::uint32_t>(*count), *place);
+  return {};
+}
+
 Result<void> add_phase(ScriptBuilder& script, const std::vector<std::string_view>& words) {
   if (words[0] == "site") return add_site(script, words);
   if (words[0] == "tap") return add_taps_at(script, words);
   if (words[0] == "drag") return add_drag(script, words);
+  if (words[0] == "search") return add_search(script, words);
   if (words[0] == "move" && words.size() > 1 && words[1] == "to") return add_travel(script, words);
   const Command* command = nullptr;
   for (const Command& known : kCommands) {
@@ -243,7 +258,7 @@ Result<void> add_phase(ScriptBuilder& script, const std::vector<std::string_view
   }
   if (command == nullptr) {
     return fail("unknown phase " + quoted(words[0]) +
-                ", expected hold, air, move, taps, press, lift, site, tap or drag");
+                ", expected hold, air, move, taps, press, lift, site, tap, drag or search");
   }
   const Result<std::array<double, kWordsMax>> read = read_words(*command, words);
   if (!read) return fail(read.error().text);

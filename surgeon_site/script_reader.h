@@ -21,6 +21,7 @@ namespace palp::surgeon {
 ///   move to PLACE                            the same, at the speed of a hand
 ///   tap COUNT times at PLACE                 there, and taps as in the standard palpation
 ///   drag to PLACE in SECONDS s               only while pressed
+///   search COUNT taps from PLACE             where the map proposes, until it says enough
 /// PLACE is A, B, X_MM,Y_MM or X_MM.
 /// The script begins at -10 mm on site A. Depths and sites as in ScriptBuilder.
 [[nodiscard]] Result<GestureScript> parse_script(std::string_view text, double hand_stiffness);

@@ -42,6 +42,8 @@ Result<GestureScript> load_script(const std::string& source, const ScriptSetting
   };
   constexpr std::array kReady{Ready{"script:standard", standard_script},
                               Ready{"script:demo", demo_script},
+                              Ready{"script:map", map_script},
+                              Ready{"script:search", search_script},
                               Ready{"script:breath", breath_script},
                               Ready{"script:long", long_script}};
   for (const Ready& ready : kReady) {
@@ -58,7 +60,8 @@ Result<GestureScript> load_script(const std::string& source, const ScriptSetting
   const bool replay = source.starts_with(kReplay);
   if (!replay && !source.starts_with(kScript)) {
     return fail("unknown master '" + printable(source) + "'" +
-                ", expected script:standard, script:demo, script:breath, script:long, "
+                ", expected script:standard, script:demo, script:map, script:search, "
+                "script:breath, script:long, "
                 "script:random:SEED, script:FILE, replay:FILE or recording:FILE, or a device: "
                 "openffboard, paddle, spacemouse, orca");
   }

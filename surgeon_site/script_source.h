@@ -8,9 +8,9 @@
 
 namespace palp::surgeon {
 
-/// `script:standard`, `script:demo`, `script:breath`, `script:long`, `script:random:SEED` (see
-/// drawn_script), `script:FILE`, `replay:FILE` or `recording:FILE`; a sentence if there is none.
-/// Not for rt: reads files.
+/// `script:standard`, `script:demo`, `script:map`, `script:search`, `script:breath`, `script:long`,
+/// `script:random:SEED` (see drawn_script), `script:FILE`, `replay:FILE` or `recording:FILE`; a
+/// sentence if there is none. Not for rt: reads files.
 [[nodiscard]] Result<GestureScript> load_script(const std::string& source,
                                                 const ScriptSetting& setting);
 

@@ -17,6 +17,10 @@ using std::numbers::pi;
 constexpr Duration kMoveMin = std::chrono::milliseconds{100};
 /// The patient site's refusal is a round trip away, and no round trip is longer than this.
 constexpr Duration kAcceptedAfter = std::chrono::seconds{3};
+/// So many taps of a search come before there is a map.
+constexpr std::uint32_t kSearchBlind = 3;
+/// What a person waits for news of the last tap.
+constexpr Duration kMapPatience = std::chrono::seconds{4};
 
 }  // namespace
 
@@ -87,7 +91,30 @@ void ScriptedOperator::follow_move(Duration dt) noexcept {
   intent_.velocity = move_.velocity();
 }
 
+/// At the beginning of a search's travel: the person looks at the map, and goes where it proposes.
+/// The news of the last tap is a round trip away.
+bool ScriptedOperator::waits_for_map() noexcept {
+  const Stretch* const travel = script_.search_travel(script_time_);
+  if (travel == nullptr || travel->index <= kSearchBlind || travel->index == decided_) return false;
+  const bool news = view_.map != followed_;
+  if (!news && waited_ < kMapPatience) return true;
+  decided_ = travel->index;
+  waited_ = Duration{0};
+  followed_ = view_.map;
+  if (view_.map == 0) return false;
+  if (view_.enough_touches) {
+    script_time_ = script_.leave_search(script_time_);
+  } else {
+    script_.turn_to(script_time_, view_.next);
+  }
+  return false;
+}
+
 void ScriptedOperator::perform(Duration dt) noexcept {
+  if (waits_for_map()) {
+    waited_ += dt;
+    return;
+  }
   script_time_ += dt;
   intent_ = script_.at(script_time_);
   intent_.position += config_.surface_offset;

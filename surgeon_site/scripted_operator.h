@@ -75,6 +75,7 @@ class ScriptedOperator {
   void begin_aligning() noexcept;
   void begin_approach() noexcept;
   void perform(Duration dt) noexcept;
+  [[nodiscard]] bool waits_for_map() noexcept;
   void follow_move(Duration dt) noexcept;
   void break_off() noexcept;
   void try_again() noexcept;
@@ -89,6 +90,9 @@ class ScriptedOperator {
   Intent intent_;
   Duration script_time_{};
   std::uint32_t attempts_{};  ///< refusals in a row
+  std::uint32_t followed_{};  ///< number of the map that was obeyed last
+  std::uint32_t decided_{};   ///< travel of a search whose place is decided
+  Duration waited_{};         ///< for the next one
   bool pedal_held_{};
   ScriptOutcome outcome_{ScriptOutcome::None};
 };

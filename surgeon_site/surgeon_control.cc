@@ -55,6 +55,7 @@ void SurgeonControl::begin_session(const DeviceFacts& peer) noexcept {
   now_.tip_known = false;
   now_.contact_force = 0;
   now_.depth = {};
+  now_.map = {};
   now_.peer_devices = peer;
   if (peer.stage && peer.sensor) coupling::meet(parts_.law, {*peer.stage, *peer.sensor});
 }
@@ -72,6 +73,11 @@ void SurgeonControl::hear(const link::Arrivals& arrived) noexcept {
   if (arrived.peer_heard && arrived.peer.depth.number != now_.depth.number) {
     now_.depth = arrived.peer.depth;
     if (now_.depth.number != 0) account_.record(DepthArrived{now_.at, now_.depth});
+  }
+  const MapReport& map = arrived.peer.map;
+  if (arrived.peer_heard && map.number != 0 && !(map == now_.map)) {
+    now_.map = map;
+    account_.record(MapArrived{now_.at, map});
   }
 }
 
@@ -168,7 +174,14 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
           .hold_in_plane = config_.hold_in_plane && answer_.force >= pressing_force(),
           .to_peer = {{now_.state, now_.epoch, hand_.place, {}},
                       account_.within_limits(wanted.to_patient)},
-          .view = {now_.state, now_.peer_state, now_.link.state, now_.tip, now_.tip_known}};
+          .view = {.state = now_.state,
+                   .peer_state = now_.peer_state,
+                   .link = now_.link.state,
+                   .tip_position = now_.tip,
+                   .tip_known = now_.tip_known,
+                   .map = now_.map.number,
+                   .next = now_.map.next,
+                   .enough_touches = now_.map.stop != MapStop::GoOn}};
 }
 
 /// A hand that feels less than the tissue must know it.

@@ -35,6 +35,7 @@ struct SurgeonStatus : record::SiteCounts {
   double force_missing{};   ///< [N], of the believed tissue's force, what the law cannot give
   bool force_incomplete{};  ///< so much of it, and for so long, that the surgeon is told
   DepthReport depth;
+  MapReport map;  ///< as last heard; number 0: none yet
   ScriptProgress script;
   record::NoteCode refused{};  ///< why the last press of the pedal did not engage; None: it did
 };

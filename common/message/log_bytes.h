@@ -30,6 +30,8 @@ using LogMessages = MessageList<SurgeonFileTick,
                                 UserAsked,
                                 DevicesTold,
                                 PlantTruth,
+                                MapEstimate,
+                                MapArrived,
                                 SurgeonGiven,
                                 PatientGiven>;
 

@@ -13,6 +13,7 @@
 #include "common/message/enumerators.h"
 #include "common/message/field.h"
 #include "common/message/link_health.h"
+#include "common/message/map_report.h"
 #include "common/message/plant_truth.h"
 #include "common/message/port_sample.h"
 #include "common/message/readings.h"
@@ -70,6 +71,18 @@ struct DepthArrived {
   DepthReport report;
 };
 
+/// What the touches at all places say together, at the patient's.
+struct MapEstimate {
+  TimePoint at{};  ///< the last of these strokes ended
+  MapReport report{};
+};
+
+/// The same as it arrived at the surgeon's.
+struct MapArrived {
+  TimePoint at{};
+  MapReport report{};
+};
+
 using Record = std::variant<SiteTick,
                             Arrived,
                             LinkStatus,
@@ -83,7 +96,9 @@ using Record = std::variant<SiteTick,
                             LinkHeard,
                             UserAsked,
                             DevicesTold,
-                            PlantTruth>;
+                            PlantTruth,
+                            MapEstimate,
+                            MapArrived>;
 static_assert(std::is_trivially_copyable_v<Record>, "crosses threads by copy");
 
 /// Their names in summaries and reports, in the same order.
@@ -100,7 +115,9 @@ inline constexpr std::array<const char*, std::variant_size_v<Record>> kRecordNam
                                                                                    "heard",
                                                                                    "user",
                                                                                    "devices",
-                                                                                   "truth"};
+                                                                                   "truth",
+                                                                                   "map_estimate",
+                                                                                   "map_arrived"};
 
 namespace message {
 
@@ -156,6 +173,16 @@ inline constexpr auto fields<S> = list({},
 
 template <std::same_as<DepthArrived> S>
 inline constexpr auto fields<S> = list({.log = "DepthReport"},
+                                       aside<&S::at>("at_ns"),
+                                       spread<0, &S::report>(""));
+
+template <std::same_as<MapEstimate> S>
+inline constexpr auto fields<S> = list({.log = "MapEstimate"},
+                                       aside<&S::at>("at_ns"),
+                                       spread<0, &S::report>(""));
+
+template <std::same_as<MapArrived> S>
+inline constexpr auto fields<S> = list({.log = "MapReport"},
                                        aside<&S::at>("at_ns"),
                                        spread<0, &S::report>(""));
 

@@ -9,6 +9,7 @@
 #include "common/message/enumerators.h"
 #include "common/message/field.h"
 #include "common/message/limits.h"
+#include "common/message/map_report.h"
 #include "common/message/port_sample.h"
 
 /// What sites say to each other, before bytes.
@@ -20,6 +21,7 @@ struct SiteReport {
   std::uint32_t epoch{};  ///< +1 at every engagement; samples of older epochs are dropped
   Place place;
   DepthReport depth;  ///< patient to surgeon only
+  MapReport map{};    ///< likewise, at times; number 0: not this time
 };
 
 /// What a node says. The link adds stamps, acknowledgements and two older samples (WIRE.md).
@@ -50,7 +52,8 @@ inline constexpr auto fields<S> =
          field<2, &S::epoch>("epoch"),
          field<3, &S::place, &Place::x>("x_m", wire<float>, limit(kLengthMax)),
          field<4, &S::depth>("depth", nothing_if_zero<&DepthReport::number>),
-         field<5, &S::place, &Place::y>("y_m", wire<float>, limit(kLengthMax)));
+         field<5, &S::place, &Place::y>("y_m", wire<float>, limit(kLengthMax)),
+         field<6, &S::map>("map", nothing_if_zero<&MapReport::number>));
 
 template <std::same_as<WireTelegram> S>
 inline constexpr auto fields<S> =

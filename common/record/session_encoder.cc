@@ -55,6 +55,8 @@ std::vector<TopicFormat> topics_of(Role site) {
   topics.push_back(format<UserAsked>(Topic::User, site, "user"));
   topics.push_back(format<DevicesTold>(Topic::Devices, site, "devices"));
   if (surgeon) topics.push_back(format<PlantTruth>(Topic::Truth, site, "truth"));
+  topics.push_back(surgeon ? format<MapArrived>(Topic::Map, site, "map")
+                           : format<MapEstimate>(Topic::Map, site, "map"));
   return topics;
 }
 
@@ -111,7 +113,9 @@ std::optional<Prepared> SessionEncoder::prepare(const Record& record,
                  [&](const LinkHeard& one) { return of_site(true, Topic::Heard, one); },
                  [&](const UserAsked& one) { return of_site(true, Topic::User, one); },
                  [&](const DevicesTold& one) { return of_site(true, Topic::Devices, one); },
-                 [&](const PlantTruth& one) { return of_site(surgeon, Topic::Truth, one); }},
+                 [&](const PlantTruth& one) { return of_site(surgeon, Topic::Truth, one); },
+                 [&](const MapEstimate& one) { return of_site(!surgeon, Topic::Map, one); },
+                 [&](const MapArrived& one) { return of_site(surgeon, Topic::Map, one); }},
       record);
 }
 

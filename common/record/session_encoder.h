@@ -28,9 +28,10 @@ enum class Topic : std::uint8_t {
   Heard,
   User,
   Devices,
-  Truth
+  Truth,
+  Map
 };
-inline constexpr std::size_t kTopicCount = 13;
+inline constexpr std::size_t kTopicCount = 14;
 
 struct TopicFormat {
   Topic topic{};

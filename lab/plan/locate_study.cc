@@ -4,12 +4,18 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
+#include "common/core/check.h"
 #include "common/core/conventions.h"
 #include "common/core/random.h"
 #include "common/core/small_solver.h"
 #include "depth/stroke_tracker.h"
+#include "lab/plan/locate_session.h"
+#include "lab/run/run.h"
+#include "patient_site/phantom.h"
 #include "patient_site/simulated_phantom.h"
+#include "patient_site/tissue_words.h"
 
 namespace palp::lab {
 
@@ -41,6 +47,7 @@ constexpr double kSurfaceSpread = 0.2e-3;  // [m], of the surface from place to 
 constexpr double kScaleSpread = 0.1;       // [-], of Young's modulus
 constexpr double kMargin = 0.15e-3;        // [m], for the servo, before a table's end
 constexpr double kRest = 0.2;              // [s], after a tap
+constexpr double kRight = 1e-3;            // [m], of place and depth
 
 /// From what the estimator assumes; the axis anywhere between the outer places.
 LocatePhantom draw(const LocateStudy& study,
@@ -49,15 +56,21 @@ LocatePhantom draw(const LocateStudy& study,
                    LocateDraws& draws) {
   LocatePhantom truth;
   do {
+    if (study.ball) {
+      truth.ball = *study.ball;
+      break;
+    }
     truth.ball = {.shape = prior.shape,
                   .depth = draws.uniform(prior.depth_min, study.depth_max),
                   .radius = draws.uniform(prior.radius_min, prior.radius_max),
                   .ratio = prior.ratio_min *
                            std::pow(prior.ratio_max / prior.ratio_min, draws.uniform(0, 1))};
   } while (!database.contains(truth.ball));
-  const double half = 0.5 * (study.rows - 1) * study.pitch;
+  const double half =
+      study.script.empty() ? 0.5 * (study.rows - 1) * study.pitch : reach_of(study.script);
   truth.axis.x = draws.uniform(-half, half);
   truth.axis.y = draws.uniform(-half, half);
+  if (study.axis) truth.axis = *study.axis;
   truth.scale = 1 + kScaleSpread * draws.normal();
   return truth;
 }
@@ -78,19 +91,18 @@ patient::ForceTable table_at(const depth::DepthDatabase& database,
   return *patient::ForceTable::make(std::move(rows));
 }
 
-/// One tap at one place, raised cosine, no deeper than `reach_max` [m]; `feel` takes every
-/// sample.
-template <class Feel>
+/// Takes every sample of a tap.
+using Feel = std::function<void(const ContactSample&)>;
+
+/// One tap, raised cosine, no deeper than `reach_max` [m]; `config` says where, and what is there.
 TimePoint tap(const patient::Phantom& phantom,
-              const Place& place,
+              patient::SimulatedPhantomConfig config,
               double reach_max,
               LocateDraws& draws,
               TimePoint now,
               const Feel& feel) {
-  patient::SimulatedPhantomConfig config;
   config.surface_offset = kSurfaceSpread * draws.normal();
   config.start_position = config.surface_offset - kClearance;
-  config.start_place = place;
   config.seed = draws.bits();
   const double span = draws.uniform(0.7, 1.4);
   const double reach = std::min(draws.uniform(3.6e-3, 4.2e-3), reach_max);
@@ -107,7 +119,7 @@ TimePoint tap(const patient::Phantom& phantom,
     const double t = std::min(i * 1e-3, span) / span;
     const double depth =
         -kClearance + 0.5 * (reach + kClearance) * (1 - std::cos(2 * std::numbers::pi * t));
-    site.move_to({config.surface_offset + depth, place});
+    site.move_to({config.surface_offset + depth, config.start_place});
   }
   return now + std::chrono::seconds{1};
 }
@@ -157,6 +169,15 @@ void tell(const depth::MapPosterior& posterior, std::array<Located, kLocated>& o
 
 }  // namespace
 
+Result<void> take_ball(const std::string& words, LocateStudy& study) {
+  const auto described = patient::parse_tissue_words("ball " + words);
+  if (!described) return fail("--ball", described.error());
+  const patient::PlacedInclusion& one = described->block.inclusions.front();
+  study.ball = one.body;
+  if (words.find("at=") != std::string::npos) study.axis = one.axis;
+  return {};
+}
+
 Result<LocateBench> LocateBench::make(const LocateStudy& study) {
   auto database = depth::default_database();
   if (!database) return tl::unexpected(database.error());
@@ -171,15 +192,8 @@ LocateBench::LocateBench(const LocateStudy& study, depth::DepthDatabase database
       basis_{database_} {}
 
 /// One tap at every place of the pattern.
-std::vector<depth::PlaceData> LocateBench::touch_all(const LocatePhantom& truth,
-                                                     bool inclusion,
-                                                     LocateDraws& draws) const {
-  const depth::DepthDatabase::Curve plain = database_.plain();
-  const depth::DepthDatabase::Curve curve = inclusion ? database_.curve(truth.ball) : plain;
-  // As a site's gate: what was not computed is not touched.
-  const double deepest = curve.indentation_max - kMargin;
-  const depth::LateralShare share = depth::lateral_share(database_);
-  depth::StrokeTrackerConfig strokes;
+std::vector<depth::PlaceData> LocateBench::touch_all(const TapAt& tap_at) const {
+  const depth::StrokeTrackerConfig strokes;
   depth::StrokeTracker tracker{strokes};
   std::vector<depth::PlaceData> places;
   TimePoint now{};
@@ -187,20 +201,7 @@ std::vector<depth::PlaceData> LocateBench::touch_all(const LocatePhantom& truth,
     const double middle = 0.5 * (study_.rows - 1);
     const Place at{(place % study_.rows - middle) * study_.pitch,
                    (place / study_.rows - middle) * study_.pitch};
-    const double scale = truth.scale * std::exp(study_.spread * draws.normal());
-    const double offset = distance(at, truth.axis);
-    const auto left = [&](double d) {
-      return inclusion ? share(truth.ball, offset, std::max(d, kStep)) : 0.0;
-    };
-    const patient::ForceTable table = table_at(database_, curve, scale, left);
-    const patient::Phantom phantom{.name = "place",
-                                   .plain = table,
-                                   .over = table,
-                                   .depth = {},
-                                   .radius = {},
-                                   .ratio = {},
-                                   .shape = "unknown"};
-    now = tap(phantom, at, deepest, draws, now, [&](const ContactSample& sample) {
+    now = tap_at(at, now, [&](const ContactSample& sample) {
       const auto stroke = tracker.take(sample);
       if (!stroke || stroke->reason != DepthReason::Ok) return;
       auto data = depth::place_data({.place = at,
@@ -217,29 +218,126 @@ std::vector<depth::PlaceData> LocateBench::touch_all(const LocatePhantom& truth,
   return places;
 }
 
+/// In tissue as the estimator assumes it.
+std::vector<depth::PlaceData> LocateBench::touch_as_assumed(const LocatePhantom& truth,
+                                                            bool inclusion,
+                                                            LocateDraws& draws) const {
+  const depth::DepthDatabase::Curve plain = database_.plain();
+  const depth::DepthDatabase::Curve curve = inclusion ? database_.curve(truth.ball) : plain;
+  // As a site's gate: what was not computed is not touched.
+  const double deepest = curve.indentation_max - kMargin;
+  const depth::LateralShare share = depth::lateral_share(database_);
+  return touch_all([&](const Place& at, TimePoint now, const Feel& feel) {
+    const double scale = truth.scale * std::exp(study_.spread * draws.normal());
+    const double offset = distance(at, truth.axis);
+    const auto left = [&](double d) {
+      return inclusion ? share(truth.ball, offset, std::max(d, kStep)) : 0.0;
+    };
+    const patient::ForceTable table = table_at(database_, curve, scale, left);
+    const patient::Phantom phantom{.name = "place",
+                                   .plain = table,
+                                   .over = table,
+                                   .depth = {},
+                                   .radius = {},
+                                   .ratio = {},
+                                   .shape = "unknown"};
+    return tap(phantom, {.start_place = at}, deepest, draws, now, feel);
+  });
+}
+
+/// In another one.
+std::vector<depth::PlaceData> LocateBench::touch_world(const MismatchedWorld& world,
+                                                       LocateDraws& draws) const {
+  const auto phantom = patient::make_phantom(world.phantom);
+  PALP_CHECK(phantom.has_value(), "a world is a sound phantom");
+  return touch_all([&](const Place& at, TimePoint now, const Feel& feel) {
+    const patient::SimulatedPhantomConfig config{.start_place = at,
+                                                 .breathing_amplitude = world.breathing_amplitude,
+                                                 .breathing_frequency = world.breathing_frequency,
+                                                 .sensor_cut_off = world.sensor_pole};
+    return tap(*phantom, config, phantom->depth_max() - kMargin, draws, now, feel);
+  });
+}
+
 LocateCase LocateBench::run(std::uint32_t index) const {
   LocateDraws draws{study_.seed, index};
   LocateCase out;
   out.index = index;
-  out.inclusion = index < study_.count;
-  const LocatePhantom truth = draw(study_, prior_.ball, database_, draws);
+  LocatePhantom truth;
+  std::vector<depth::PlaceData> places;
+  if (study_.mismatch) {
+    const double half = 0.5 * (study_.rows - 1) * study_.pitch;
+    const MismatchedWorld world = mismatched_world(study_.seed, index, half);
+    out.kind = world.kind;
+    out.inclusion = world.inclusion;
+    truth = {.ball = {.depth = world.depth, .radius = world.radius, .ratio = world.ratio},
+             .axis = world.axis};
+    places = touch_world(world, draws);
+  } else {
+    out.inclusion = index < study_.count;
+    truth = draw(study_, prior_.ball, database_, draws);
+    out.scale = truth.scale;
+    if (!study_.script.empty()) {
+      run_session(truth, draws, out);
+      return out;
+    }
+    places = touch_as_assumed(truth, out.inclusion, draws);
+  }
   out.scale = truth.scale;
-  std::vector<depth::PlaceData> places = touch_all(truth, out.inclusion, draws);
   if (places.empty()) return out;
+  judge(truth, std::move(places), out);
+  return out;
+}
+
+/// With a hand, over a link.
+void LocateBench::run_session(const LocatePhantom& truth,
+                              LocateDraws& draws,
+                              LocateCase& out) const {
+  const auto scenario = locate_scenario({.script = study_.script,
+                                         .round_trip = study_.round_trip,
+                                         .loss = study_.loss,
+                                         .assumed_spread = study_.assumed_spread,
+                                         .spread = study_.spread,
+                                         .scale = truth.scale,
+                                         .seed = draws.bits()},
+                                        out.inclusion ? &truth.ball : nullptr,
+                                        truth.axis);
+  PALP_CHECK(scenario.has_value(), "a study's sessions are sound");
+  const RunResult result = simulate(*scenario);
+  const MapReport& map = result.map;
+  out.found = map.verdict == DepthVerdict::Found;
+  out.doubts = map.doubts;
+  out.log_evidence = map.log_odds;
+  out.strokes = static_cast<std::uint32_t>(result.depths.size());
+  const std::array<const palp::Located*, 4> told{&map.x, &map.y, &map.depth, &map.radius};
+  const std::array<double, 4> is{truth.axis.x, truth.axis.y, truth.ball.depth, truth.ball.radius};
+  const std::array<double, 4> from{kSiteB.x, kSiteB.y, 0, 0};
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    Located& one = out.coordinates[i];
+    one.median = told[i]->median - from[i];
+    one.low = told[i]->low - from[i];
+    one.high = told[i]->high - from[i];
+    if (out.inclusion) one.truth = is[i];
+  }
+  if (out.inclusion) out.ratio = truth.ball.ratio;
+}
+
+/// What is said of the touches, beside the truth.
+void LocateBench::judge(const LocatePhantom& truth,
+                        std::vector<depth::PlaceData> places,
+                        LocateCase& out) const {
   const depth::MapLikelihood likelihood{
       field_, {.stiffness = {}, .place_spread = study_.assumed_spread}, std::move(places)};
   const depth::MapPosterior posterior = depth::map_posterior(likelihood, field_, prior_);
   const depth::MapVerdict verdict = depth::map_verdict(likelihood, posterior);
   out.found = verdict.found;
-  for (const depth::MapDoubt doubt : verdict.doubts) {
-    out.doubts |= 1U << static_cast<unsigned>(doubt);
-  }
+  for (const MapDoubt doubt : verdict.doubts) out.doubts |= doubts_of(doubt);
   out.log_evidence = posterior.log_evidence;
   out.balls_worth = posterior.balls_worth;
   out.worst_curve = verdict.worst_curve;
   out.worst_deviation = verdict.worst_deviation;
   tell(posterior, out.coordinates);
-  if (!out.inclusion) return out;
+  if (!out.inclusion) return;
   out.ratio = truth.ball.ratio;
   const std::array<double, kLocated> is{
       truth.axis.x, truth.axis.y, truth.ball.depth, truth.ball.radius, std::log(truth.ball.ratio)};
@@ -248,9 +346,30 @@ LocateCase LocateBench::run(std::uint32_t index) const {
     out.coordinates[i].truth = is[i];
     out.coordinates[i].bound = bounds[i];
   }
-  return out;
 }
 
-std::uint32_t case_count(const LocateStudy& study) { return 2 * study.count; }
+bool LocateCase::confidently_wrong() const {
+  if (!found || doubts != 0) return false;
+  if (!inclusion) return true;
+  for (std::size_t i = 0; i + 1 < kLocated; ++i) {
+    const Located& one = coordinates[i];
+    if (one.truth < one.low || one.truth > one.high) return true;
+  }
+  return false;
+}
+
+bool LocateCase::right() const {
+  if (!inclusion || !found || doubts != 0) return false;
+  const auto off = [&](std::size_t i) {
+    return std::abs(coordinates[i].median - coordinates[i].truth);
+  };
+  const Located& radius = coordinates[3];
+  const bool size = radius.low <= radius.truth && radius.truth <= radius.high;
+  return off(0) <= kRight && off(1) <= kRight && off(2) <= kRight && size;
+}
+
+std::uint32_t case_count(const LocateStudy& study) {
+  return study.mismatch ? study.count : 2 * study.count;
+}
 
 }  // namespace palp::lab

@@ -2,17 +2,23 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "common/core/place.h"
 #include "common/core/result.h"
+#include "common/message/depth.h"
+#include "depth/depth_database.h"
 #include "depth/map_verdict.h"
+#include "lab/plan/mismatched_world.h"
 
 namespace palp::lab {
 
 /// Monte Carlo of maps: phantoms of one ball somewhere below a plane surface, and plain ones, each
 /// tapped once at every place of a square pattern. Stage, tissue and sensor are simulated, the
-/// tracker cuts the strokes, one posterior judges all of them; no hand and no network.
+/// tracker cuts the strokes, one posterior judges all of them; hand and network only on demand.
 struct LocateStudy {
   std::uint32_t count{100};  ///< phantoms with a ball, and as many plain ones
   std::uint64_t seed{1};
@@ -21,6 +27,14 @@ struct LocateStudy {
   double spread{};              ///< [-], of the tissue's stiffness from place to place
   double assumed_spread{0.05};  ///< [-], of it, by the estimator
   double depth_max{27e-3};      ///< [m], of the balls drawn
+  /// The one ball of all cases; nothing: drawn from what the estimator assumes.
+  std::optional<depth::DepthDatabase::Query> ball{};
+  std::optional<Place> axis{};  ///< of all balls, from the pattern's middle; nothing: drawn
+  bool mismatch{};              ///< `count` worlds that are not as assumed instead
+  /// Whole sessions with that script; empty: the taps alone.
+  std::string script{};
+  double round_trip{};  ///< [s], of these
+  double loss{};        ///< [-], of these, each way
 };
 
 /// Of a coordinate: x, y, depth, radius [m], logarithm of the ratio [-].
@@ -38,6 +52,7 @@ struct Located {
 /// One phantom and what was said of it.
 struct LocateCase {
   std::uint32_t index{};
+  Mismatch kind{};  ///< of a world that is not as assumed
   bool inclusion{};
   bool found{};
   std::uint32_t doubts{};  ///< a bit for each
@@ -48,6 +63,13 @@ struct LocateCase {
   double balls_worth{};      ///< [-]
   double worst_curve{};      ///< [-]
   double worst_deviation{};  ///< [-]
+  std::uint32_t strokes{};   ///< of a session
+
+  /// An inclusion where there is none, or an interval of x, y, depth or radius that misses the
+  /// truth, and not a word of doubt.
+  [[nodiscard]] bool confidently_wrong() const;
+  /// Found without a doubt: x, y and depth within 1 mm, and the radius within its interval.
+  [[nodiscard]] bool right() const;
 };
 
 struct LocatePhantom;
@@ -61,9 +83,19 @@ class LocateBench {
 
  private:
   LocateBench(const LocateStudy& study, depth::DepthDatabase database);
-  [[nodiscard]] std::vector<depth::PlaceData> touch_all(const LocatePhantom& truth,
-                                                        bool inclusion,
-                                                        LocateDraws& draws) const;
+  using Feel = std::function<void(const ContactSample&)>;
+  /// Taps at a place from `now` on. @returns when the next tap may begin.
+  using TapAt = std::function<TimePoint(const Place& at, TimePoint now, const Feel& feel)>;
+  [[nodiscard]] std::vector<depth::PlaceData> touch_all(const TapAt& tap_at) const;
+  [[nodiscard]] std::vector<depth::PlaceData> touch_as_assumed(const LocatePhantom& truth,
+                                                               bool inclusion,
+                                                               LocateDraws& draws) const;
+  [[nodiscard]] std::vector<depth::PlaceData> touch_world(const MismatchedWorld& world,
+                                                          LocateDraws& draws) const;
+  void run_session(const LocatePhantom& truth, LocateDraws& draws, LocateCase& out) const;
+  void judge(const LocatePhantom& truth,
+             std::vector<depth::PlaceData> places,
+             LocateCase& out) const;
 
   LocateStudy study_;
   depth::DepthDatabase database_;
@@ -72,6 +104,9 @@ class LocateBench {
   depth::CurveBasis basis_;
 };
 
+/// Of such a ball, as "depth=10 radius=15 ratio=856 at=2,1", in mm; a sentence if there is none.
+[[nodiscard]] Result<void> take_ball(const std::string& words, LocateStudy& study);
+
 /// Cases in order of their index.
 [[nodiscard]] std::uint32_t case_count(const LocateStudy& study);
 [[nodiscard]] std::string locate_table(const LocateStudy& study,
@@ -79,6 +114,7 @@ class LocateBench {
 [[nodiscard]] std::string locate_report(const LocateStudy& study,
                                         const std::vector<LocateCase>& cases,
                                         const std::string& cases_csv);
-[[nodiscard]] std::string locate_csv(const std::vector<LocateCase>& cases);
+[[nodiscard]] std::string locate_csv(const LocateStudy& study,
+                                     const std::vector<LocateCase>& cases);
 
 }  // namespace palp::lab

@@ -5,6 +5,7 @@
 
 #include "common/config/json.h"
 #include "common/core/conventions.h"
+#include "common/core/median.h"
 #include "lab/plan/locate_study.h"
 
 namespace palp::lab {
@@ -102,8 +103,8 @@ struct Alarms {
 
 Alarms alarms(const std::vector<LocateCase>& cases) {
   Alarms out;
-  constexpr std::uint32_t kModel = 1U << static_cast<unsigned>(depth::MapDoubt::Curve) |
-                                   1U << static_cast<unsigned>(depth::MapDoubt::NotOneBall);
+  constexpr std::uint32_t kModel = 1U << static_cast<unsigned>(MapDoubt::Curve) |
+                                   1U << static_cast<unsigned>(MapDoubt::NotOneBall);
   for (const LocateCase& one : cases) {
     ++out.all;
     if ((one.doubts & kModel) != 0) ++out.doubted;
@@ -114,10 +115,106 @@ Alarms alarms(const std::vector<LocateCase>& cases) {
   return out;
 }
 
+/// Of the worlds of a kind, or of all.
+struct Worlds {
+  std::string name;
+  std::size_t count{};
+  std::size_t wrong{};  ///< confidently
+  std::size_t warned{};
+  std::size_t alarms{};  ///< plain ones in which something was found, doubted or not
+};
+
+std::vector<Worlds> worlds_of(const std::vector<LocateCase>& cases) {
+  std::vector<Worlds> out(kMismatchNames.size() + 1);
+  const auto add = [](const LocateCase& one, Worlds& to) {
+    ++to.count;
+    if (one.confidently_wrong()) ++to.wrong;
+    if (one.doubts != 0) ++to.warned;
+    if (!one.inclusion && one.found) ++to.alarms;
+  };
+  for (const LocateCase& one : cases) {
+    add(one, out[static_cast<std::size_t>(one.kind)]);
+    add(one, out.back());
+  }
+  for (std::size_t i = 0; i < kMismatchNames.size(); ++i) out[i].name = kMismatchNames[i];
+  out.back().name = "all";
+  return out;
+}
+
+std::size_t right_of(const std::vector<LocateCase>& cases) {
+  return static_cast<std::size_t>(
+      std::count_if(cases.begin(), cases.end(), [](const LocateCase& one) { return one.right(); }));
+}
+
+/// Median number of strokes of the sessions that found their ball; 0: there are none.
+double strokes_of(const std::vector<LocateCase>& cases) {
+  std::vector<double> strokes;
+  for (const LocateCase& one : cases) {
+    if (one.inclusion && one.found) strokes.push_back(one.strokes);
+  }
+  return median(strokes).value_or(0);
+}
+
+std::size_t balls_of(const std::vector<LocateCase>& cases) {
+  return static_cast<std::size_t>(std::count_if(
+      cases.begin(), cases.end(), [](const LocateCase& one) { return one.inclusion; }));
+}
+
 double unit_of(std::size_t coordinate) { return coordinate + 1 < kLocated ? kMillimetre : 1; }
 
 double share(std::size_t part, std::size_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+/// A line of the table.
+std::string text_of(const Row& row) {
+  const Figures& f = row.figures;
+  char line[240];
+  std::snprintf(line,
+                sizeof line,
+                "%-16s %4zu %5.1f%%",
+                row.name.c_str(),
+                f.count,
+                100 * share(f.found, f.count));
+  std::string out = line;
+  if (f.found == 0) return out + '\n';
+  out += "      ";
+  for (std::size_t i = 0; i < kLocated; ++i) {
+    std::snprintf(line, sizeof line, " %6.1f", 100 * share(f.inside[i], f.found));
+    out += line;
+  }
+  out += "   ";
+  for (std::size_t i = 0; i + 1 < kLocated; ++i) {
+    std::snprintf(line, sizeof line, " %6.2f", f.squares[i] / unit_of(i));
+    out += line;
+  }
+  out += "   ";
+  for (std::size_t i = 0; i + 1 < kLocated; ++i) {
+    if (f.bounds[i] > 0) {
+      std::snprintf(line, sizeof line, " %6.2f", f.squares[i] / f.bounds[i]);
+    } else {
+      std::snprintf(line, sizeof line, " %6s", "-");
+    }
+    out += line;
+  }
+  return out + '\n';
+}
+
+std::string worlds_text(const std::vector<LocateCase>& cases) {
+  std::string out = "kind              n  confidently wrong  warned  plain called an inclusion\n";
+  for (const Worlds& one : worlds_of(cases)) {
+    char line[160];
+    std::snprintf(line,
+                  sizeof line,
+                  "%-12s %6zu %17.1f%% %6.1f%% %26zu\n",
+                  one.name.c_str(),
+                  one.count,
+                  100 * share(one.wrong, one.count),
+                  100 * share(one.warned, one.count),
+                  one.alarms);
+    out += line;
+  }
+  return out;
 }
 
 }  // namespace
@@ -126,43 +223,22 @@ std::string locate_table(const LocateStudy& study, const std::vector<LocateCase>
   std::string out =
       "balls               n  found  coverage % x     y depth radius ratio  rms mm x     y depth "
       "radius  over bound x    y depth radius\n";
-  for (const Row& row : rows_of(study, cases)) {
-    const Figures& f = row.figures;
-    char line[240];
-    std::snprintf(line,
-                  sizeof line,
-                  "%-16s %4zu %5.1f%%",
-                  row.name.c_str(),
-                  f.count,
-                  100 * share(f.found, f.count));
-    out += line;
-    if (f.found > 0) {
-      out += "      ";
-      for (std::size_t i = 0; i < kLocated; ++i) {
-        std::snprintf(line, sizeof line, " %6.1f", 100 * share(f.inside[i], f.found));
-        out += line;
-      }
-      out += "   ";
-      for (std::size_t i = 0; i + 1 < kLocated; ++i) {
-        std::snprintf(line, sizeof line, " %6.2f", f.squares[i] / unit_of(i));
-        out += line;
-      }
-      out += "   ";
-      for (std::size_t i = 0; i + 1 < kLocated; ++i) {
-        std::snprintf(line, sizeof line, " %6.2f", f.squares[i] / f.bounds[i]);
-        out += line;
-      }
-    }
-    out += '\n';
-  }
+  for (const Row& row : rows_of(study, cases)) out += text_of(row);
+  if (study.mismatch) return out + worlds_text(cases);
   const Alarms told = alarms(cases);
-  char line[160];
+  char line[240];
   std::snprintf(line,
                 sizeof line,
+                "right (x, y, depth within 1 mm, the radius in its interval) %zu of %zu balls\n"
                 "false alarms %.2f %% of %zu plain phantoms\nmodel doubted %.2f %% of all\n",
+                right_of(cases),
+                balls_of(cases),
                 100 * share(told.found, told.plain),
                 told.plain,
                 100 * share(told.doubted, told.all));
+  out += line;
+  if (study.script.empty()) return out;
+  std::snprintf(line, sizeof line, "strokes, median of the balls found: %.0f\n", strokes_of(cases));
   return out + line;
 }
 
@@ -194,6 +270,20 @@ std::string locate_report(const LocateStudy& study,
     }
     json["rows"].push_back(std::move(one));
   }
+  json["right"] = right_of(cases);
+  json["session"] = study.script.empty() ? Json(nullptr) : Json(study.script);
+  json["rtt_ms"] = study.round_trip * 1e3;
+  json["loss"] = study.loss;
+  json["strokes_p50"] = study.script.empty() ? Json(nullptr) : Json(strokes_of(cases));
+  json["set"] = study.mismatch ? Json("mismatch") : Json(nullptr);
+  json["kinds"] = Json::array();
+  for (const Worlds& one : study.mismatch ? worlds_of(cases) : std::vector<Worlds>{}) {
+    json["kinds"].push_back({{"kind", one.name},
+                             {"n", one.count},
+                             {"confident_wrong", one.wrong},
+                             {"warned", one.warned},
+                             {"plain_found", one.alarms}});
+  }
   const Alarms told = alarms(cases);
   json["plain_count"] = told.plain;
   json["false_alarm_rate"] = share(told.found, told.plain);
@@ -202,9 +292,9 @@ std::string locate_report(const LocateStudy& study,
   return json.dump(2) + "\n";
 }
 
-std::string locate_csv(const std::vector<LocateCase>& cases) {
+std::string locate_csv(const LocateStudy& study, const std::vector<LocateCase>& cases) {
   std::string out =
-      "index,inclusion,found,doubts,ratio,scale,log_evidence,balls_worth,worst_curve,"
+      "index,kind,inclusion,found,doubts,ratio,scale,log_evidence,balls_worth,worst_curve,"
       "worst_deviation";
   for (const char* name : kLocatedNames) {
     for (const char* what : {"true_", "median_", "low_", "high_", "crb_"}) {
@@ -216,8 +306,9 @@ std::string locate_csv(const std::vector<LocateCase>& cases) {
     char line[200];
     std::snprintf(line,
                   sizeof line,
-                  "%u,%d,%d,%u,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g",
+                  "%u,%s,%d,%d,%u,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g",
                   one.index,
+                  std::string{study.mismatch ? to_string(one.kind) : "assumed"}.c_str(),
                   one.inclusion ? 1 : 0,
                   one.found ? 1 : 0,
                   one.doubts,

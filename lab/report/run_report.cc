@@ -10,11 +10,13 @@
 #include "common/config/json.h"
 #include "common/core/number_text.h"
 #include "common/core/place_text.h"
+#include "common/message/map_text.h"
 #include "judge/depth_statement.h"
 #include "judge/depth_summary.h"
 #include "judge/metric_table.h"
 #include "judge/stroke_pairing.h"
 #include "lab/run/digest.h"
+#include "review/map_json.h"
 
 namespace palp::lab {
 namespace {
@@ -143,6 +145,7 @@ std::string run_report(const Scenario& scenario,
   json["depth"] =
       depth_json(judge::summarise_depths(estimates_at(scenario.phantom.axis, result.depths)),
                  scenario.estimator.kind);
+  json["map"] = review::map_json(result.map);
   // A file's name need not be UTF-8.
   return json.dump(2) + "\n";
 }
@@ -171,6 +174,7 @@ std::string run_summary(const Scenario& scenario,
     }
     text += '\n';
   }
+  if (result.map.number != 0) text += "map        " + map_sentence(result.map) + '\n';
   append(text, "stability  %s\n", m.unstable ? m.unstable_reason : "stable");
   text += "taps 2-4   A " + percent(m.tap_error[0]) + ", B " + percent(m.tap_error[1]) +
           ", ratio " + percent(m.ratio_error) + "; holds A " + percent(m.static_error[0]) + ", B " +

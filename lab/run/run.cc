@@ -36,13 +36,16 @@ class DirectRecorder final : public record::Recorder {
   explicit DirectRecorder(record::SessionWriter* writer) : writer_{writer} {}
   bool record(const Record& record) noexcept override {
     if (const auto* estimate = std::get_if<DepthEstimate>(&record)) estimates_.push_back(*estimate);
+    if (const auto* map = std::get_if<MapEstimate>(&record)) map_ = map->report;
     return writer_ == nullptr || writer_->write(record);
   }
   [[nodiscard]] const std::vector<DepthEstimate>& estimates() const { return estimates_; }
+  [[nodiscard]] const MapReport& map() const { return map_; }
 
  private:
   record::SessionWriter* writer_;
   std::vector<DepthEstimate> estimates_;
+  MapReport map_;
 };
 
 constexpr Duration kBlackout = std::chrono::seconds{2};
@@ -92,7 +95,7 @@ class Probe {
     const double depth = hand.position - status.offset - tissue.surface;
     const double force_true =
         relaxing_.step(field_->elastic_force(status.place, depth), seconds(scenario_.link.period));
-    const review::PhaseFinder::Found phase = phases_.find(hand.script_time);
+    const review::PhaseFinder::Found phase = phases_.find(hand.script_time, status.place);
     const PlantTruth truth{
         .at = site.clock().local(moment.now),
         .run_time = moment.run_time,
@@ -250,15 +253,15 @@ struct PatientEnd {
       : tissue{scenario.phantom, seeded(scenario.tissue, scenario.seed)},
         file{writer},
         recorder{digest, &file},
-        process{scenario, {tissue, recorder, contact, depth}, std::move(path)},
-        estimator{depth::with_sensor(scenario.estimator, patient_devices_of(scenario).sensor),
-                  {contact, depth, recorder}} {}
+        process{scenario, {tissue, recorder, contact, found}, std::move(path)},
+        estimator{depth::with_devices(scenario.estimator, patient_devices_of(scenario)),
+                  {contact, found, recorder}} {}
 
   patient::SimulatedPhantom tissue;
   DirectRecorder file;
   DigestRecorder recorder;
   SpscQueue<ContactSample> contact{kContactQueue};  // one thread is both writer and reader here
-  Mailbox<DepthEstimate> depth;
+  Mailbox<Findings> found;
   PatientProcess process;
   patient::EstimatorWorker estimator;
 };
@@ -308,6 +311,7 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   simulator.every({.period = period}, [&](TimePoint now) {
     if (scenario.depths) {
       patient.estimator.drain();
+      patient.estimator.judge_map();
     } else {
       drop_all(patient.contact);
     }
@@ -334,6 +338,7 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   result.metrics = probe.judge().metrics();
   result.ticks = probe.take_ticks();
   result.depths = patient.file.estimates();
+  result.map = patient.file.map();
   result.strokes =
       strokes_of(result.depths, patient.process.clock(), start + scenario.up.delay.mean);
   result.surgeon_link = surgeon.process.health(simulator.now());

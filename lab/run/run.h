@@ -5,6 +5,7 @@
 
 #include "common/link/telegram.h"
 #include "common/message/depth.h"
+#include "common/message/map_report.h"
 #include "judge/metrics.h"
 #include "judge/stroke_pairing.h"
 #include "lab/run/scenario.h"
@@ -22,6 +23,7 @@ struct RunResult {
   judge::RunMetrics metrics;
   std::vector<judge::RunTick> ticks;  ///< while the script was performed
   std::vector<DepthEstimate> depths;  ///< one per stroke, in order
+  MapReport map;                      ///< the last; number 0: touches at too few places
   /// Theirs, since the start of the run, as the hand made them: less the way to the tip.
   std::vector<judge::Stay> strokes;
   LinkHealth surgeon_link;

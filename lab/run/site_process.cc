@@ -206,7 +206,7 @@ PatientProcess::Running::Running(PatientProcess& owner)
             link,
             owner.around_.recorder,
             owner.around_.contact,
-            owner.around_.depth}} {}
+            owner.around_.found}} {}
 
 PatientProcess::PatientProcess(const Scenario& scenario,
                                const Surroundings& around,

@@ -144,7 +144,7 @@ class PatientProcess {
     patient::SimulatedPhantom& phantom;
     record::Recorder& recorder;
     SpscQueue<ContactSample>& contact;
-    Mailbox<DepthEstimate>& depth;
+    Mailbox<Findings>& found;
   };
   PatientProcess(const Scenario& scenario,
                  const Surroundings& around,

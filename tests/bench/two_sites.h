@@ -57,7 +57,7 @@ class TwoSites {
         patient_law_{coupling::make_patient_coupling(scenario.coupling).value()},
         patient_{
             scenario_.patient,
-            {tissue_, tissue_, patient_law_, patient_link_, patient_switch_, contact_, depth_}} {
+            {tissue_, tissue_, patient_law_, patient_link_, patient_switch_, contact_, found_}} {
     surgeon_setup_.start(surgeon_link_, now);
     patient_setup_.start(patient_link_, now);
   }
@@ -72,7 +72,7 @@ class TwoSites {
     patient_records_.drain([](const Record&) {});
   }
   [[nodiscard]] SpscQueue<ContactSample>& contact() { return contact_; }
-  [[nodiscard]] Mailbox<DepthEstimate>& depth() { return depth_; }
+  [[nodiscard]] Mailbox<Findings>& found() { return found_; }
   /// Thread: who else would read contact().
   void drop_contact() {
     ContactSample sample;
@@ -96,7 +96,7 @@ class TwoSites {
   patient::SimulatedPhantom tissue_;
   coupling::PatientCoupling patient_law_;
   SpscQueue<ContactSample> contact_{kQueue};
-  Mailbox<DepthEstimate> depth_;
+  Mailbox<Findings> found_;
   patient::PatientNode patient_;
 };
 

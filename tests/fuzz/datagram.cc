@@ -57,6 +57,7 @@ void limit_laws(const WireTelegram& telegram) {
     return within(sample.position, 10) && within(sample.velocity, 1e3) && within(sample.force, 1e5);
   };
   const DepthReport& depth = telegram.telegram.site.depth;
+  const MapReport& map = telegram.telegram.site.map;
   PALP_CHECK(telegram.sent_at_ns <= message::kSentAtMaxNs &&
                  telegram.newest_number <= message::kNumberMax &&
                  telegram.hold_us <= message::kHoldMaxUs &&
@@ -67,7 +68,8 @@ void limit_laws(const WireTelegram& telegram) {
   PALP_CHECK(within(depth.hash, 1e5) && within(depth.depth, 10) && within(depth.depth_stddev, 10) &&
                  within(depth.depth_low, 10) && within(depth.depth_high, 10) &&
                  within(telegram.telegram.site.place.x, 10) &&
-                 within(telegram.telegram.site.place.y, 10),
+                 within(telegram.telegram.site.place.y, 10) && within(map.depth.high, 10) &&
+                 within(map.next.x, 10) && within(map.log_odds, 1e5),
              "reports keep the limits of the wire");
   PALP_CHECK(static_cast<int>(telegram.telegram.site.state) < kSiteStateCount &&
                  static_cast<int>(depth.verdict) < kDepthVerdictCount &&

@@ -45,6 +45,7 @@ std::vector<Record> records() {
   DepthArrived depth;
   depth.at = at;
   depth.report.number = 1;
+  const MapReport map{.number = 9, .places = 9, .depth = {7e-3, 6e-3, 8e-3}};
   return {tick,
           arrived,
           status,
@@ -58,7 +59,9 @@ std::vector<Record> records() {
           LinkHeard{.at = at, .state = LinkState::Live, .session_id = 5, .peer_place = {}},
           UserAsked{.at = at, .command = {.emergency_stop = true}},
           DevicesTold{.at = at, .facts = {HandFacts{}, StageFacts{}, ForceSensorFacts{}}},
-          PlantTruth{.at = at, .phase_place = {}, .hand = 1e-3, .tip_place = {}}};
+          PlantTruth{.at = at, .phase_place = {}, .hand = 1e-3, .tip_place = {}},
+          MapEstimate{.at = at, .report = map},
+          MapArrived{.at = at, .report = map}};
 }
 
 /// A tick with all that it was given.

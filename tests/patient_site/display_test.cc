@@ -67,5 +67,13 @@ TEST(PatientDisplayTest, AnEstimateWithoutADepthSaysWhatItSays) {
   EXPECT_THAT(status_line(status), HasSubstr("depth ? (stroke too short)"));
 }
 
+TEST(PatientDisplayTest, AMapSaysMoreThanTheLastTouch) {
+  PatientStatus status;
+  status.depth = {.number = 9, .place = {}, .verdict = DepthVerdict::Found, .depth = 7.7e-3};
+  status.map = {.number = 9, .places = 9, .verdict = DepthVerdict::None};
+  EXPECT_THAT(status_line(status), HasSubstr("no inclusion found at 9 places"));
+  EXPECT_THAT(status_line(status), Not(HasSubstr("7.7")));
+}
+
 }  // namespace
 }  // namespace palp::patient

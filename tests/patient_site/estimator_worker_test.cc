@@ -21,9 +21,9 @@ class ListRecorder final : public record::Recorder {
 
 struct Bench {
   SpscQueue<ContactSample> contact{4096};
-  Mailbox<DepthEstimate> depth;
+  Mailbox<Findings> found;
   ListRecorder recorder;
-  EstimatorWorker worker{{}, {contact, depth, recorder}};
+  EstimatorWorker worker{{}, {contact, found, recorder}};
 
   void press() {
     const auto phantom = make_phantom("paper-10mm");
@@ -44,16 +44,36 @@ struct Bench {
 
 TEST(EstimatorWorkerTest, PutsAndRecordsEachEstimate) {
   Bench bench;
-  EXPECT_EQ(bench.depth.get().number, 0U);
+  EXPECT_EQ(bench.found.get().depth.number, 0U);
   bench.press();
   EXPECT_EQ(bench.worker.drain(), 1200U);
   EXPECT_EQ(bench.worker.drain(), 0U);
-  EXPECT_EQ(bench.depth.get().number, 1U);
-  EXPECT_EQ(bench.depth.get().verdict, DepthVerdict::Found);
+  EXPECT_EQ(bench.found.get().depth.number, 1U);
+  EXPECT_EQ(bench.found.get().depth.verdict, DepthVerdict::Found);
   EXPECT_EQ(bench.worker.strokes(), 1U);
   ASSERT_EQ(bench.recorder.records.size(), 1U);
   EXPECT_EQ(bench.worker.records(), 1U);
   EXPECT_EQ(std::get<DepthEstimate>(bench.recorder.records[0]).number, 1U);
+}
+
+TEST(EstimatorWorkerTest, StrokesAtThreePlacesMakeAMapBesideTheDepths) {
+  Bench bench;
+  const auto phantom = make_phantom("ball depth=5 radius=12 ratio=300 at=0,0");
+  TimePoint now{};
+  for (const Place& place : {Place{}, Place{10e-3, 0}, Place{0, 10e-3}}) {
+    now = feel_taps(*phantom, {}, {.taps = 1, .place = place}, now, [&](const ContactSample& one) {
+      bench.contact.try_enqueue(one);
+    });
+    (void)bench.worker.drain();
+    bench.worker.judge_map();
+  }
+  bench.worker.judge_map();
+  ASSERT_EQ(bench.recorder.records.size(), 4U);
+  const auto& map = std::get<MapEstimate>(bench.recorder.records[3]);
+  EXPECT_EQ(map.report.number, 3U);
+  EXPECT_EQ(map.at, std::get<DepthEstimate>(bench.recorder.records[2]).stroke_ended_at);
+  EXPECT_EQ(bench.found.get().map, map.report);
+  EXPECT_EQ(bench.found.get().depth.number, 3U);
 }
 
 TEST(EstimatorWorkerTest, CountsWhatTheRecorderRefuses) {
@@ -63,7 +83,7 @@ TEST(EstimatorWorkerTest, CountsWhatTheRecorderRefuses) {
   (void)bench.worker.drain();
   EXPECT_EQ(bench.worker.records(), 0U);
   EXPECT_EQ(bench.worker.records_lost(), bench.recorder.records.size());
-  EXPECT_EQ(bench.depth.get().number, 1U) << "the estimate itself is not lost";
+  EXPECT_EQ(bench.found.get().depth.number, 1U) << "the estimate itself is not lost";
 }
 
 }  // namespace

@@ -144,5 +144,18 @@ TEST(PatientControlTest, ATicksRecordsEndWithWhatTheLinkSaid) {
   EXPECT_TRUE(std::holds_alternative<LinkHeard>(bench.recorder.records().back()));
 }
 
+TEST(PatientControlTest, TheMapRidesOnOneTelegramOfTwenty) {
+  Bench bench;
+  bench.in.found.map = {.number = 9, .places = 5, .depth = {7e-3, 6e-3, 8e-3}};
+  int told = 0;
+  for (int i = 0; i < 100; ++i) {
+    const MapReport& map = bench.engaged_tick(0).to_peer.site.map;
+    if (map == bench.in.found.map) ++told;
+    EXPECT_TRUE(map == bench.in.found.map || map.number == 0);
+  }
+  EXPECT_EQ(told, 5);
+  EXPECT_EQ(bench.control.status().map, bench.in.found.map);
+}
+
 }  // namespace
 }  // namespace palp::patient

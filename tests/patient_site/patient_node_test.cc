@@ -93,8 +93,8 @@ struct World {
   link::Link surgeon_link{{}, link::Couple::make_codec(false)};
   ListRecorder recorder;
   SpscQueue<ContactSample> contact{1 << 15};
-  Mailbox<DepthEstimate> depth;
-  PatientNode node{{}, {site, site, law, patient_link, recorder, contact, depth}};
+  Mailbox<Findings> found;
+  PatientNode node{{}, {site, site, law, patient_link, recorder, contact, found}};
   Telegram say;  ///< the surgeon's
   link::Arrivals heard;
   TimePoint now{};
@@ -199,7 +199,7 @@ TEST(PatientNodeTest, TheNewestDepthRidesOnEveryTelegram) {
   estimate.verdict = DepthVerdict::Found;
   estimate.depth = 10.2e-3;
   estimate.hash = 0.0689;
-  world.depth.put(estimate);
+  world.found.put({.depth = estimate, .map = {}});
   world.run(milliseconds{5});
   EXPECT_EQ(world.heard.peer.depth.number, 3U);
   EXPECT_NEAR(world.heard.peer.depth.depth, 10.2e-3, 1e-8);
@@ -428,7 +428,7 @@ TEST(PatientNodeTest, CountsThePeriodsItMissed) {
 TEST(PatientNodeTest, ATapGivesADepthAtTheSurgeons) {
   World world;
   ListRecorder stroke_recorder;
-  EstimatorWorker worker{{}, {world.contact, world.depth, stroke_recorder}};
+  EstimatorWorker worker{{}, {world.contact, world.found, stroke_recorder}};
   world.engage();
   world.say.site.place = kSiteB;
   world.move(-3e-3, milliseconds{500});

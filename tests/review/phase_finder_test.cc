@@ -21,7 +21,7 @@ TEST(PhaseFinderTest, CountsTheTapsOfEachVisit) {
   std::vector<std::pair<Site, int>> taps;
   for (const surgeon::Stretch& stretch : whole.stretches()) {
     if (stretch.kind != surgeon::StretchKind::Tap) continue;
-    const judge::PhaseTag tag = phases.at(stretch.began_at + stretch.duration / 2);
+    const judge::PhaseTag tag = phases.at(stretch.began_at + stretch.duration / 2, {});
     taps.emplace_back(tag.site, tag.index);
   }
   const std::vector<std::pair<Site, int>> expected{

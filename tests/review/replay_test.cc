@@ -161,6 +161,25 @@ TEST(ReplayTest, EstimatesComeAgainToo) {
   EXPECT_FALSE(all<DepthArrived>(files.surgeon.bytes()).empty());
 }
 
+TEST(ReplayTest, MapsComeAgainTooAndReachTheSurgeon) {
+  const Scenario scenario = make_scenario("map", *load_scenario("map")).value();
+  const Files files = session_of(scenario);
+  const Replays again = replay(files);
+  EXPECT_EQ(again.surgeon.difference, "");
+  EXPECT_EQ(again.patient.difference, "");
+  const auto maps = all<MapEstimate>(files.patient.bytes());
+  EXPECT_EQ(again.patient.maps, maps.size());
+  const auto arrived = all<MapArrived>(files.surgeon.bytes());
+  ASSERT_EQ(maps.size(), 7U) << "from the third of nine places on";
+  ASSERT_EQ(arrived.size(), maps.size());
+  EXPECT_EQ(arrived.back().report.number, maps.back().report.number);
+  EXPECT_EQ(arrived.back().report.verdict, DepthVerdict::Found);
+  EXPECT_NEAR(arrived.back().report.x.median, 17e-3, 1e-3);
+  EXPECT_NEAR(arrived.back().report.y.median, 4e-3, 1e-3);
+  EXPECT_NEAR(arrived.back().report.depth.median, 5e-3, 1e-3);
+  EXPECT_FLOAT_EQ(arrived.back().report.radius.high, maps.back().report.radius.high);
+}
+
 /// The file once more, each record as `change` wants it.
 template <class Change>
 std::vector<std::byte> altered(std::span<const std::byte> file, link::Role site, Change change) {

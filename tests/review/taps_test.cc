@@ -127,7 +127,14 @@ TEST(TapsTest, WithoutTapsOverTheInclusionThereIsNoVerdict) {
   auto taps = taps_of(sample_session());
   taps.resize(3);
   EXPECT_FALSE(overall_depth(taps));
-  EXPECT_NE(tap_table({}, overall_depth({})).find("no stroke"), std::string::npos);
+  EXPECT_NE(tap_table({}, overall_depth({}), {}).find("no stroke"), std::string::npos);
+}
+
+TEST(TapsTest, AMapSpeaksForAllPlaces) {
+  const auto taps = taps_of(sample_session());
+  const std::string text = tap_table(taps, overall_depth(taps), {.number = 9, .places = 9});
+  EXPECT_NE(text.find("all places together: No inclusion found"), std::string::npos);
+  EXPECT_EQ(text.find("over the inclusion"), std::string::npos);
 }
 
 }  // namespace

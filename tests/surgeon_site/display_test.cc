@@ -151,5 +151,13 @@ TEST(DelayAdviceTest, IsGivenAboveTheLimitOnly) {
   EXPECT_FALSE(delay_advice(status, kLimit, false));
 }
 
+TEST(DisplayTest, AMapSaysMoreThanTheLastTouch) {
+  SurgeonStatus status;
+  status.depth = {.number = 9, .verdict = DepthVerdict::Found, .depth = 7.7e-3};
+  status.map = {.number = 9, .places = 9, .verdict = DepthVerdict::None};
+  EXPECT_THAT(status_line(status), HasSubstr("no inclusion found at 9 places"));
+  EXPECT_THAT(status_line(status), Not(HasSubstr("7.7")));
+}
+
 }  // namespace
 }  // namespace palp::surgeon

@@ -1,5 +1,6 @@
 #include "surgeon_site/script_reader.h"
 
+#include <algorithm>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -65,6 +66,20 @@ TEST(ScriptReaderTest, RefusalsNameLineWordAndWhatWasExpected) {
   EXPECT_THAT(refusal("site C"), HasSubstr("PLACE 'C' is neither A, B nor X_MM,Y_MM"));
   EXPECT_THAT(refusal(""), HasSubstr("no phase"));
   EXPECT_THAT(refusal("# nothing\nsite B\n"), HasSubstr("no phase"));
+}
+
+TEST(ScriptReaderTest, ASearchSaysHowManyTapsAtMostAndWhereItBegins) {
+  const Result<GestureScript> script = parse_script("search 4 taps from 8,2\nlift 1 1", kStiffness);
+  ASSERT_TRUE(script) << script.error().text;
+  const auto taps = std::count_if(script->stretches().begin(),
+                                  script->stretches().end(),
+                                  [](const Stretch& one) { return one.kind == StretchKind::Tap; });
+  EXPECT_EQ(taps, 4);
+  EXPECT_EQ(script->at(script->length()).place, (Place{8e-3, 2e-3}));
+  EXPECT_THAT(refusal("search 2 taps from B"), HasSubstr("COUNT 2"));
+  EXPECT_THAT(refusal("search 101 taps from B"), HasSubstr("COUNT 101"));
+  EXPECT_THAT(refusal("search 4 taps"), HasSubstr("search COUNT taps from PLACE"));
+  EXPECT_THAT(refusal("press 4 1 1\nsearch 4 taps from B"), HasSubstr("lift first"));
 }
 
 TEST(ScriptReaderTest, BordersOfEveryRange) {

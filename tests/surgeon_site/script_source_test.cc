@@ -21,6 +21,7 @@ TEST(ScriptSourceTest, LoadsByNameAndByFile) {
   const ScriptSetting setting{.hand_stiffness = 300};
   EXPECT_EQ(load_script("script:standard", setting)->length(), 33700ms);
   EXPECT_TRUE(load_script("script:demo", setting));
+  EXPECT_TRUE(load_script("script:map", setting));
   const std::string path =
       ::testing::TempDir() + "palp_script_reader_test_" + std::to_string(::getpid()) + ".txt";
   std::ofstream{path} << "hold 1\nhold x\n";

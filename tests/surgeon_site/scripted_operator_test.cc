@@ -217,5 +217,75 @@ TEST(ScriptedOperatorTest, ProgressNamesThePhase) {
   EXPECT_NEAR(person.progress().done, 1.3 / 4.5, 1e-9);
 }
 
+/// A person who searches, and whose map a test makes up.
+struct Searching {
+  ScriptedOperator person{{}, ScriptBuilder{300}.hold(100ms).search(6, {}).build()};
+  FakeSession session{-10e-3};
+  std::uint32_t map{};
+  Place next{};
+  bool enough{};
+
+  void live(Duration span) {
+    for (Duration lived{}; lived < span; lived += 1ms) {
+      person.step(1ms);
+      session.step(person.pedal_held());
+      OperatorView view = session.view();
+      view.map = map;
+      view.next = next;
+      view.enough_touches = enough;
+      person.see(view);
+    }
+  }
+  /// Until the person has tapped so often that the next tap asks for the map.
+  void three_taps() {
+    live(3s);
+    const Duration start = person.script_time();
+    ASSERT_GT(start, 0ms);
+    live(person.script().stretches()[2 + 3 * 3].began_at - start);
+  }
+};
+
+TEST(ScriptedOperatorTest, ASearchTapsWhereTheMapProposes) {
+  Searching one;
+  one.three_taps();
+  one.map = 3;
+  one.next = {30e-3, -5e-3};
+  one.live(2s);
+  EXPECT_EQ(one.person.intent().place, one.next);
+  const Place before = one.next;
+  one.next = {1e-3, 2e-3};
+  one.map = 4;
+  EXPECT_EQ(one.person.intent().place, before) << "a tap is where it is";
+  one.live(2500ms);
+  EXPECT_EQ(one.person.intent().place, one.next);
+}
+
+TEST(ScriptedOperatorTest, ASearchWaitsForTheNewsOfItsLastTapAndNotForEver) {
+  Searching one;
+  one.map = 3;
+  one.next = {30e-3, 0};
+  one.three_taps();
+  one.live(3s);
+  const Duration waits_at = one.person.script().stretches()[2 + 3 * 4].began_at;
+  EXPECT_NEAR(seconds(one.person.script_time()), seconds(waits_at), 0.01);
+  one.live(2s);
+  EXPECT_NEAR(seconds(one.person.script_time()), seconds(waits_at), 0.01);
+  one.live(4s);
+  EXPECT_GT(one.person.script_time(), waits_at + 500ms);
+}
+
+TEST(ScriptedOperatorTest, ASearchEndsWhereTheMapSaysEnough) {
+  Searching one;
+  one.three_taps();
+  const Place last = one.person.intent().place;
+  one.map = 3;
+  one.enough = true;
+  one.live(2ms);
+  EXPECT_NEAR(distance(one.person.intent().place, last), 0, 1e-4) << "no jump";
+  one.live(1500ms);
+  EXPECT_TRUE(one.person.progress().finished);
+  EXPECT_EQ(one.person.intent().place, Place{});
+}
+
 }  // namespace
 }  // namespace palp::surgeon

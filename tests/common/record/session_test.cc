@@ -32,7 +32,7 @@ Record any_record(Role site) {
     return one;
   };
   const bool surgeon = site == Role::Surgeon;
-  switch (draw.below(11)) {
+  switch (draw.below(12)) {
     case 0:
       return any(SiteTick{});
     case 1:
@@ -53,6 +53,8 @@ Record any_record(Role site) {
       return any(UserAsked{});
     case 9:
       return any(DevicesTold{});
+    case 10:
+      return surgeon ? any(MapArrived{}) : any(MapEstimate{});
     default:
       if (surgeon) return any(PlantTruth{});
       return any(ForceReading{});

@@ -50,7 +50,7 @@ TEST(LocateStudyTest, ReportsCountWhatWasFoundAndWhatWasNot) {
   EXPECT_THAT(report, testing::HasSubstr("\"false_alarm_rate\": 0.5"));
   EXPECT_THAT(report, testing::HasSubstr("\"coverage95\": 0.0"));
   EXPECT_THAT(locate_table(study, cases), testing::HasSubstr("false alarms 50.00 %"));
-  const std::string csv = locate_csv(cases);
+  const std::string csv = locate_csv(study, cases);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
   EXPECT_EQ(locate_figure(cases).panels.size(), 3U);
 }

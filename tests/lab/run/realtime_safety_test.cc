@@ -239,12 +239,12 @@ class WarmUp {
   patient::SimulatedPhantom tissue_{scenario_.phantom, scenario_.tissue};
   coupling::PatientCoupling patient_law_{*coupling::make_patient_coupling(scenario_.coupling)};
   SpscQueue<ContactSample> contact_{kContactQueue};
-  Mailbox<DepthEstimate> depth_;
+  Mailbox<Findings> found_;
   patient::PatientNode patient_{
       scenario_.patient,
-      {tissue_, tissue_, patient_law_, patient_link_, patient_desk_.recorder(), contact_, depth_}};
+      {tissue_, tissue_, patient_law_, patient_link_, patient_desk_.recorder(), contact_, found_}};
   record::QueueRecorder estimates_;
-  patient::EstimatorWorker estimator_{scenario_.estimator, {contact_, depth_, estimates_}};
+  patient::EstimatorWorker estimator_{scenario_.estimator, {contact_, found_, estimates_}};
   double contact_force_max_{};  ///< [N]
 };
 

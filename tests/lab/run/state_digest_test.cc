@@ -74,6 +74,8 @@ TEST(StateDigestTest, EachNumberOfEachRecordCounts) {
     expect_each_member_counts<Transition>(seed);
     expect_each_member_counts<DepthEstimate>(seed);
     expect_each_member_counts<DepthArrived>(seed);
+    expect_each_member_counts<MapEstimate>(seed);
+    expect_each_member_counts<MapArrived>(seed);
   }
 }
 

@@ -1,0 +1,72 @@
+#include "lab/plan/locate_session.h"
+
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "common/core/conventions.h"
+#include "lab/plan/scenario_file.h"
+
+namespace palp::lab {
+namespace {
+
+constexpr double kTissueKpa = 15.3;  // of the database
+
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...) {
+  std::array<char, 200> text{};
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text.data(), text.size(), format, arguments);
+  va_end(arguments);
+  return text.data();
+}
+
+std::string words_of(const LocateSession& session,
+                     const depth::DepthDatabase::Query* ball,
+                     const Place& axis) {
+  std::string words = formatted("block e_kpa=%.9g", session.scale * kTissueKpa);
+  if (session.spread > 0) {
+    words += formatted(" varies=%.9g length=10 seed=%llu",
+                       session.spread,
+                       static_cast<unsigned long long>(session.seed >> 12U));
+  }
+  if (ball == nullptr) return words;
+  return words + formatted("; ball depth=%.9g radius=%.9g ratio=%.9g at=%.9g,%.9g",
+                           ball->depth / kMillimetre,
+                           ball->radius / kMillimetre,
+                           ball->ratio,
+                           (kSiteB.x + axis.x) / kMillimetre,
+                           (kSiteB.y + axis.y) / kMillimetre);
+}
+
+}  // namespace
+
+double reach_of(const std::string& script) noexcept { return script == "search" ? 15e-3 : 10e-3; }
+
+Result<Scenario> locate_scenario(const LocateSession& session,
+                                 const depth::DepthDatabase::Query* ball,
+                                 const Place& axis) {
+  auto document = load_scenario("standard");
+  if (!document) return tl::unexpected(document.error());
+  const std::string delay = formatted("%.9g", 500 * session.round_trip);
+  const std::string loss = formatted("%.9g", session.loss);
+  for (const auto& [path, value] : std::vector<std::pair<std::string, std::string>>{
+           {"surgeon.hand.master", "script:" + session.script},
+           {"patient.simulated_phantom.phantom", words_of(session, ball, axis)},
+           {"patient.estimator.place_spread", formatted("%.9g", session.assumed_spread)},
+           {"up.delay_ms", delay},
+           {"down.delay_ms", delay},
+           {"up.loss", loss},
+           {"down.loss", loss}}) {
+    if (auto done = document->set(path, value, path); !done) return tl::unexpected(done.error());
+  }
+  auto scenario = make_scenario("locate", *document);
+  if (!scenario) return scenario;
+  scenario->bare = true;
+  scenario->seed = session.seed >> 16U;
+  return scenario;
+}
+
+}  // namespace palp::lab
