@@ -57,6 +57,7 @@ AxisCheck::Flaw AxisCheck::begin() {
   port_.close();
   DeviceInstallation slow = with_any_zero(plan_.installation);
   slow.speed_max = std::min(slow.speed_max, kSpeed);
+  slow.servo.time = Duration::max();  // it looks for stops, and stands at them
   device_ = std::make_unique<RegisterDevice>(plan_.profile, slow, port_);
   now_ = {};
   const TimePoint end = clock_.now() + kReadyPatience;

@@ -19,6 +19,7 @@ constexpr double kLeft = 0.2e-3;     // [m], outwards: the tip was moved out
 constexpr double kOutside = 0.5e-3;  // [m], of the learned surface: more than its error
 constexpr double kInside = 1e-3;     // [m], the same to the other side, and some force
 constexpr double kRetractedWithin = 50e-6;  // [m]
+constexpr double kTooDeep = 2e-3;           // [m], more than a servo overshoots
 
 }  // namespace
 
@@ -94,10 +95,18 @@ bool MotionGate::retracted(double tip) const noexcept {
   return tip <= clear_position() + kRetractedWithin;
 }
 
+double MotionGate::deepest() const noexcept {
+  const double deepest =
+      surface_ ? std::min(config_.travel_max, *surface_ + config_.depth_max) : config_.travel_max;
+  return std::max(deepest, config_.travel_min);
+}
+
 double MotionGate::within_limits(double position) const noexcept {
-  double deepest = config_.travel_max;
-  if (surface_) deepest = std::min(deepest, *surface_ + config_.depth_max);
-  return std::clamp(position, config_.travel_min, std::max(deepest, config_.travel_min));
+  return std::clamp(position, config_.travel_min, deepest());
+}
+
+bool MotionGate::too_deep(double tip) const noexcept {
+  return tip > std::max(deepest(), command_) + kTooDeep;
 }
 
 double MotionGate::speed_limit() const noexcept {

@@ -86,6 +86,8 @@ class MotionGate {
 
   /// No contact felt, or the tip well outside: the stage may begin to follow, or change its place.
   [[nodiscard]] bool free_to_follow(double tip) const noexcept;
+  /// Clearly deeper than anything that was ever commanded.
+  [[nodiscard]] bool too_deep(double tip) const noexcept;
   /// Clearly deeper than the surface that was felt at this place.
   [[nodiscard]] bool inside(double tip) const noexcept;
   /// The retraction is over.
@@ -102,6 +104,7 @@ class MotionGate {
   void move_out(double tip, double target, double speed, double dt) noexcept;
   void hold() noexcept;
   [[nodiscard]] double speed_limit() const noexcept;
+  [[nodiscard]] double deepest() const noexcept;
   [[nodiscard]] double within_limits(double position) const noexcept;
   [[nodiscard]] double clear_position() const noexcept;
   [[nodiscard]] bool outside(double tip) const noexcept;

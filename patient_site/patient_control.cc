@@ -86,23 +86,24 @@ void PatientControl::take_force(const std::optional<ForceSample>& read) noexcept
       force_sampled_at_ = std::max(force_sampled_at_, read->sampled_at);
     }
   }
-  find_fault(now_.at - force_sampled_at_ > config_.sensor_stale, NoteCode::SensorSilent);
+  // What the site slept through was no silence of the sensor's.
+  const TimePoint heard_at = std::max(force_sampled_at_, awake_since_);
+  find_fault(now_.at - heard_at > config_.sensor_stale, NoteCode::SensorSilent);
 }
 
-/// Only while the tip has somewhere to go: the state is that of the tick before, and so the target.
+/// The state is that of the tick before, and so the target.
 void PatientControl::watch_devices(const Lapse& lapse) noexcept {
-  if (now_.state != SiteState::Engaged) {
-    watch_.reset();
-    return;
-  }
+  if (!begun_ || !gate_begun_) return;
   const DeviceWatch::Stuck stuck = watch_.judge({.tip = now_.position,
                                                  .target = now_.command,
                                                  .force = now_.contact_force,
+                                                 .at = now_.at,
                                                  .felt_at = force_sampled_at_,
-                                                 .in_tissue = gate_.inside(now_.position)},
+                                                 .in_tissue = gate_.inside(now_.position),
+                                                 .follows = now_.state == SiteState::Engaged},
                                                 lapse);
   find_fault(stuck.sensor, NoteCode::SensorStuck);
-  find_fault(stuck.stage, NoteCode::StageStuck);
+  find_fault(stuck.stage || gate_.too_deep(now_.position), NoteCode::StageStuck);
 }
 
 SupervisorOutput PatientControl::supervise(const PatientInputs& given,
@@ -115,7 +116,9 @@ SupervisorOutput PatientControl::supervise(const PatientInputs& given,
   in.emergency_stop = given.user.emergency_stop;
   in.device_fault = device_fault_;
   in.overslept = lapse.passed() > kLateMax;
-  in.force_exceeded = now_.contact_force > config_.gate.force_stop;
+  // No tissue pulls like that: the sensor's sign is wrong, or something holds the tip.
+  in.force_exceeded = now_.contact_force > config_.gate.force_stop ||
+                      now_.contact_force < -config_.gate.force_limit;
   in.local_reset = given.user.resets != resets_;
   in.free_to_follow = gate_.free_to_follow(now_.position);
   in.retracted = gate_.retracted(now_.position);
@@ -176,6 +179,7 @@ MotionAnswer PatientControl::limit(double target, const Place& place, const Laps
 PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
   const Lapse lapse = account_.begin_tick(in.now);
   now_.at = in.now;
+  if (lapse.passed() > kLateMax) awake_since_ = in.now;
   device_fault_ = NoteCode::None;
   take_stage(in.stage);
   take_force(in.force);

@@ -108,7 +108,8 @@ class PatientControl {
   bool session_began_{};  ///< or ended, in this tick
   TimePoint stage_sampled_at_{};
   TimePoint force_sampled_at_{};
-  std::uint32_t resets_{};  ///< last heard of
+  TimePoint awake_since_{};  ///< the site stood still, until then
+  std::uint32_t resets_{};   ///< last heard of
 };
 
 }  // namespace palp::patient

@@ -31,7 +31,7 @@ constexpr std::array kTexts{
     Text{NoteCode::LocalReset, "reset on the spot"},
     Text{NoteCode::TickLate, "this site's program stood still: press the pedal again"},
     Text{NoteCode::StageStuck, "the stage does not go where it is sent"},
-    Text{NoteCode::SensorStuck, "the force sensor reads the same while the tip moves in contact"},
+    Text{NoteCode::SensorStuck, "the force sensor does not follow the tip in contact"},
     Text{NoteCode::SensorSilent, "the force sensor is silent"},
     Text{NoteCode::SensorSaturated, "the force sensor is at the end of its range"},
     Text{NoteCode::EngageRefusedForce, "engagement refused: contact force too high"},

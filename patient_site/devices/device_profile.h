@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/core/time.h"
+#include "patient_site/servo_watch.h"
 
 /// What a Modbus device is, as its register table says: registers, words, units, steps of its
 /// start, conditions of its health. Plain data; a lab writes it as text.
@@ -111,6 +112,8 @@ struct DeviceInstallation {
   double tare_noise{0.1};      ///< [N], rms; more than quiet air
   Duration tare_time{std::chrono::seconds{1}};
   Duration stuck_after{};  ///< the same force for so long; 0: never
+  /// Its drive is stopped then. The site, which knows more, has stopped before.
+  ServoWatchConfig servo{.error = 1.5e-3, .time = std::chrono::milliseconds{500}};
 };
 
 }  // namespace palp::patient

@@ -58,6 +58,8 @@ std::string describe_reason(const DeviceReading& reading, const DeviceProfile& p
       return "the reading is at the end of its range";
     case DeviceReason::OutOfReach:
       return "its position is far outside its travel: are unit and word order the device's?";
+    case DeviceReason::NotWhereSent:
+      return "it does not go where it is sent";
   }
   return "?";
 }

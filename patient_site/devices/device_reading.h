@@ -29,10 +29,11 @@ enum class DeviceReason : std::uint8_t {
   NoLife,           ///< answers, and its life word stands still
   NotFinite,
   Stuck,
-  Jumped,      ///< a position that no motion leads to
-  Touched,     ///< the tare was refused
-  Overloaded,  ///< its force is at the end of its range from the start on
-  OutOfReach   ///< far outside its travel: unit or word order are not the device's
+  Jumped,       ///< a position that no motion leads to
+  Touched,      ///< the tare was refused
+  Overloaded,   ///< its force is at the end of its range from the start on
+  OutOfReach,   ///< far outside its travel: unit or word order are not the device's
+  NotWhereSent  ///< stands, or moves, elsewhere
 };
 
 /// Newest state of a device, as it crosses threads.

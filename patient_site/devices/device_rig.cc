@@ -122,11 +122,16 @@ std::vector<DeviceNews> DeviceRig::news() {
   }
   for (std::size_t i = 0; i < threads_.size(); ++i) {
     const DeviceReading& reading = threads_[i]->status();
-    const Known before = std::exchange(known_[i], {reading.state, reading.reason, reading.tare});
+    const std::uint32_t silences = threads_[i]->silences();
+    const Known before =
+        std::exchange(known_[i], {reading.state, reading.reason, reading.tare, silences});
     if (before.state != reading.state || before.reason != reading.reason) {
       all.push_back({sentence_of(*threads_[i]), reading.reason == DeviceReason::None});
     }
     const std::string who = threads_[i]->name() + " (" + threads_[i]->profile().name + ")";
+    if (before.silences != silences) {
+      all.push_back({who + ": its answers came too late for the site", false});
+    }
     if (auto news = tare_news(who, before.tare, reading.tare)) all.push_back(std::move(*news));
   }
   return all;

@@ -48,6 +48,7 @@ class DeviceRig {
     DeviceState state{};
     DeviceReason reason{};
     TareNews tare;
+    std::uint32_t silences{};
   };
 
   std::vector<std::unique_ptr<DeviceThread>> threads_;

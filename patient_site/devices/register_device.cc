@@ -34,7 +34,8 @@ RegisterDevice::RegisterDevice(DeviceProfile profile,
       words_{profile_.read_address, profile_.read_count},
       state_{profile_.state_address, profile_.state_count},
       load_{installation},
-      seen_{.jumps = JumpAllowance{kJumpSpeed * installation.speed_max}} {
+      seen_{.jumps = JumpAllowance{kJumpSpeed * installation.speed_max}},
+      servo_{installation.servo} {
   if (profile_.position && installation_.position_unit > 0) {
     profile_.position->unit = installation_.position_unit;
   }
@@ -228,6 +229,15 @@ void RegisterDevice::judge(TimePoint now) {
   if (now_.state != DeviceState::Ready) return;
   if (const auto index = unhealthy()) fail(DeviceReason::NotHealthy, *index);
   if (profile_.life && now - lived_at_ > profile_.life_within) fail(DeviceReason::NoLife, 0);
+  watch_motion();
+}
+
+/// Whatever state the site is in: also while it holds, or has stopped, and the axis does not.
+void RegisterDevice::watch_motion() noexcept {
+  if (now_.state != DeviceState::Ready || !profile_.position || profile_.move.empty()) return;
+  if (servo_.judge(now_.position, delivered_.command, profile_.period)) {
+    fail(DeviceReason::NotWhereSent, 0);
+  }
 }
 
 void RegisterDevice::next_step(TimePoint now) noexcept {
@@ -278,6 +288,7 @@ void RegisterDevice::proceed(TimePoint now) {
 
 void RegisterDevice::begin_motion(TimePoint now) noexcept {
   motion_ = delivered_ = {.command = now_.position, .velocity = 0};
+  servo_.reset();
   steered_at_ = now;
 }
 

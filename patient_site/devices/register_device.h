@@ -15,6 +15,7 @@
 #include "patient_site/devices/load_check.h"
 #include "patient_site/devices/register_words.h"
 #include "patient_site/plane_motion.h"
+#include "patient_site/servo_watch.h"
 
 namespace palp::patient {
 
@@ -56,6 +57,7 @@ class RegisterDevice {
   void take_position(TimePoint sampled_at);
   void take_force(TimePoint sampled_at);
   void judge(TimePoint now);
+  void watch_motion() noexcept;
   [[nodiscard]] bool meets(const RegisterCondition& condition) const noexcept;
   [[nodiscard]] std::optional<std::uint32_t> unhealthy() const noexcept;
   void proceed(TimePoint now);
@@ -91,6 +93,7 @@ class RegisterDevice {
   Seen seen_;
   AxisMotion motion_;     ///< commanded
   AxisMotion delivered_;  ///< the last of them that arrived
+  ServoWatch servo_;      ///< of the axis, to what was delivered
   TimePoint steered_at_{};
   std::array<std::uint16_t, 2> sent_{};  ///< last target, in words
   bool anything_sent_{};

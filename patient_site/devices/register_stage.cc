@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/core/lapse.h"
+
 namespace palp::patient {
 namespace {
 
@@ -42,15 +44,24 @@ void DeviceThread::cycle() {
   to_main_.put(reading);
 }
 
+/// The device's thread may itself be stuck in a call: age is judged here. While the caller stood
+/// still so did that thread, perhaps.
+bool RegisterStage::silent(std::size_t index, const DeviceReading& axis, TimePoint now) noexcept {
+  const TimePoint heard_at = std::max(axis.sampled_at, awake_since_);
+  const bool silent =
+      axis.state == DeviceState::Ready && now - heard_at > axes_[index]->profile().silence;
+  if (!std::exchange(silent_[index], silent) && silent) axes_[index]->count_silence();
+  return silent;
+}
+
 StageState RegisterStage::read(TimePoint now) noexcept {
+  if (now - at_ > kLateMax) awake_since_ = now;
   at_ = now;
   StageState state{.sampled_at = now};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (axes_[i] == nullptr) continue;
     const DeviceReading& axis = axes_[i]->reading();
-    // The device's thread may itself be stuck in a call: age is judged here.
-    state.faulted = state.faulted || axis.state != DeviceState::Ready ||
-                    now - axis.sampled_at > axes_[i]->profile().silence;
+    state.faulted = state.faulted || axis.state != DeviceState::Ready || silent(i, axis, now);
     state.at_limit = state.at_limit || axis.at_limit;
     if (i == 0) {
       state.sampled_at = std::min(now, axis.sampled_at);

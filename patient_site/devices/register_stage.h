@@ -37,8 +37,13 @@ class DeviceThread {
   /// Thread: rt. The newest, wait-free.
   [[nodiscard]] const DeviceReading& reading() noexcept { return to_rt_.get(); }
   void command(const DeviceCommand& command) noexcept { command_.put(command); }
+  /// It was ready, and its newest reading was too old: it may be stuck in a call.
+  void count_silence() noexcept { silences_.fetch_add(1, std::memory_order_relaxed); }
   /// Thread: main.
   [[nodiscard]] const DeviceReading& status() noexcept { return to_main_.get(); }
+  [[nodiscard]] std::uint32_t silences() const noexcept {
+    return silences_.load(std::memory_order_relaxed);
+  }
   /// Threads: main and rt, each its own.
   [[nodiscard]] DeviceRequests& requests() noexcept { return requests_; }
   /// Thread: any.
@@ -56,6 +61,7 @@ class DeviceThread {
   Mailbox<DeviceReading> to_main_;  ///< writer: device; reader: main
   Mailbox<DeviceCommand> command_;  ///< writer: rt; reader: device
   DeviceRequests requests_;
+  std::atomic<std::uint32_t> silences_{};
   io::PeriodicThread thread_;  ///< last: it uses all of the above
 };
 
@@ -72,9 +78,13 @@ class RegisterStage final : public Stage {
   void halt() noexcept override;
 
  private:
+  [[nodiscard]] bool silent(std::size_t index, const DeviceReading& axis, TimePoint now) noexcept;
+
   std::array<DeviceThread*, 3> axes_;
   StageFacts facts_;
-  TimePoint at_{};  ///< of the last read
+  TimePoint at_{};                ///< of the last read
+  TimePoint awake_since_{};       ///< the caller stood still, until then
+  std::array<bool, 3> silent_{};  ///< at the last read
 };
 
 /// The reading of a load cell, or of an axis that feels its own load. Thread: rt; `cell` outlives

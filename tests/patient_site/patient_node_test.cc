@@ -28,6 +28,8 @@ class FaultySite final : public Stage, public ForceSensor {
   StageState read(TimePoint now) noexcept override {
     StageState state = site_.read(now);
     if (stage_gives_nan) state.position = std::nan("");
+    if (stage_creep != 0) state.position = (crept_ += 1e-3 * stage_creep);
+    crept_ = state.position;
     state.faulted = stage_faulted;
     return state;
   }
@@ -54,6 +56,7 @@ class FaultySite final : public Stage, public ForceSensor {
   bool stage_gives_nan{};
   bool stage_faulted{};
   bool stage_stuck{};
+  double stage_creep{};  ///< [m/s], wherever it is sent
   bool silent{};
   bool saturated{};
   bool halted{};
@@ -63,6 +66,7 @@ class FaultySite final : public Stage, public ForceSensor {
  private:
   SimulatedPhantom& site_;
   StageTarget target_;
+  double crept_{};  ///< [m]
 };
 
 class ListRecorder final : public record::Recorder {
@@ -296,6 +300,37 @@ TEST(PatientNodeTest, AStageThatDoesNotFollowStopsTheSite) {
   world.run(milliseconds{150});
   EXPECT_EQ(world.status().state, SiteState::Stopped);
   EXPECT_EQ(world.status().reason, NoteCode::StageStuck);
+}
+
+TEST(PatientNodeTest, AStageThatRunsAwayStopsTheSiteWhateverItsStateWas) {
+  for (const double speed : {10e-3, 100e-3, -10e-3, -100e-3}) {
+    for (const SiteState state : {SiteState::Engaged, SiteState::Clutched, SiteState::Parked}) {
+      World world;
+      if (state == SiteState::Engaged) world.engage();
+      if (state == SiteState::Clutched) world.say.site.state = state;
+      world.silent = state == SiteState::Parked;
+      world.run(milliseconds{300});
+      ASSERT_EQ(world.status().state, state);
+      const double began = world.status().position;
+      world.site.stage_creep = speed;
+      world.run(milliseconds{900});
+      EXPECT_EQ(world.status().reason, NoteCode::StageStuck) << speed;
+      EXPECT_EQ(world.status().state, SiteState::Stopped) << speed;
+      EXPECT_NE(began, world.status().position);
+    }
+  }
+}
+
+TEST(PatientNodeTest, APullBeyondTheLimitStopsTheSite) {
+  World world;
+  world.engage();
+  world.site.force = -2.9;
+  world.run(milliseconds{100});
+  EXPECT_EQ(world.status().state, SiteState::Engaged);
+  world.site.force = -3.1;
+  world.run(milliseconds{2});
+  EXPECT_EQ(world.status().state, SiteState::Stopped);
+  EXPECT_EQ(world.status().reason, NoteCode::ForceLimit);
 }
 
 TEST(PatientNodeTest, AShortSilenceOfTheSensorIsNoFault) {

@@ -148,6 +148,27 @@ TEST(RegisterDeviceTest, APositionThatJumpsIsAFault) {
   EXPECT_EQ(axis.why(), "the position jumped");
 }
 
+TEST(RegisterDeviceTest, AnAxisThatDoesNotGoWhereItIsSentIsToldToStop) {
+  for (const bool held : {false, true}) {
+    MakerAxis axis;
+    axis.port.words[0x9001] = 5000;
+    axis.cycles(20);
+    axis.move(0.005);
+    axis.cycles(30);
+    ASSERT_EQ(axis.reading.state, DeviceState::Ready);
+    axis.port.written = [](std::uint16_t) {};  // It heeds nothing from here on, and creeps.
+    if (held) axis.command.move = false;
+    int cycles = 0;
+    for (; axis.reading.state == DeviceState::Ready && cycles < 400; ++cycles) {
+      axis.port.words[0x9001] = static_cast<std::uint16_t>(axis.port.words[0x9001] - 8);
+      axis.cycles(1);
+    }
+    EXPECT_EQ(axis.why(), "it does not go where it is sent") << held;
+    EXPECT_TRUE(axis.port.coils[0x42C]) << "told to stop";
+    EXPECT_LT(std::abs(axis.reading.position - 0.005), 9e-3) << held;
+  }
+}
+
 TEST(RegisterDeviceTest, OneRequestMovesAndReadsWhereTheDeviceCan) {
   MakerAxis axis{"orca"};
   axis.port.words[342] = 50'000;

@@ -73,7 +73,17 @@ TEST(RegisterStageTest, AnOldReadingIsAFaultWhateverItsThreadSays) {
   RegisterStage stage{{&axis, nullptr, nullptr}, StageFacts{}};
   const io::SteadyClock clock;
   ASSERT_TRUE(wait_for([&] { return !stage.read(clock.now()).faulted; }));
-  EXPECT_TRUE(stage.read(clock.now() + std::chrono::minutes{1}).faulted);
+  const TimePoint later = clock.now() + std::chrono::minutes{1};
+  EXPECT_FALSE(stage.read(later).faulted) << "the caller slept, and so may its thread have done";
+  const Duration silence = axis.profile().silence;
+  constexpr Duration kTick = std::chrono::milliseconds{1};
+  for (Duration past = kTick; past <= silence; past += kTick) {
+    EXPECT_FALSE(stage.read(later + past).faulted);
+  }
+  EXPECT_EQ(axis.silences(), 0);
+  EXPECT_TRUE(stage.read(later + silence + kTick).faulted);
+  EXPECT_TRUE(stage.read(later + silence + 2 * kTick).faulted);
+  EXPECT_EQ(axis.silences(), 1) << "told once";
 }
 
 TEST(RegisterStageTest, AStageWithAnAxisThatIsNotThereIsFaulted) {
