@@ -33,6 +33,7 @@ std::optional<MapEstimator> make_map(const DepthEstimatorConfig& config) {
 
 DepthEstimatorConfig with_devices(DepthEstimatorConfig config, const PatientDevices& devices) {
   config.strokes.sensor = devices.sensor;
+  config.strokes.stage_rate = devices.stage.rate;
   config.map.travel = std::min(config.map.travel, devices.stage.travel_side);
   return config;
 }

@@ -132,6 +132,10 @@ void NormalEquations::add(std::span<const TouchSample> touch, const Reading& rea
     const double rate = (sample.tip - touch[i - 1].tip) / sample.span;
     const Columns& x = pole.step(columns_at(reading.basis, indentation, rate), sample.span);
     since_deep = indentation > kDeepestPoint ? 0 : since_deep + sample.span;
+    if (!sample.read) {
+      finish();  // the next one lies far from those before
+      continue;
+    }
     if (since_deep < kSettled || !(x[0] > 0)) continue;
     double weight = 1 / (reading.noise * reading.noise);
     double told = weight * sample.force;  // weight times what the sample says of the force

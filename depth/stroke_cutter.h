@@ -15,6 +15,7 @@ struct StrokeSample {
   double tip{};            ///< [m], stage position, unfiltered
   double position{};       ///< [m], the same behind the transducer's pole and the 20 Hz filter
   double force{};          ///< [N], behind the transducer's pole and the 20 Hz filter
+  bool read{true};         ///< the force is a reading, and does not lie between two
 };
 
 struct StrokeCutterConfig {

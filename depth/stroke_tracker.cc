@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "common/core/check.h"
 #include "depth/cubic_fit.h"
@@ -35,6 +36,9 @@ StrokeTracker::StrokeTracker(const StrokeTrackerConfig& config)
                .force_range = config.sensor.range,
                .change_force = config.change_force,
                .surface = config.surface},
+      aligner_{{.period = config.period,
+                .stage_rate = config.stage_rate,
+                .sensor_rate = config.sensor.rate}},
       cutter_{config.cutter},
       co_filter_{config.sensor.pole, config.period},
       position_filter_{config.filter_cut_off, config.period},
@@ -48,6 +52,16 @@ std::optional<Stroke> StrokeTracker::take(const ContactSample& sample) {
   if (!std::isfinite(sample.position) || !std::isfinite(sample.force) || !is_finite(sample.place)) {
     return std::nullopt;
   }
+  aligner_.add(sample);
+  std::optional<Stroke> stroke;
+  while (const auto aligned = aligner_.take()) {
+    if (auto seen = follow(*aligned)) stroke = std::move(seen);
+  }
+  return stroke;
+}
+
+std::optional<Stroke> StrokeTracker::follow(const AlignedSample& aligned) {
+  const ContactSample& sample = aligned.sample;
   const bool follows = previous_ && sample.at > previous_->at &&
                        sample.at - previous_->at <= config_.gap_max &&
                        config_.same_place(sample.place, began_);
@@ -57,7 +71,7 @@ std::optional<Stroke> StrokeTracker::take(const ContactSample& sample) {
     previous_.reset();
     began_ = sample.place;
   }
-  const StrokeCutter::Event event = cutter_.add(filter(sample));
+  const StrokeCutter::Event event = cutter_.add(filter(aligned));
   previous_ = sample;
   if (event == StrokeCutter::Event::Released && learning_) {
     places_[*learning_].learn_unloading(cutter_, reading_);
@@ -67,8 +81,9 @@ std::optional<Stroke> StrokeTracker::take(const ContactSample& sample) {
   return describe_stroke();
 }
 
-StrokeSample StrokeTracker::filter(const ContactSample& sample) noexcept {
-  StrokeSample out{.measured = sample, .tip = sample.position};
+StrokeSample StrokeTracker::filter(const AlignedSample& aligned) noexcept {
+  const ContactSample& sample = aligned.sample;
+  StrokeSample out{.measured = sample, .tip = sample.position, .read = aligned.read};
   if (previous_) {
     out.position = position_filter_.step(co_filter_.step(sample.position));
     out.force = force_filter_.step(sample.force);

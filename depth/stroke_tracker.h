@@ -9,6 +9,7 @@
 #include "common/core/filters.h"
 #include "common/core/time.h"
 #include "common/message/depth.h"
+#include "depth/reading_aligner.h"
 #include "depth/stroke.h"
 #include "depth/stroke_cutter.h"
 #include "depth/surface.h"
@@ -20,6 +21,7 @@ struct StrokeTrackerConfig {
   ForceSensorFacts sensor{};      ///< whose forces these are
   double filter_cut_off{20};      ///< [Hz], low pass of the paper (section III)
   double period{1e-3};            ///< [s], of the samples
+  double stage_rate{1000};        ///< [Hz], of the tip's readings
   double fit_range{4e-3};         ///< [m], of eq. (2): reproduces the paper's hash values
   double noise_max{0.1};          ///< [N], rms of a sample: five times the transducer's
   std::size_t samples_min{30};    ///< of a stroke, in contact
@@ -65,7 +67,8 @@ class StrokeTracker {
     bool saturated{};
   };
 
-  [[nodiscard]] StrokeSample filter(const ContactSample& sample) noexcept;
+  [[nodiscard]] std::optional<Stroke> follow(const AlignedSample& aligned);
+  [[nodiscard]] StrokeSample filter(const AlignedSample& aligned) noexcept;
   [[nodiscard]] Measured measure() const noexcept;
   [[nodiscard]] std::size_t find_place(const Place& place, double first_contact);
   [[nodiscard]] Stroke describe_stroke();
@@ -74,6 +77,7 @@ class StrokeTracker {
 
   StrokeTrackerConfig config_;
   PlaceReading reading_;
+  ReadingAligner aligner_;
   StrokeCutter cutter_;
   LowPass co_filter_;  ///< of the tip: the sensor's pole, as the force has it
   LowPass position_filter_;

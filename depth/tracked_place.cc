@@ -161,12 +161,17 @@ Touch TrackedPlace::touch_of(const StrokeCutter& stroke, double force_range) con
   const std::size_t stride = 1 + (samples.size() - first) / kTouchSamplesMax;
   Touch out;
   out.reserve((samples.size() - first) / stride + 1);
-  for (std::size_t i = first; i < samples.size(); i += stride) {
+  std::size_t before = first - 1;
+  for (std::size_t i = first; i < samples.size(); ++i) {
+    // A reading among samples that are none is not thinned.
+    const bool alone = samples[i].read && !samples[i - 1].read;
+    if ((i - first) % stride != 0 && !alone) continue;
     if (std::abs(samples[i].measured.force) >= force_range) break;
-    const std::size_t before = i < first + stride ? i - 1 : i - stride;
     out.push_back({.tip = samples[i].tip,
                    .force = samples[i].measured.force,
-                   .span = seconds(samples[i].measured.at - samples[before].measured.at)});
+                   .span = seconds(samples[i].measured.at - samples[before].measured.at),
+                   .read = samples[i].read});
+    before = i;
   }
   return out;
 }
@@ -205,13 +210,14 @@ TrackedPlace::Branch TrackedPlace::branch_curve(const StrokeCutter& stroke,
                    law->force(sample.position - law->surface) * (1 + law->rate_factor * rate) +
                    bias;
       const double rest = sample.measured.force - sensed - offset;
-      if (loading) squares += rest * rest;
+      if (loading && sample.read) squares += rest * rest;
       // In the air the steps hide most of the noise.
-      if (loading && sensed > reading.force_quantum) {
+      if (loading && sample.read && sensed > reading.force_quantum) {
         out.contact_squares += rest * rest;
         out.contact_count += 1;
       }
     }
+    if (!sample.read) continue;
     count += loading ? 1 : 0;
     if (loading == (branch == ContactCurve::Branch::Loading)) {
       out.curve.add(branch, sample.position, sample.force - correction, rate);
