@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -30,6 +31,8 @@ class FeltStiffness {
     if (!takes(indentation, velocity)) return;
     felt_.add(indentation, felt);
     if (truth) truth_.add(indentation, *truth);
+    deepest_ = std::max(deepest_, indentation);
+    if (truth) most_ = std::max(most_, *truth);
   }
 
   /// [N/m]; nullopt: too few ticks, or all at one position.
@@ -38,6 +41,13 @@ class FeltStiffness {
   [[nodiscard]] std::optional<double> truth() const noexcept {
     return truth_.count() == felt_.count() ? slope(truth_) : std::nullopt;
   }
+  /// [m^2], sum of squares of the indentations about their mean; and their root mean [m].
+  [[nodiscard]] double spread() const noexcept { return felt_.spread(); }
+  [[nodiscard]] double deviation() const noexcept {
+    return std::sqrt(felt_.spread() / static_cast<double>(std::max<std::size_t>(1, felt_.count())));
+  }
+  [[nodiscard]] double deepest() const noexcept { return deepest_; }  ///< [m], of the ticks taken
+  [[nodiscard]] double truth_most() const noexcept { return most_; }  ///< [N], likewise
   /// felt / truth - 1 [-]; nullopt: one of them is, or there is no tissue.
   [[nodiscard]] std::optional<double> error() const noexcept {
     const auto given = felt();
@@ -52,6 +62,8 @@ class FeltStiffness {
     return line.slope();
   }
 
+  double deepest_{};  ///< [m]
+  double most_{};     ///< [N]
   LineFit felt_;
   LineFit truth_;
 };

@@ -44,8 +44,12 @@ struct RunTick {
 };
 
 struct MetricsConfig {
-  double force_cap{8.5};  ///< [N], of the haptic device
-  double period{1e-3};    ///< [s]
+  double force_cap{8.5};                                             ///< [N], of the haptic device
+  double period{1e-3};                                               ///< [s]
+  double force_continuous{std::numeric_limits<double>::infinity()};  ///< [N], of its motors
+  double own_swing{};  ///< [m], of the same hand at the tissue with its own finger
+  double stiffest{std::numeric_limits<double>::infinity()};  ///< [N/m], most that may be shown
+  double round_trip{};                                       ///< [s], mean, of the path
   /// Of the blackout and 2 s after it, in seconds of the recorded ticks; equal: there was none.
   double blackout_from{};  ///< [s]
   double blackout_to{};    ///< [s]
@@ -85,6 +89,9 @@ struct ContactMetrics {
   double force_direct{kUndefined};
   /// [-], felt over true force 2.5 s after the first contact of a site, where the hand stayed.
   double first_press_share[2]{kUndefined, kUndefined};
+  // Where a law can know the tissue, see KnownTouch.
+  double known_tap_error[2]{kUndefined, kUndefined};  ///< [-]
+  double held_error[2]{kUndefined, kUndefined};       ///< [-] >= 0
 };
 
 /// Errors are rendered/true - 1 [-]; NaN: undefined.

@@ -144,12 +144,17 @@ void RunJudge::end_phase() {
   if (tag.kind == PhaseKind::Tap) {
     metrics_.taps.push_back(phase_.tap());
     const double error = metrics_.taps.back().stiffness.error().value_or(kUndefined);
+    if (tag.site != Site::Other) known_[site].tap(metrics_.taps.back());
     if (tag.site != Site::Other && tag.index == 1) metrics_.tap1_error[site] = error;
     if (tag.site != Site::Other && tag.index == 2) metrics_.tap2_error[site] = error;
   }
   if (tag.kind == PhaseKind::PressHold && tag.site != Site::Other &&
       (tag.index == 1 || tag.index == 2)) {
     holds_[site][static_cast<std::size_t>(tag.index - 1)] = phase_.hold();
+  }
+  if (tag.kind == PhaseKind::PressHold && tag.site != Site::Other) {
+    const PhaseAccount::HoldMeans means = phase_.hold();
+    known_[site].hold(phase_.held_from(), means.felt, means.truth);
   }
   if (tag.kind == PhaseKind::LiftHold && tag.site == Site::B) metrics_.drift = phase_.drift();
 }
@@ -178,6 +183,7 @@ void RunJudge::look_at_learning(const RunTick& tick, Site site) {
   const bool here = tick.phase.site == site && tick.phase.kind != PhaseKind::FreeAir;
   if (here && tick.counted) {
     first_press_[static_cast<std::size_t>(site)].look(tick.at, tick.hand_force, tick.force_true);
+    known_[static_cast<std::size_t>(site)].look(tick.at, tick.tip, tick.contact_force);
   }
   if (!here || !tick.counted || !std::isnan(learning.took)) return;
   if (std::isnan(learning.began_at) && tick.contact_force >= kContactForce) {
@@ -233,8 +239,10 @@ void RunJudge::sum_up() {
   call_unstable(metrics_, swings_, "the hand swings by 1 mm or more in a hold");
   metrics_.contact.hand_swing = hand_swing_.largest();
   metrics_.contact.tip_swing = tip_swing_.largest();
-  call_unstable(
-      metrics_, metrics_.contact.hand_swing >= kUnstableCycle, "the hand swings by itself");
+  // A light hand that taps on something stiff bounces there with its own finger too.
+  call_unstable(metrics_,
+                metrics_.contact.hand_swing >= config_.own_swing + kUnstableCycle,
+                "the hand swings by itself");
   call_unstable(metrics_, metrics_.contact.tip_swing >= kUnstableCycle, "the tip swings by itself");
   call_unstable(metrics_, ran_away_, "the hand ran away");
   call_unstable(
@@ -256,6 +264,10 @@ void RunJudge::sum_up() {
   metrics_.force_rms = std::sqrt(tap_square_ / tap_count_);
   metrics_.contact.first_press_share[0] = first_press_[0].share();
   metrics_.contact.first_press_share[1] = first_press_[1].share();
+  for (std::size_t site = 0; site < known_.size(); ++site) {
+    metrics_.contact.known_tap_error[site] = known_[site].tap_error();
+    metrics_.contact.held_error[site] = known_[site].held_error();
+  }
   metrics_.learning[0] = learning_[0].took;
   metrics_.learning[1] = learning_[1].took;
   // Asked for, and nothing of it was seen.

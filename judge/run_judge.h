@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "judge/first_press.h"
+#include "judge/known_touch.h"
 #include "judge/metrics.h"
 #include "judge/reversal.h"
 #include "judge/swing_finder.h"
@@ -27,6 +28,9 @@ class PhaseAccount {
   [[nodiscard]] bool holds(const PhaseTag& tag) const noexcept;
   [[nodiscard]] TapMetrics tap() const noexcept;
   [[nodiscard]] HoldMeans hold() const noexcept;
+  [[nodiscard]] double held_from() const noexcept {
+    return began_at_ + 0.6 * tag_.duration;
+  }  ///< [s]
   /// Mean distance of tip and hand in the last 20 % [m].
   [[nodiscard]] double drift() const noexcept { return apart_ / apart_count_; }
   /// Of x_m to and fro in the second half [m], less that of a surface that breathes: a soft hand
@@ -50,7 +54,8 @@ class PhaseAccount {
 /// Judges a run tick by tick; holds no tick. Thread: any one.
 class RunJudge {
  public:
-  explicit RunJudge(const MetricsConfig& config) : config_{config} {}
+  explicit RunJudge(const MetricsConfig& config)
+      : config_{config}, known_{KnownTouch{config}, KnownTouch{config}} {}
 
   /// In order of time.
   void look(const RunTick& tick);
@@ -100,6 +105,7 @@ class RunJudge {
   std::array<Forces, kStepTicks> before_;
   std::array<Learning, 2> learning_;
   std::array<FirstPress, 2> first_press_;
+  std::array<KnownTouch, 2> known_;
   double energy_operator_min_{};  ///< [J], of the newest tick
   double energy_net_min_{};       ///< [J]
 };

@@ -109,9 +109,10 @@ bool MotionGate::too_deep(double tip) const noexcept {
   return tip > std::max(deepest(), command_) + kTooDeep;
 }
 
-double MotionGate::speed_limit() const noexcept {
+/// Where no surface is known, the next step may meet one.
+double MotionGate::speed_limit(double target) const noexcept {
   if (resynchronising_) return config_.speed_resync;
-  const bool near = surface_ && command_ > *surface_ - config_.near_distance;
+  const bool near = surface_ ? command_ > *surface_ - config_.near_distance : target > command_;
   return near ? config_.speed_near : config_.speed_max;
 }
 
@@ -120,7 +121,7 @@ void MotionGate::follow(double target, double dt) noexcept {
   if (std::abs(target - command_) <= config_.resync_distance) resynchronising_ = false;
   const AxisMotion next = step_axis({.command = command_, .velocity = velocity_},
                                     target,
-                                    {.speed = speed_limit(),
+                                    {.speed = speed_limit(target),
                                      .acceleration = config_.acceleration_max,
                                      .step_free = config_.step_free},
                                     dt);

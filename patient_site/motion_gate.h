@@ -19,7 +19,8 @@ struct MotionGateConfig {
   double travel_max{50e-3};        ///< [m]
   double depth_max{8e-3};          ///< [m], below the learned surface
   double speed_max{0.15};          ///< [m/s], in the air
-  double speed_near{0.05};         ///< [m/s], within `near_distance` of a known surface, and in it
+  double speed_near{0.05};         ///< [m/s], within `near_distance` of a known surface, in it, and
+                                   ///< inwards while none is known
   double near_distance{5e-3};      ///< [m]
   double speed_resync{0.03};       ///< [m/s], after a gap or an engagement, until caught up
   double resync_distance{0.5e-3};  ///< [m], caught up
@@ -103,7 +104,7 @@ class MotionGate {
   void follow(double target, double dt) noexcept;
   void move_out(double tip, double target, double speed, double dt) noexcept;
   void hold() noexcept;
-  [[nodiscard]] double speed_limit() const noexcept;
+  [[nodiscard]] double speed_limit(double target) const noexcept;
   [[nodiscard]] double deepest() const noexcept;
   [[nodiscard]] double within_limits(double position) const noexcept;
   [[nodiscard]] double clear_position() const noexcept;

@@ -17,6 +17,7 @@ class LineFit {
     xy_ += dx * (y - mean_y_);
   }
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  [[nodiscard]] double spread() const noexcept { return xx_; }  ///< [x^2], sum about their mean
   /// Meaningless with fewer than two different x.
   [[nodiscard]] double slope() const noexcept { return xy_ / xx_; }
 

@@ -26,6 +26,7 @@ constexpr double kStillBelow = 0.35e-3;      // [m]
 constexpr double kStillBelowSoon = 0.2e-3;   // [m], before a breath can be believed
 constexpr double kAmplitudeMax = 4e-3;       // [m]
 constexpr double kExplainedMin = 0.6;        // [-], to begin believing
+constexpr double kClearly = 0.5;             // [-], of what a tissue at rest leaves, to begin
 constexpr double kExplainedLeast = 0.3;      // [-], to go on
 constexpr double kPresenceTime = 0.3;        // [s]
 constexpr double kContact = 0.03;            // [N]
@@ -43,11 +44,13 @@ constexpr double kStepMax = 0.5;       // [mm], of one improvement
 // What is expected before the data, and how closely.
 constexpr std::array<double, BreathingEstimator::kShapes> kShapeExpected{0.06, 0, 0};     // [N]
 constexpr std::array<double, BreathingEstimator::kShapes> kShapeSpread{0.1, 0.05, 0.02};  // [N]
+constexpr double kRelaxingSpread = 0.1;                                                   // [-]
 constexpr double kSwingSpread = 1.5;                                                      // [mm]
 constexpr std::size_t kSurface = BreathingEstimator::kShapes;
-constexpr std::size_t kCosine = kSurface + 1;
-constexpr std::size_t kSine = kSurface + 2;
-constexpr std::size_t kRate = kSurface + 3;
+constexpr std::size_t kRelaxes = kSurface + 1;
+constexpr std::size_t kCosine = kRelaxes + BreathingEstimator::kTimes;
+constexpr std::size_t kSine = kCosine + 1;
+constexpr std::size_t kRate = kCosine + 2;
 
 /// The shapes [-] at a depth [-] and their slopes [1/mm].
 struct Shaped {
@@ -98,6 +101,8 @@ void BreathingEstimator::new_place() noexcept {
 }
 
 void BreathingEstimator::see(double position, double force) noexcept {
+  for (std::size_t k = 0; k < kTimes; ++k)
+    past_[k] += period_ / kModelTimes[k] * (force - past_[k]);
   if (force >= kContact) contact_at_ = time_;
   if (contact_at_ < 0 || time_ - contact_at_ > kAfterContact) return;
   if (first_seen_ < 0) first_seen_ = time_;
@@ -116,7 +121,7 @@ void BreathingEstimator::see(double position, double force) noexcept {
         std::abs(position - last.position) > kSampleDistance ? kSampleSoonest : kSampleEvery;
     if (time_ - last.at < least) return;
   }
-  samples_[next_] = {time_, position, force, place_};
+  samples_[next_] = {time_, position, force, past_, place_};
   next_ = (next_ + 1) % kSamples;
   count_ = std::min(count_ + 1, kSamples);
   rounds_ = kRounds;
@@ -162,12 +167,14 @@ void BreathingEstimator::add(const Guess& guess, const Sample& sample) noexcept 
     force += tissue.shape[j] * shape.value[j];
     slope += tissue.shape[j] * shape.slope[j];
   }
+  for (std::size_t k = 0; k < kTimes; ++k) force -= tissue.relaxing[k] * sample.past[k];
   const double left = sample.force - force;
   equations_.square += left * left;
   std::array<double, kUnknowns> row{};
   if (here) {
     for (std::size_t j = 0; j < kShapes; ++j) row[j] = shape.value[j];
     row[kSurface] = -slope;
+    for (std::size_t k = 0; k < kTimes; ++k) row[kRelaxes + k] = -sample.past[k];
   }
   row[kCosine] = -slope * c;
   row[kSine] = -slope * s;
@@ -204,6 +211,9 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
   for (std::size_t j = 0; j < kShapes; ++j) {
     expect(j, guess.here.shape[j], kShapeExpected[j], kShapeSpread[j]);
   }
+  for (std::size_t k = 0; k < kTimes; ++k) {
+    expect(kRelaxes + k, guess.here.relaxing[k], 0, kRelaxingSpread);
+  }
   const double middle = rate_of(static_cast<double>(pace) - 0.5);
   if (swings) {
     expect(kCosine, guess.cosine / kModelDepthScale, 0, kSwingSpread);
@@ -215,7 +225,11 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
   // What is 0 and would become negative, and what a surface at rest has not, stays out.
   std::array<bool, kUnknowns> open{};
   for (std::size_t i = 0; i < (swings ? kUnknowns : kCosine); ++i) {
-    open[i] = i >= kShapes || guess.here.shape[i] > 0 || e.system.right[i] > 0;
+    const bool share = i >= kRelaxes && i < kCosine;
+    const double now = i < kShapes ? guess.here.shape[i]
+                       : share     ? guess.here.relaxing[i - kRelaxes]
+                                   : 1;
+    open[i] = now > 0 || e.system.right[i] > 0;
   }
   const std::array<double, kUnknowns> by = solved(open);
   // No farther than the equations hold.
@@ -226,6 +240,10 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
     guess.here.shape[j] = std::max(0.0, guess.here.shape[j] + share * by[j]);
   }
   guess.here.surface += share * by[kSurface] * kModelDepthScale;
+  for (std::size_t k = 0; k < kTimes; ++k) {
+    guess.here.relaxing[k] =
+        std::clamp(guess.here.relaxing[k] + share * by[kRelaxes + k], 0.0, 1.0);
+  }
   if (!swings) return;
   guess.cosine += share * by[kCosine] * kModelDepthScale;
   guess.sine += share * by[kSine] * kModelDepthScale;
@@ -254,9 +272,11 @@ void BreathingEstimator::judge() noexcept {
   const double amplitude = std::hypot(best.cosine, best.sine);
   const double explained = guesses_[0].square > 0 ? 1 - best.square / guesses_[0].square : 0;
   const bool early = seen_for < kSeenFor;
+  const bool needed = !rests_ && best.square < kClearly * rest_square_;
   believed_ = !early && amplitude > kAmplitudeMin && amplitude < kAmplitudeMax &&
-              explained > (believed_ ? kExplainedLeast : kExplainedMin);
-  still_ = !believed_ && (still_ || amplitude < (early ? kStillBelowSoon : kStillBelow));
+              (believed_ ? explained > kExplainedLeast : explained > kExplainedMin && needed);
+  still_ = !believed_ &&
+           (still_ || amplitude < (early ? kStillBelowSoon : kStillBelow) || (!early && rests_));
   if (!believed_) return;
   const double angle = best.rate * (time_ - best.origin);
   const double c = std::cos(angle);
@@ -271,8 +291,17 @@ bool BreathingEstimator::settled() const noexcept {
 
 double BreathingEstimator::surface() const noexcept { return guesses_[best_].here.surface; }
 
-const std::array<double, BreathingEstimator::kShapes>& BreathingEstimator::shapes() const noexcept {
-  return guesses_[best_].here.shape;
+/// Of a tissue that has let go of nothing yet the force is larger by what relaxes.
+std::array<double, BreathingEstimator::kShapes> BreathingEstimator::shapes() const noexcept {
+  std::array<double, kShapes> slow = guesses_[best_].here.shape;
+  double gain = 1;
+  for (const double share : relaxing()) gain += share;
+  for (double& shape : slow) shape /= gain;
+  return slow;
+}
+
+const BreathingEstimator::Shares& BreathingEstimator::relaxing() const noexcept {
+  return guesses_[best_].here.relaxing;
 }
 
 Swing BreathingEstimator::swing() const noexcept {

@@ -27,7 +27,6 @@ constexpr std::size_t kStride = 12;          // of the others, one in so many
 constexpr std::size_t kEdge = 3;             // so near the grid's end it is moved
 constexpr double kSplineAbove = 2e-3;        // [m], over the grid's middle: where it begins
 constexpr std::uint32_t kSplineEvery = 4;    // equations
-constexpr double kSplineNoise = 3e-3;        // [N], of an equation at least
 constexpr double kAstray = 3e-3;             // [m], a surface above where the tip felt nothing
 constexpr std::int64_t kFollowed = 64;       // periods, in which all that is short settles
 
@@ -53,7 +52,7 @@ void ContactEstimator::place_grid(double centre) noexcept {
   for (Lane& lane : box_.terms) lane.fill(0);
   for (Lane& lane : normal_) lane.fill(0);
   spline_.begin(centre - kSplineAbove, sensed_.tip.value());
-  square_ = 0;
+  square_ = weight_ = 0;
   box_.force = 0;
   box_.count = 0;
   box_.tip = sensed_.tip.value();
@@ -69,9 +68,9 @@ void ContactEstimator::place_grid(double centre) noexcept {
 }
 
 /// A wrong breath and a wrong tissue confirm each other, and the surface walks away. Then both are
-/// forgotten.
+/// forgotten. Where no breath is believed yet, one may be why it walks.
 void ContactEstimator::begin_again() noexcept {
-  swing_ = BreathingEstimator{config_.period};
+  if (model_.swing_rate > 0) swing_ = BreathingEstimator{config_.period};
   expected_ = here_.expected;
   sensed_.tip.reset(sensed_.raw_tip);
   sensed_.tip_mean = sensed_.raw_tip_mean;
@@ -199,6 +198,7 @@ void ContactEstimator::absorb() noexcept {
   }
   spline_.add(met, weight, keep);
   square_ = keep * square_ + weight * force * force;
+  weight_ = keep * weight_ + weight;
   std::size_t at = 0;
   for (std::size_t row = 0; row < kTerms; ++row) {
     for (std::size_t column = row; column < kTerms; ++column, ++at) {
@@ -216,10 +216,10 @@ void ContactEstimator::absorb() noexcept {
 void ContactEstimator::search() noexcept {
   const std::size_t from = best_ > kNear ? best_ - kNear : 0;
   const std::size_t to = std::min(best_ + kNear, kCandidates - 1);
-  Solution winner = solve(best_);
+  Solution winner = solve(best_, swing_.still());
   std::size_t won = best_;
   const auto judge = [&](std::size_t candidate) {
-    const Solution solution = solve(candidate);
+    const Solution solution = solve(candidate, swing_.still());
     if (solution.cost < winner.cost) {
       winner = solution;
       won = candidate;
@@ -233,9 +233,10 @@ void ContactEstimator::search() noexcept {
   }
   ++turn_;
   best_ = won;
-  if (turn_ % kSplineEvery == 0) fit_spline();
+  if (turn_ % kSplineEvery == 0) fit_spline(winner);
   publish(winner);
-  if (surface_of(best_) < here_.deepest_in_air - kAstray) return begin_again();
+  const double swings = std::hypot(model_.swing, model_.swing_quadrature);
+  if (surface_of(best_) + swings < here_.deepest_in_air - kAstray) return begin_again();
   if (best_ < kEdge || best_ + kEdge >= kCandidates) {
     expected_ = winner.c;
     const KnotStiffness stiffness = spline_.stiffness();
@@ -243,17 +244,6 @@ void ContactEstimator::search() noexcept {
     place_grid(surface_of(best_));
     spline_.expect(stiffness, share);
   }
-}
-
-/// Where the surface breathes, and where it may, heights say nothing of depths.
-void ContactEstimator::fit_spline() noexcept {
-  if (swing_.believed() || !swing_.settled()) return spline_.drop();
-  ContactModel smooth{.surface = surface_of(best_)};
-  std::copy_n(found_[best_].begin(), kModelTerms, smooth.c.begin());
-  smooth.reach = std::max(0.0, here_.deepest - smooth.surface) + kModelReachBeyond;
-  SplineEstimator::Factors beside{};
-  std::copy(found_[best_].begin() + kModelTerms, found_[best_].end(), beside.begin());
-  spline_.fit(smooth, beside, std::max(equation_noise(), kSplineNoise * kSplineNoise));
 }
 
 void ContactEstimator::publish(const Solution& solution) noexcept {
@@ -268,8 +258,9 @@ void ContactEstimator::publish(const Solution& solution) noexcept {
     // What was found together with the swing: the rest was learned before it was known.
     model_.c = {};
     model_.stiffness = {};
-    std::copy(swing_.shapes().begin(), swing_.shapes().end(), model_.c.begin() + 1);
-    model_.relaxing = {};
+    const auto shapes = swing_.shapes();
+    std::copy(shapes.begin(), shapes.end(), model_.c.begin() + 1);
+    model_.relaxing = swing_.relaxing();
     model_.surface = swing_.surface();
   }
   model_.depth_max = std::max(0.0, here_.deepest - model_.surface);
@@ -284,13 +275,7 @@ void ContactEstimator::track(double position) noexcept {
 void ContactEstimator::watch_surface() noexcept {
   swing_.step();
   if (model_.version == 0) return;
-  double gain = 1;
-  double elastic = sensed_.force_mean;
-  for (std::size_t k = 0; k < beside_.past.size(); ++k) {
-    gain += model_.relaxing[k];
-    elastic += model_.relaxing[k] * beside_.past[k];
-  }
-  swing_.see(sensed_.raw_tip_mean, elastic / gain);
+  swing_.see(sensed_.raw_tip_mean, sensed_.force_mean);
 }
 
 double ContactEstimator::sense(double position, double force) noexcept {

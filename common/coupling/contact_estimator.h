@@ -74,13 +74,15 @@ class ContactEstimator {
   void withdraw() noexcept;
   void track(double position) noexcept;
   void watch_surface() noexcept;
-  [[nodiscard]] Solution solve(std::size_t candidate) noexcept;
+  [[nodiscard]] Solution solve(std::size_t candidate, bool relaxes) noexcept;
   [[nodiscard]] double surface_of(std::size_t candidate) const noexcept;
   [[nodiscard]] double equation_noise() const noexcept;
   void relax() noexcept;
   [[nodiscard]] double elastic() const noexcept;
   [[nodiscard]] double predicted() const noexcept;
-  void fit_spline() noexcept;
+  void fit_spline(const Solution& told) noexcept;
+  double fit_spline_beside(const Solution& solution) noexcept;
+  [[nodiscard]] bool explains(double left) const noexcept;
 
   /// What was learned at a place.
   struct Known {
@@ -155,6 +157,7 @@ class ContactEstimator {
   alignas(64) std::array<Lane, kPairs> normal_{};  ///< [-]
   alignas(64) std::array<Lane, kTerms> right_{};   ///< [N]
   double square_{};                                ///< [N^2]
+  double weight_{};                                ///< [-], of all equations
   Beside beside_;
   SplineEstimator spline_;
 

@@ -26,9 +26,14 @@ constexpr std::size_t pair(std::size_t terms, std::size_t row, std::size_t colum
   return row * terms - row * (row + 1) / 2 + column;
 }
 
+constexpr double kSplineNoise = 3e-3;  // [N], of an equation at least
+constexpr double kRestWeight = 40;     // [-], of equations: fewer fit any tissue
+constexpr double kRestNoise = 1.6;     // [-], of their noise, and
+constexpr double kRestShare = 0.04;    // [-], of the force: what a tissue may leave
+
 }  // namespace
 
-ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate) noexcept {
+ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate, bool relaxes) noexcept {
   const double noise = equation_noise();
   SmallSystem<kTerms> system;
   auto& a = system.matrix;
@@ -39,7 +44,7 @@ ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate) noexce
     }
     // What relaxes and what swings with a breath look alike: until the surface is known to stand
     // still nothing relaxes.
-    const bool closed = !swing_.still() && row >= kModelTerms && row + 1 < kTerms;
+    const bool closed = !relaxes && row >= kModelTerms && row + 1 < kTerms;
     const double spread = closed ? kClosed * kSpread[row] : kSpread[row];
     const double prior = noise / (spread * spread);
     a[row][row] += prior;
@@ -57,6 +62,41 @@ ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate) noexce
   }
   const double off = (surface_of(candidate) - surface_expected_) / config_.surface_spread;
   return {c, cost + noise * off * off};
+}
+
+/// Whether `left` [N^2], of the sum of squares, is no more than noise and a share of the force.
+bool ContactEstimator::explains(double left) const noexcept {
+  const double noise = kRestNoise * kRestNoise * equation_noise();
+  return left <= weight_ * noise + kRestShare * kRestShare * square_;
+}
+
+/// @returns what the spline leaves unexplained beside the smooth shapes of `solution` [N^2].
+double ContactEstimator::fit_spline_beside(const Solution& solution) noexcept {
+  ContactModel smooth{.surface = surface_of(best_)};
+  std::copy_n(solution.c.begin(), kModelTerms, smooth.c.begin());
+  smooth.reach = std::max(0.0, here_.deepest - smooth.surface) + kModelReachBeyond;
+  SplineEstimator::Factors beside{};
+  std::copy(solution.c.begin() + kModelTerms, solution.c.end(), beside.begin());
+  const double noise = std::max(equation_noise(), kSplineNoise * kSplineNoise);
+  return solution.cost - spline_.fit(smooth, beside, noise);
+}
+
+/// Where the surface breathes, and where it may, heights say nothing of depths. A breath fits what
+/// softens, has kinks or relaxes; so it is asked first whether a tissue at rest that does all this
+/// explains what was felt. `told`: the smooth shapes as they are told.
+void ContactEstimator::fit_spline(const Solution& told) noexcept {
+  if (swing_.believed()) return spline_.drop();
+  Solution rest = told;
+  if (!swing_.still()) {
+    const Terms before = found_[best_];
+    rest = solve(best_, true);
+    found_[best_] = before;
+  }
+  const double left = fit_spline_beside(rest);
+  const bool explained = explains(left);
+  if (weight_ >= kRestWeight) swing_.rest(left / weight_, explained);
+  if (!swing_.settled()) return spline_.drop();
+  if (!explained && !swing_.still()) fit_spline_beside(told);
 }
 
 }  // namespace palp::coupling

@@ -197,6 +197,31 @@ double quick_gain(const ModelPayload& model) noexcept {
   return gain;
 }
 
+namespace {
+
+/// What a stiff skin lost is given back where the tissue under it is softer, as steeply as may be
+/// and never beyond the force there is. `most` [N/m], at each knot.
+void make_good(const ContactModel& model, const KnotStiffness& most, ContactModel& limited) {
+  double lost = 0;                                            // [N], at the knot before
+  double losing = model.stiffness[0] - limited.stiffness[0];  // [N/m], there
+  for (std::size_t k = 1; k + 1 < kModelKnots.size(); ++k) {
+    const double before = (kModelKnots[k] - kModelKnots[k - 1]) * kModelDepthScale;
+    const double after = (kModelKnots[k + 1] - kModelKnots[k]) * kModelDepthScale;
+    double now = model.stiffness[k] - limited.stiffness[k];
+    // Beyond its reach a model goes on along its tangent, so nothing is made good there.
+    if (now <= 0 && kModelKnots[k + 1] * kModelDepthScale <= limited.reach) {
+      const double owed = (2 * lost + losing * before) / (before + after);
+      const double given = std::clamp(most[k] - limited.stiffness[k], 0.0, std::max(0.0, owed));
+      limited.stiffness[k] += given;
+      now -= given;
+    }
+    lost += 0.5 * (losing + now) * before;
+    losing = now;
+  }
+}
+
+}  // namespace
+
 ContactModel no_steeper(const ContactModel& model, double slope_max) noexcept {
   ContactModel smooth = model;
   smooth.stiffness = {};
@@ -213,12 +238,15 @@ ContactModel no_steeper(const ContactModel& model, double slope_max) noexcept {
     limited.c[0] = std::min(limited.c[0], slope_max * kModelDepthScale);
     smooth.reach = limited.reach = low;
   }
+  KnotStiffness most{};  // [N/m]
   for (std::size_t k = 0; k < kModelKnots.size(); ++k) {
     // As far as a straight line from this knot goes.
-    const double until = kModelKnots[std::min(k + 1, kModelKnots.size() - 1)];
-    const double left = slope_max - smooth.slope(until * kModelDepthScale);
-    limited.stiffness[k] = std::clamp(limited.stiffness[k], 0.0, std::max(0.0, left));
+    const bool last = k + 1 == kModelKnots.size();
+    const double until = last ? smooth.reach : kModelKnots[k + 1] * kModelDepthScale;
+    most[k] = std::max(0.0, slope_max - smooth.slope(until));
+    limited.stiffness[k] = std::clamp(limited.stiffness[k], 0.0, most[k]);
   }
+  make_good(model, most, limited);
   return limited;
 }
 

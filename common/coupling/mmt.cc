@@ -283,6 +283,7 @@ void MmtPatient::begin_epoch(double position) noexcept {
   hand_ = position;
   hand_velocity_ = 0;
   hand_force_ = 0;
+  yielded_ = 0;
   lead_velocity_.reset(0);
 }
 
@@ -297,7 +298,20 @@ double MmtPatient::target(const PatientInput& in, const Lapse& lapse) noexcept {
   }
   if (in.now - heard_at_ > kStale) hand_velocity_ = 0;
   const double lead = std::min(config_.lead_max, stage_lead_ + 0.5 * seconds(in.round_trip));
-  return hand_ + lead * lead_velocity_.step(finite_or(hand_velocity_, 0), lapse.periods) - unfelt();
+  return hand_ + lead * lead_velocity_.step(finite_or(hand_velocity_, 0), lapse.periods) -
+         std::max(unfelt(), yielded_);
+}
+
+/// [N], most that the tip may press: little harder than the hand was given last.
+double MmtPatient::allowed() const noexcept {
+  return config_.unfelt + (1 + config_.unfelt_share) * std::max(0.0, hand_force_);
+}
+
+/// A finger gives way to a tissue that breathes against it, or is stiffer than the model says. So
+/// does the tip, slowly enough not to swing between a slow stage and a slow sensor.
+void MmtPatient::give_way(double force, double span) noexcept {
+  const double pressed = finite_or(force, 0) - allowed();
+  yielded_ = std::clamp(yielded_ + config_.yield * pressed * span, 0.0, config_.yield_most);
 }
 
 /// A finger that goes into a tissue feels it at once; a hand over a long path goes on as if there
@@ -308,12 +322,12 @@ double MmtPatient::unfelt() const noexcept {
   if (found.version == 0) return 0;
   const ContactModel model = contact_model(found);
   const double depth = hand_ - model.surface - found.swing;
-  const double allowed = config_.unfelt + (1 + config_.unfelt_share) * std::max(0.0, hand_force_);
-  if (!(model.force(depth) > allowed)) return 0;
-  return depth - model.depth(allowed);
+  if (!(model.force(depth) > allowed())) return 0;
+  return depth - model.depth(allowed());
 }
 
 PatientOutput MmtPatient::step(const PatientInput& in, const Lapse& lapse) noexcept {
+  give_way(in.contact_force, seconds(lapse.period));
   const double aim = target(in, lapse);
   if (!began_ || distance(in.place, place_) > kSamePlace) {
     estimator_.new_place(in.place);

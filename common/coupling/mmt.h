@@ -54,6 +54,8 @@ struct MmtConfig {
   /// told.
   double unfelt{0.8};
   double unfelt_share{0.3};  ///< [-]
+  double yield{6e-3};        ///< [m/s per N], at which the tip gives way to more than that
+  double yield_most{4e-3};   ///< [m]
   double travel{60e-3};      ///< [m], a surface farther from 0 is not believed
   double slope_max{1500};    ///< [N/m], of a stiffer tissue no more is shown
   ContactEstimatorConfig estimator;
@@ -125,7 +127,9 @@ class MmtPatient {
 
  private:
   [[nodiscard]] double target(const PatientInput& in, const Lapse& lapse) noexcept;
+  [[nodiscard]] double allowed() const noexcept;
   [[nodiscard]] double unfelt() const noexcept;
+  void give_way(double force, double span) noexcept;
 
   MmtConfig config_;
   double stage_lead_;  ///< [s], what the servo takes away, in whole ticks
@@ -134,6 +138,7 @@ class MmtPatient {
   double hand_{};           ///< [m], newest
   double hand_velocity_{};  ///< [m/s], newest
   double hand_force_{};     ///< [N], newest
+  double yielded_{};        ///< [m]
   TimePoint heard_at_{};
   LowPass lead_velocity_;  ///< [m/s]
   Place place_;

@@ -10,7 +10,10 @@ namespace {
 
 constexpr double kHatMin = 1e-3;  // [-], less of a node is nothing
 /// [-], of the mean stiffness: how far a tissue is expected to be off its smooth shapes.
-constexpr double kKnotSpread = 0.7;
+constexpr double kKnotSpread = 1.5;
+/// [-], likewise: by how much that changes from knot to knot. Deeper than anything was touched it
+/// stays as it was last.
+constexpr double kKnotChange = 0.5;
 constexpr double kStiffnessLeast = 10;  // [N/m], mean
 constexpr double kDepthLeast = 1e-3;    // [m], over which a mean is one
 constexpr double kDepthNone = 1e-9;     // [m], where the slope at the surface is taken
@@ -113,9 +116,9 @@ SmallSystem<SplineEstimator::kKnots> SplineEstimator::equations(const Ramps& ram
   return system;
 }
 
-void SplineEstimator::fit(const ContactModel& smooth,
-                          const Factors& factors,
-                          double noise) noexcept {
+double SplineEstimator::fit(const ContactModel& smooth,
+                            const Factors& factors,
+                            double noise) noexcept {
   const Nodes right = elastic(factors);
   const Ramps ramps = ramps_under(smooth.surface);
   SmallSystem<kKnots> system = equations(ramps, right);
@@ -130,6 +133,15 @@ void SplineEstimator::fit(const ContactModel& smooth,
     const double weight = noise / (spread[k] * spread[k]);
     system.matrix[k][k] += weight;
     system.right[k] += weight * prior[k];
+    if (k == 0) continue;
+    const double change = noise / (kKnotChange * mean * kKnotChange * mean);
+    const double step = prior[k] - prior[k - 1];
+    system.matrix[k][k] += change;
+    system.matrix[k - 1][k - 1] += change;
+    system.matrix[k][k - 1] -= change;
+    system.matrix[k - 1][k] -= change;
+    system.right[k] += change * step;
+    system.right[k - 1] -= change * step;
   }
   stiffness_ = prior;
   Nonnegative{system, spread}.improve(stiffness_);
@@ -140,9 +152,11 @@ void SplineEstimator::fit(const ContactModel& smooth,
     expected[i] = smooth.force(depth_of(i, smooth.surface));
     for (std::size_t k = 0; k < kKnots; ++k) found[i] += stiffness_[k] * ramps[k][i];
   }
-  const double better = (cost_of(expected, right) - cost_of(found, right)) / noise;
-  const double worth = std::clamp((better - kWorthFrom) / (kWorthAll - kWorthFrom), 0.0, 1.0);
+  const double better = cost_of(expected, right) - cost_of(found, right);
+  const double worth =
+      std::clamp((better / noise - kWorthFrom) / (kWorthAll - kWorthFrom), 0.0, 1.0);
   share_ = std::max(expected_share_, worth);
+  return better;
 }
 
 }  // namespace palp::coupling

@@ -34,8 +34,8 @@ class SplineEstimator {
   /// before `keep` [-] of what it did.
   void add(const Met& met, double weight, double keep) noexcept;
   /// Beside `smooth`, with these factors of what is not elastic, where an equation has `noise`
-  /// [N^2].
-  void fit(const ContactModel& smooth, const Factors& factors, double noise) noexcept;
+  /// [N^2]. @returns how much less than `smooth` it leaves of the sum of squares [N^2].
+  double fit(const ContactModel& smooth, const Factors& factors, double noise) noexcept;
   /// Nothing is told until the next fit.
   void drop() noexcept { share_ = expected_share_ = 0; }
 

@@ -11,7 +11,6 @@
 
 #include "judge/metric_table.h"
 #include "lab/run/digest.h"
-#include "lab/run/direct_touch.h"
 #include "lab/run/run.h"
 
 namespace palp::lab {
@@ -28,9 +27,8 @@ double nine_digits(double value) {
   return rounded;
 }
 
-CaseResult result_of(const Plan& plan, const Case& one, const Scenario& scenario) {
-  RunResult run = simulate(scenario);
-  if (plan.direct_touch) run.metrics.contact.force_direct = direct_touch_force(scenario);
+CaseResult result_of(const Case& one, const Scenario& scenario) {
+  const RunResult run = simulate(scenario);
   CaseResult result;
   result.index = one.index;
   result.seed = one.seed;
@@ -60,7 +58,7 @@ Result<std::vector<CaseResult>> run_plan(const Plan& plan,
   for_each(plan.cases.size(), [&](std::size_t i) {
     if (failed) return;
     const auto scenario = make_case(plan, plan.cases[i]);
-    if (scenario) results[i] = result_of(plan, plan.cases[i], *scenario);
+    if (scenario) results[i] = result_of(plan.cases[i], *scenario);
     const std::lock_guard lock{mutex};
     if (!scenario && !first_error) first_error = scenario.error();
     if (!scenario) failed = true;

@@ -9,6 +9,7 @@
 #include "common/config/number.h"
 #include "common/core/printable.h"
 #include "lab/plan/scenario_file.h"
+#include "lab/run/direct_touch.h"
 #include "surgeon_site/script_builder.h"
 
 namespace palp::lab {
@@ -238,6 +239,7 @@ Result<Scenario> make_case(const Plan& plan, const Case& one) {
   if (!scenario) return scenario;
   scenario->bare = true;
   scenario->depths = false;
+  if (plan.direct_touch) scenario->finger = direct_touch(*scenario);
   scenario->lying = plan.lying || one.lying;
   if (plan.blackout) place_blackout(*scenario);
   if (one.fault.kind == FaultKind::None) return scenario;

@@ -5,12 +5,14 @@
 #include <memory>
 #include <numbers>
 
+#include "judge/swing_finder.h"
 #include "patient_site/phantom.h"
+#include "review/phase_finder.h"
 #include "surgeon_site/hand_plant.h"
 
 namespace palp::lab {
 
-double direct_touch_force(const Scenario& scenario) {
+OwnFinger direct_touch(const Scenario& scenario) {
   constexpr Duration kStep = std::chrono::milliseconds{1};
   const patient::SimulatedPhantomConfig& tissue = scenario.tissue;
   const auto field = patient::make_field(scenario.phantom, tissue.viscous_factor);
@@ -18,7 +20,9 @@ double direct_touch_force(const Scenario& scenario) {
   const surgeon::GestureScript& script = scenario.script;
   surgeon::HandPlant hand{scenario.hand.plant, script.at({}).position};
   double force = 0;
-  double most = 0;
+  OwnFinger finger{.force = 0};
+  judge::SwingFinder swing;
+  review::PhaseFinder phases{script};
   double depth = -1;  // [m]
   for (Duration at{}; at < script.length(); at += kStep) {
     const surgeon::Intent begin = script.at(at);
@@ -31,9 +35,12 @@ double direct_touch_force(const Scenario& scenario) {
     const double rate = (depth - before) / seconds(kStep);
     const double elastic = relaxing.step(field->elastic_force(end.place, depth), seconds(kStep));
     force = std::max(0.0, elastic * field->growth(before > 0 ? rate : 0));
-    most = std::max(most, force);
+    finger.force = std::max(finger.force, force);
+    if (phases.at(at).kind == judge::PhaseKind::FreeAir) swing.restart();
+    swing.look(seconds(at), depth);
   }
-  return most;
+  finger.swing = swing.largest();
+  return finger;
 }
 
 }  // namespace palp::lab

@@ -4,8 +4,9 @@
 
 namespace palp::lab {
 
-/// The largest force [N] with which the scenario's hand would press the scenario's tissue if it had
-/// it under its own finger: the same will, grip and handle, no device, no link, no stage. Pure.
-[[nodiscard]] double direct_touch_force(const Scenario& scenario);
+/// What the scenario's hand would do if it had the scenario's tissue under its own finger: the same
+/// will, grip and handle, no device, no link, no stage. A light hand that taps quickly on something
+/// stiff bounces, with any law and with none. Pure.
+[[nodiscard]] OwnFinger direct_touch(const Scenario& scenario);
 
 }  // namespace palp::lab

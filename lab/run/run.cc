@@ -64,7 +64,12 @@ class Probe {
         phases_{scenario.script},
         field_{patient::make_field(scenario.phantom, scenario.tissue.viscous_factor)},
         relaxing_{scenario.phantom.relaxation},
-        judge_{{.force_cap = scenario.hand.force_max, .period = seconds(scenario.link.period)}} {}
+        judge_{{.force_cap = scenario.hand.force_max,
+                .period = seconds(scenario.link.period),
+                .force_continuous = scenario.hand.force_continuous,
+                .own_swing = scenario.finger.swing,
+                .stiffest = scenario.coupling.mmt.slope_max,
+                .round_trip = seconds(scenario.up.delay.mean + scenario.down.delay.mean)}} {}
 
   /// Of the run's path and time at a look.
   struct Moment {
@@ -336,6 +341,7 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   result.virtual_span = simulator.now() - start;
   result.outcome = surgeon.hand.progress().outcome;
   result.metrics = probe.judge().metrics();
+  result.metrics.contact.force_direct = scenario.finger.force;
   result.ticks = probe.take_ticks();
   result.depths = patient.file.estimates();
   result.map = patient.file.map();

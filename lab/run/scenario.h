@@ -7,6 +7,7 @@
 #include "common/coupling/any_coupling.h"
 #include "common/link/link.h"
 #include "depth/depth_estimator.h"
+#include "judge/metrics.h"
 #include "lab/run/device_timing.h"
 #include "lab/run/fault.h"
 #include "netem/model/impairment.h"
@@ -18,6 +19,12 @@
 #include "surgeon_site/surgeon_node.h"
 
 namespace palp::lab {
+
+/// What a hand does at the tissue with its own finger (direct_touch.h); NaN, 0: nobody asked.
+struct OwnFinger {
+  double force{judge::kUndefined};  ///< [N], most that it presses
+  double swing{};                   ///< [m], of its own swinging, as judge::SwingFinder has it
+};
 
 /// Everything that decides a run: two runs of equal scenarios give equal bits.
 struct Scenario {
@@ -46,7 +53,8 @@ struct Scenario {
   bool lying{};            ///< the patient site's models are random (adversary.h)
   /// > 0: nothing passes for 2 s from there on.
   Duration blackout_at_script_time{};
-  Fault fault;  ///< with one, sites meet by the handshake
+  Fault fault;         ///< with one, sites meet by the handshake
+  OwnFinger finger{};  ///< what the run is held against; it decides nothing of it
 };
 
 /// What the devices of a run say of themselves, their timing included.

@@ -76,6 +76,19 @@ TEST(RunJudgeTest, AHandThatSwingsWhileItMovesIsUnstable) {
   EXPECT_STREQ(metrics.unstable_reason, "the hand swings by itself");
 }
 
+TEST(RunJudgeTest, AHandThatSwingsNoMoreThanWithItsOwnFingerIsStable) {
+  MetricsConfig config;
+  config.own_swing = 0.4e-3;
+  RunJudge judge{config};
+  for (int i = 0; i < 2000; ++i) {
+    RunTick tick = tick_at(i, PhaseKind::Tap, 1);
+    tick.hand = hammering(1e-3 * i);
+    judge.look(tick);
+  }
+  EXPECT_NEAR(judge.metrics().contact.hand_swing, 0.8e-3, 0.02e-3);
+  EXPECT_FALSE(judge.metrics().unstable);
+}
+
 TEST(RunJudgeTest, ASineThatAPersonMeansIsStable) {
   EXPECT_FALSE(judged(PhaseKind::FreeAir, hammering, hammering).unstable);
 }

@@ -95,7 +95,7 @@ TEST(MotionGateTest, ATargetWithinTheSpeedStillWaitsForTheAcceleration) {
 TEST(MotionGateTest, ReachesAFarTargetAndStaysThere) {
   MotionGate gate = gate_at(0);
   double position = 0;
-  for (int i = 0; i < 400; ++i) position = gate.pass(engaged(20e-3), kTick).position;
+  for (int i = 0; i < 500; ++i) position = gate.pass(engaged(20e-3), kTick).position;
   EXPECT_EQ(position, 20e-3);
 }
 
@@ -141,6 +141,22 @@ TEST(MotionGateTest, IsSlowNearAKnownSurface) {
   }
   EXPECT_LE(fastest, 0.05 + 1e-9);
   EXPECT_GT(fastest, 0.04);
+}
+
+TEST(MotionGateTest, WhereNoSurfaceIsKnownItIsAsSlowInwardsAsNearOne) {
+  const auto speed_after = [](double target) {
+    MotionGate gate = gate_at(0);
+    double before = 0;
+    double speed = 0;
+    for (int i = 0; i < 60; ++i) {
+      const double position = gate.pass(engaged(target), kTick).position;
+      speed = (position - before) / 1e-3;
+      before = position;
+    }
+    return speed;
+  };
+  EXPECT_NEAR(speed_after(40e-3), MotionGateConfig{}.speed_near, 1e-6);
+  EXPECT_NEAR(speed_after(-40e-3), -MotionGateConfig{}.speed_max, 1e-6);
 }
 
 TEST(MotionGateTest, GoesNoDeeperThanItsDepth) {
@@ -283,8 +299,8 @@ TEST(MotionGateTest, CatchesUpSlowlyAfterAGap) {
   before = gate.command();
   double fastest = 0;
   for (int i = 0; i < 100; ++i) {
-    const double position = gate.pass(engaged(5e-3), kTick).position;
-    fastest = std::max(fastest, position - before);
+    const double position = gate.pass(engaged(-15e-3), kTick).position;
+    fastest = std::max(fastest, before - position);
     before = position;
   }
   EXPECT_GT(fastest, 100e-6) << "caught up, the speed of the air holds again";

@@ -79,5 +79,23 @@ TEST(BreathingEstimatorTest, AnotherPlaceBreathesWithTheSameBreath) {
   EXPECT_NEAR(swing.surface() + swing.swing().now, 2e-3 + breath(25), 0.1e-3);
 }
 
+TEST(BreathingEstimatorTest, WhatRelaxesIsNoSoftness) {
+  BreathingEstimator swing{kPeriod};
+  double past = 0;
+  for (int tick = 0; tick < 16'000; ++tick) {
+    const double t = kPeriod * tick;
+    const double tip = palpating(t);
+    const double elastic = hertz(tip - 1e-3 * std::sin(1.6 * t));
+    past += kPeriod / 1.2 * (elastic - past);
+    swing.step();
+    swing.see(tip, std::max(0.0, 1.3 * elastic - 0.3 * past));
+  }
+  ASSERT_TRUE(swing.believed());
+  const auto& shapes = swing.shapes();
+  const double at_three = shapes[0] * 3 * std::sqrt(3 / 1.3) + shapes[1] * 9 + shapes[2] * 27;
+  EXPECT_NEAR(at_three / hertz(3e-3), 1, 0.06) << "16 % where nothing relaxes";
+  EXPECT_NEAR(swing.relaxing()[0] + swing.relaxing()[1], 0.3, 0.1);
+}
+
 }  // namespace
 }  // namespace palp::coupling

@@ -153,6 +153,63 @@ TEST(ContactEstimatorTest, TissueThatBreathesIsFoundAsStiffAsItIsAtAnyPace) {
   }
 }
 
+/// Three presses that are held and then moved about, on a tissue that relaxes and from 1.5 mm on is
+/// `under` times as stiff; noise and steps of the sensor. @returns how often a breath was told.
+int breaths_told(double stiffness, double under) {
+  const ContactEstimatorConfig config;
+  ContactEstimator estimator{config};
+  LowPass pole{config.sensor.pole, config.period};
+  double past = 0;
+  int told = 0;
+  for (int tick = 0; tick < 14'000; ++tick) {
+    const double t = 1e-3 * tick;
+    const double inside = std::fmod(std::max(0.0, t - 1), 4.3);
+    const double position = -3e-3 + 6e-3 * std::clamp(inside, 0.0, 1.0) +
+                            (inside > 2.5 ? 1e-3 * std::sin(3 * (inside - 2.5)) : 0);
+    const double depth = std::max(0.0, position);
+    const double elastic = stiffness * (depth < 1.5e-3 ? depth : 1.5e-3 + under * (depth - 1.5e-3));
+    past += 1e-3 / 0.8 * (elastic - past);
+    const double noisy = pole.step(std::max(0.0, elastic - 0.25 * past)) +
+                         15e-3 * random_normal(7, 3, static_cast<std::uint64_t>(tick));
+    estimator.step(position, 0.05 * std::round(noisy / 0.05));
+    told += estimator.model().swing_rate > 0 ? 1 : 0;
+  }
+  return told;
+}
+
+TEST(ContactEstimatorTest, ALargeBreathOfSoftTissueIsFoundAndKept) {
+  const ContactEstimatorConfig config;
+  ContactEstimator estimator{config};
+  LowPass pole{config.sensor.pole, config.period};
+  double off = 0;
+  double whole = 0;
+  double position = -3e-3;
+  for (int tick = 0; tick < 20'000; ++tick) {
+    const double t = 1e-3 * tick;
+    const double inside = std::fmod(std::max(0.0, t - 1), 8.0);
+    const double aim = t < 1 || inside > 7.3 ? -3e-3 : 3.2e-3;
+    position += std::clamp(aim - position, -60e-6, 60e-6);
+    const double depth = std::max(0.0, position - 1.5e-3 * std::sin(2.155 * t));
+    const double truth = 0.0158 * std::pow(1e3 * depth, 2.5);
+    const double noise = 15e-3 * random_normal(7, 3, static_cast<std::uint64_t>(tick));
+    estimator.step(position, 0.05 * std::round((pole.step(truth) + noise) / 0.05));
+    if (t < 9 || truth < 0.05) continue;
+    const ContactModel found = contact_model(estimator.model());
+    const double told = found.force(position - found.surface - estimator.model().swing);
+    off += (told - truth) * (told - truth);
+    whole += truth * truth;
+  }
+  EXPECT_LT(std::sqrt(off / whole), 0.06);
+}
+
+TEST(ContactEstimatorTest, WhatATissueAtRestExplainsIsNoBreath) {
+  for (const double stiffness : {60.0, 200.0, 600.0}) {
+    for (const double under : {0.3, 3.0}) {
+      EXPECT_EQ(breaths_told(stiffness, under), 0) << stiffness << ' ' << under;
+    }
+  }
+}
+
 TEST(ContactEstimatorTest, FindsASurfaceThatIsNotWhereTheAxisBegins) {
   for (const double surface : {-2e-3, 0.7e-3}) {
     EXPECT_NEAR(learn(hertz, surface).surface, surface, 0.051e-3);

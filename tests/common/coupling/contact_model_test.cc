@@ -120,6 +120,19 @@ TEST(ContactModelTest, WhatIsNotTooSteepIsShownAsItIs) {
   EXPECT_EQ(shown.reach, model.reach);
 }
 
+TEST(ContactModelTest, WhatAStiffSkinLostIsMadeGoodInSofterTissueUnderIt) {
+  // 2,500 N/m to 1 mm, then 600.
+  ContactModel skin{0, {}, 8e-3};
+  skin.stiffness = {2500, 2500, 600, 600, 600, 600, 600, 600, 600, 600, 600, 600};
+  const ContactModel shown = no_steeper(skin, 1500);
+  EXPECT_LT(shown.force(0.5e-3), 0.7 * skin.force(0.5e-3));
+  EXPECT_NEAR(shown.force(4e-3) / skin.force(4e-3), 1, 0.01);
+  for (int i = 1; i <= 100; ++i) {
+    EXPECT_LE(shown.force(0.1e-3 * i), skin.force(0.1e-3 * i) + 1e-12) << i;
+    EXPECT_LE(shown.slope(0.1e-3 * i), 1500 * (1 + 1e-9)) << i;
+  }
+}
+
 RelaxingContact some_relaxing() {
   RelaxingContact contact;
   contact.become(some_model(),

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/plan/scenario_file.h"
+#include "surgeon_site/script_reader.h"
 
 /// Goal: what a hand would press with its own finger is known without device, link or stage.
 namespace palp::lab {
@@ -14,7 +15,7 @@ namespace {
 double touched(const std::vector<std::string>& settings) {
   config::Document document = load_scenario("standard").value();
   for (const std::string& setting : settings) EXPECT_TRUE(document.set(setting)) << setting;
-  return direct_touch_force(make_scenario("touch", document).value());
+  return direct_touch(make_scenario("touch", document).value()).force;
 }
 
 const std::string kPlain = "patient.simulated_phantom.phantom=closed-form:100";
@@ -41,6 +42,21 @@ TEST(DirectTouchTest, WhereTheSurfaceComesUpThePressIsHarder) {
                      "patient.simulated_phantom.breathing_mm=1",
                      "patient.simulated_phantom.breathing_hz=0.3"}),
             1.1 * touched({kPlain}));
+}
+
+TEST(DirectTouchTest, ALightHandThatTapsQuicklyOnSomethingStiffBounces) {
+  config::Document document = load_scenario("standard").value();
+  for (const char* setting :
+       {"patient.simulated_phantom.phantom=random:1453753669872186", "surgeon.hand.grip=light"}) {
+    ASSERT_TRUE(document.set(setting)) << setting;
+  }
+  Scenario scenario = make_scenario("touch", document).value();
+  const auto swing_at = [&](const std::string& taps) {
+    scenario.script = surgeon::parse_script(taps, scenario.hand.plant.grip.stiffness).value();
+    return direct_touch(scenario).swing;
+  };
+  EXPECT_GT(swing_at("hold 1\nmove -3 0.5\ntaps 5 4 0.24 0\nlift 1 1\n"), 0.3e-3);
+  EXPECT_EQ(swing_at("hold 1\nmove -3 0.5\npress 4 1 3\nlift 1 1\n"), 0);
 }
 
 }  // namespace
