@@ -190,7 +190,7 @@ void declare_of_whole(config::CommandLine& line, DatabaseFlags& flags) {
 }  // namespace
 
 void declare_database(config::CommandLine& line, DatabaseFlags& flags) {
-  line.text("--out", flags.out, "FILE", "the database; an unfinished one is completed");
+  line.output("--out", flags.out, "the database; an unfinished one is completed");
   line.text("--shard", flags.shard, "i/n", "one share of the grid; merge puts them together");
   line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "processes at a time");
   declare_block(line, flags.block);
@@ -201,7 +201,7 @@ void declare_database(config::CommandLine& line, DatabaseFlags& flags) {
 }
 
 void declare_merge(config::CommandLine& line, DatabaseFlags& flags) {
-  line.text("--out", flags.out, "FILE", "the database");
+  line.output("--out", flags.out, "the database");
   declare_of_whole(line, flags);
   line.report(flags.report, kSchema);
   line.arguments("FILE", flags.files, "databases of one grid");

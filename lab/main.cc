@@ -195,7 +195,7 @@ int main(int argc, char** argv) {
            "PREFIX",
            "keep the session files: PREFIXsurgeon.mcap, PREFIXpatient.mcap");
   run.report(arguments.report, "palp.run/1");
-  run.text("--trace", arguments.trace, "FILE", "every tick of the script as CSV");
+  run.output("--trace", arguments.trace, "every tick of the script as CSV");
   palp::plot::declare_picture(run, arguments.picture, "hand and tip over time");
   palp::lab::BatchArguments batch;
   palp::lab::declare_batch_verbs(line, batch);

@@ -340,7 +340,7 @@ int run(int argc, char** argv) {
   metrics.toggle("--json", flags.json, "print the report in place of the table");
   auto& report = line.verb("report", "a page of HTML that tells how the session went");
   declare(report, flags);
-  report.text("--out", flags.page, "FILE", "the page; written over");
+  report.output("--out", flags.page, "the page; written over");
   report.required();
   return config::run_program(line, argc, argv, [&] {
     const std::string verb = line.chosen_verb();

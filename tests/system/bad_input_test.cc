@@ -69,6 +69,32 @@ TEST_F(BadInputTest, AReportThatWouldTakeThePlaceOfAnotherFile) {
   expect_refusal("palp-lab merge " + file + " --report " + file, kBadInput, "name one file");
 }
 
+TEST_F(BadInputTest, AnOutputThatWouldTakeThePlaceOfAnotherFile) {
+  const std::string file = folder_ + "/precious";
+  std::ofstream{file} << "content";
+  const std::string pair = " --surgeon other --patient " + file;
+  for (const std::string& command : {"palp-review report" + pair + " --out ",
+                                     "palp-review plot" + pair + " --svg ",
+                                     "palp-review plot" + pair + " --pdf ",
+                                     "palp-lab run " + file + " --svg ",
+                                     "palp-lab run standard --phantom file:" + file + " --trace ",
+                                     "palp-lab merge " + file + " --cases ",
+                                     "palp-fem merge " + file + " --out ",
+                                     "palp-fem curve --vtu " + file + " --csv "}) {
+    expect_refusal(command + file, kBadInput, "name one file");
+    EXPECT_EQ(text("precious"), "content");
+  }
+  const std::string prefix = folder_ + "/q";
+  expect_refusal(
+      "palp-lab run standard --session-files " + prefix + " --trace " + prefix + "surgeon.mcap",
+      kBadInput,
+      "name one file");
+  std::ofstream{folder_ + "/old.mcap"} << "\x89MCAP0\r\n";
+  expect_refusal("palp-fem curve --indentations-mm 0.5 --csv " + folder_ + "/old.mcap",
+                 kBadInput,
+                 "a session file");
+}
+
 TEST_F(BadInputTest, UnknownFlag) {
   for (const std::string program :
        {"palp-surgeon", "palp-patient", "palp-lab run", "palp-netem relay"}) {
