@@ -195,6 +195,19 @@ TEST_F(BadInputTest, EveryProgramComplainsInTheSameForm) {
   }
 }
 
+TEST_F(BadInputTest, ARunWhoseSessionFilesAreNotWholeIsNotDone) {
+  // No file of more than 100 kB, as on a disk that is full.
+  const std::string line = "trap '' XFSZ; ulimit -f 200; '" PALP_BINARY_FOLDER
+                           "'/palp-lab run standard --session-files '" +
+                           folder_ + "/x-' --report '" + folder_ + "/r.json' >'" + folder_ +
+                           "/out' 2>'" + folder_ + "/err'";
+  const int status = std::system(line.c_str());
+  EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 1);
+  EXPECT_THAT(text("err"), HasSubstr("recording failed: session file "));
+  EXPECT_THAT(text("out"), HasSubstr("stability")) << "the run is worth what it was";
+  EXPECT_THAT(text("r.json"), HasSubstr("could not be written any further"));
+}
+
 TEST_F(BadInputTest, ARunWhoseOperatorIsRefusedIsNotDone) {
   const std::string scenario = folder_ + "/refused.textproto";
   std::ofstream{scenario} << "surgeon { coupling { name: 'direct' } } up { delay_ms: 50 }\n"
