@@ -132,7 +132,7 @@ ExitStatus run_merge(const MergeFlags& flags) {
   if (session->time_line.known) {
     std::cout << ", to " << fixed(seconds(session->time_line.uncertainty) * 1e3, 3) << " ms";
   }
-  std::cout << '\n';
+  std::cout << '\n' << lack_lines(*session);
   return {};
 }
 
@@ -163,9 +163,10 @@ ExitStatus run_export(const ExportFlags& flags) {
   ask.to = flags.to;
   std::stringstream list{flags.topics};
   for (std::string topic; std::getline(list, topic, ',');) ask.topics.push_back(topic);
-  const auto rows = export_file(file->bytes(), ask, flags.out);
-  if (!rows) return config::refusal("palp-review", rows.error());
-  std::cout << *rows << " messages in " << harmless_line(flags.out) << '\n';
+  const auto done = export_file(file->bytes(), ask, flags.out);
+  if (!done) return config::refusal("palp-review", done.error());
+  std::cout << done->messages << " messages in " << harmless_line(flags.out) << '\n';
+  if (!done->lack.empty()) std::cout << "the file " << done->lack << '\n';
   return {};
 }
 
@@ -233,16 +234,18 @@ ExitStatus run_compare(const std::vector<std::string>& files) {
     return bad_input("compare needs the files in pairs: surgeon, patient, surgeon, patient, ...");
   }
   std::vector<Compared> sessions;
+  std::string lacks;
   for (std::size_t i = 0; i + 1 < files.size(); i += 2) {
     const auto session = load_pair(files[i], files[i + 1]);
     if (!session) return exit_status_of(session.error());
+    lacks += lack_lines(*session);
     const auto tissue = tissue_of(session->patient, files[i + 1]);
     if (!tissue) return exit_status_of(tissue.error());
     sessions.push_back({.name = std::to_string(i / 2 + 1),
                         .coupling = session->surgeon.entry("coupling").value_or(""),
                         .metrics = judge_session(*session, *tissue ? &**tissue : nullptr).metrics});
   }
-  std::cout << comparison_text(sessions);
+  std::cout << comparison_text(sessions) << lacks;
   return {};
 }
 
@@ -261,11 +264,7 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
   if (judged.by_truth) take_truth(taps, *session, judged.run_began, judged.metrics.taps);
   if (!flags.json && flags.page.empty()) {
     std::cout << tap_table(taps, overall_depth(taps), session->patient.map);
-    for (const SiteData* site : {surgeon, patient}) {
-      if (site->report.lack.empty()) continue;
-      std::cout << "the " << record::site_name(site->site) << "'s file " << site->report.lack
-                << '\n';
-    }
+    std::cout << lack_lines(*session);
   }
   if (flags.report.empty() && flags.page.empty() && !flags.json) {
     return {};
@@ -273,6 +272,9 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
   const ProgramReports reports{.surgeon = optional_text(flags.reports.surgeon),
                                .patient = optional_text(flags.reports.patient),
                                .relay = optional_text(flags.relay)};
+  if (const auto ours = check_reports(*session, reports); !ours) {
+    return exit_status_of(ours.error());
+  }
   const auto document =
       demo_report(*session, taps, flags.asked, reports, flags.sessions, metrics_json(judged));
   if (flags.json) std::cout << document;
@@ -281,7 +283,7 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
     if (const auto written = config::write_whole_file(flags.page, page); !written) {
       return cannot_open("--out: " + written.error().text);
     }
-    std::cout << "report: " << harmless_line(flags.page) << '\n';
+    std::cout << "report: " << harmless_line(flags.page) << '\n' << lack_lines(*session);
   }
   if (flags.report.empty()) return {};
   if (const auto written = config::write_whole_file(flags.report, document); !written) {
