@@ -195,6 +195,21 @@ TEST_F(BadInputTest, EveryProgramComplainsInTheSameForm) {
   }
 }
 
+TEST_F(BadInputTest, AResultThatStandardOutputDoesNotTakeIsNotDone) {
+  for (const std::string command : {"palp-fem curve --indentations-mm 0.5",
+                                    "palp-netem presets",
+                                    "palp-lab scenarios",
+                                    "palp-review --version",
+                                    "palp-surgeon --help"}) {
+    SCOPED_TRACE(command);
+    const std::string line =
+        "'" PALP_BINARY_FOLDER "'/" + command + " >/dev/full 2>'" + folder_ + "/err'";
+    const int status = std::system(line.c_str());
+    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, kNotReached);
+    EXPECT_THAT(text("err"), HasSubstr(": standard output could not be written"));
+  }
+}
+
 TEST_F(BadInputTest, ARunWhoseSessionFilesAreNotWholeIsNotDone) {
   // No file of more than 100 kB, as on a disk that is full.
   const std::string line = "trap '' XFSZ; ulimit -f 200; '" PALP_BINARY_FOLDER
