@@ -155,7 +155,7 @@ Error unusable(const std::filesystem::path& file, const std::string& why) {
 /// Why a file that OpenSSL did not take could not be used: it speaks of its own libraries.
 Error not_taken(const std::filesystem::path& file, const std::string& wanted) {
   ERR_clear_error();
-  if (std::filesystem::exists(file) && !is_regular_file(file)) {
+  if (std::filesystem::exists(file) && !is_plain_file(file)) {
     return unusable(file, "is no regular file");
   }
   errno = 0;
@@ -198,12 +198,12 @@ bool stands_there(const std::filesystem::path& file) {
 
 Result<bool> trust(SSL_CTX* ssl, const std::filesystem::path& folder) {
   const std::filesystem::path authority = folder / "authority.pem";
-  if (!is_regular_file(authority) || SSL_CTX_load_verify_file(ssl, authority.c_str()) != 1) {
+  if (!is_plain_file(authority) || SSL_CTX_load_verify_file(ssl, authority.c_str()) != 1) {
     return tl::unexpected{not_taken(authority, "certificate in PEM form")};
   }
   const std::filesystem::path revoked = folder / kRevokedFile;
   if (!stands_there(revoked) || read_whole_file(revoked.string()) == kNothingRevoked) return false;
-  const Openssl<BIO> file = open_regular_file(revoked);
+  const Openssl<BIO> file = open_plain_file(revoked);
   X509_STORE* store = SSL_CTX_get_cert_store(ssl);
   int lists = 0;
   for (bool more = file != nullptr; more;) {
@@ -242,7 +242,7 @@ Result<std::string> use_certificates(Credentials::Context& context,
                                      Role role) {
   SSL_CTX* ssl = context.ssl.get();
   const std::filesystem::path certificate = folder / kCertificateFile;
-  if (!is_regular_file(certificate) ||
+  if (!is_plain_file(certificate) ||
       SSL_CTX_use_certificate_chain_file(ssl, certificate.c_str()) != 1) {
     return tl::unexpected{not_taken(certificate, "certificate in PEM form")};
   }
@@ -251,8 +251,7 @@ Result<std::string> use_certificates(Credentials::Context& context,
     return tl::unexpected{unusable(certificate, why)};
   }
   const std::filesystem::path key = folder / kKeyFile;
-  if (!is_regular_file(key) ||
-      SSL_CTX_use_PrivateKey_file(ssl, key.c_str(), SSL_FILETYPE_PEM) != 1) {
+  if (!is_plain_file(key) || SSL_CTX_use_PrivateKey_file(ssl, key.c_str(), SSL_FILETYPE_PEM) != 1) {
     const bool other_key = ERR_GET_REASON(ERR_peek_last_error()) == X509_R_KEY_VALUES_MISMATCH;
     return tl::unexpected{other_key ? unusable(key, "does not fit the certificate beside it")
                                     : not_taken(key, "private key in PEM form without passphrase")};
