@@ -254,8 +254,13 @@ ExitStatus run_merge(const DatabaseFlags& flags) {
       table = std::move(*found);
       continue;
     }
+    const std::size_t before = table->members.size();
+    const bool adds_shape = !table->off_axis && found->off_axis;
     if (auto merged = merge_table(*table, *found); !merged) {
       return bad_input(name + ": " + merged.error().text);
+    }
+    if (table->members.size() == before && !adds_shape && !found->members.empty()) {
+      return bad_input(name + " adds no curve to those before it: is one given twice?");
     }
   }
   if (auto checked = check_if_asked(*table, flags); !checked) {

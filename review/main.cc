@@ -51,6 +51,9 @@ Result<record::MappedFile> open_session(const std::string& path) {
   if (!file) {
     return file;
   }
+  if (file->bytes().empty()) {
+    return fail(path + " is empty");
+  }
   const record::McapReader reader{file->bytes()};
   if (!reader.report().faults.empty()) {
     return fail(path + ": " + reader.report().faults.front().text);
@@ -86,6 +89,9 @@ ExitStatus run_recover(const std::string& in, const std::string& out) {
   const auto file = open_session(in);
   if (!file) {
     return exit_status_of(file.error());
+  }
+  if (!holds_message(file->bytes())) {
+    return bad_input(in + ": there is no message in it, nothing can be recovered");
   }
   auto sink = record::FileSink::create(out);
   if (!sink) {

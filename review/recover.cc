@@ -63,6 +63,14 @@ class Copy {
 
 }  // namespace
 
+bool holds_message(const record::FileBytes& file) {
+  record::McapReader reader{file};
+  while (const auto item = reader.next()) {
+    if (std::holds_alternative<record::McapMessage>(*item)) return true;
+  }
+  return false;
+}
+
 Result<Recovery> recover(const record::FileBytes& file, record::ByteSink& out) {
   record::McapReader reader{file};
   Copy copy{out};

@@ -26,6 +26,9 @@ struct Recovery {
   std::map<std::string, TopicLoss> losses;  ///< topics with a gap or a disorder
 };
 
+/// Whether there is anything to recover.
+[[nodiscard]] bool holds_message(const record::FileBytes& file);
+
 /// Writes all that can be read of `file` again, with index and summary.
 [[nodiscard]] Result<Recovery> recover(const record::FileBytes& file, record::ByteSink& out);
 

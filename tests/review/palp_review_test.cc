@@ -67,6 +67,16 @@ TEST_F(PalpReviewTest, CheckFailsOnACutOffFileAndRecoverMendsIt) {
   EXPECT_EQ(run("recover s.mcap s.mcap"), 3);
 }
 
+TEST_F(PalpReviewTest, WhereNothingIsNothingIsRecovered) {
+  save("empty.mcap", {});
+  EXPECT_EQ(run("info empty.mcap"), 2);
+  fs::resize_file(folder_ + "/s.mcap", 100);
+  for (const char* const file : {"empty.mcap", "s.mcap"}) {
+    EXPECT_EQ(run(std::string{"recover "} + file + " out.mcap"), 2) << file;
+    EXPECT_FALSE(fs::exists(folder_ + "/out.mcap"));
+  }
+}
+
 TEST_F(PalpReviewTest, EveryVerbSaysWhatAFileLacks) {
   cut_off("s.mcap");
   const std::string pair = " --surgeon s.mcap --patient p.mcap ";
