@@ -70,8 +70,8 @@ void declare_curve(config::CommandLine& line, CurveFlags& flags) {
   line.choice("--model", flags.model, {"l1", "neo"}, "small strain, or finite neo-Hookean");
   line.text("--indentations-mm", flags.indentations_mm, "LIST", "0.5,1,2 or from:to:step");
   line.choice("--accuracy", flags.accuracy, {"coarse", "normal", "fine"}, "of the mesh");
-  line.text("--csv", flags.csv, "FILE", "rows d_mm,F_N,contact_radius_mm,err_N");
-  line.text("--vtu", flags.vtu, "FILE", "deformed section at the largest indentation");
+  line.output("--csv", flags.csv, "rows d_mm,F_N,contact_radius_mm,err_N");
+  line.output("--vtu", flags.vtu, "deformed section at the largest indentation");
 }
 
 Result<std::vector<double>> parse_indentations(const std::string& text) {

@@ -190,7 +190,7 @@ void declare_of_whole(config::CommandLine& line, DatabaseFlags& flags) {
 }  // namespace
 
 void declare_database(config::CommandLine& line, DatabaseFlags& flags) {
-  line.text("--out", flags.out, "FILE", "the database; an unfinished one is completed");
+  line.output("--out", flags.out, "the database; an unfinished one is completed");
   line.text("--shard", flags.shard, "i/n", "one share of the grid; merge puts them together");
   line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "processes at a time");
   declare_block(line, flags.block);
@@ -201,7 +201,7 @@ void declare_database(config::CommandLine& line, DatabaseFlags& flags) {
 }
 
 void declare_merge(config::CommandLine& line, DatabaseFlags& flags) {
-  line.text("--out", flags.out, "FILE", "the database");
+  line.output("--out", flags.out, "the database");
   declare_of_whole(line, flags);
   line.report(flags.report, kSchema);
   line.arguments("FILE", flags.files, "databases of one grid");
@@ -254,8 +254,13 @@ ExitStatus run_merge(const DatabaseFlags& flags) {
       table = std::move(*found);
       continue;
     }
+    const std::size_t before = table->members.size();
+    const bool adds_shape = !table->off_axis && found->off_axis;
     if (auto merged = merge_table(*table, *found); !merged) {
       return bad_input(name + ": " + merged.error().text);
+    }
+    if (table->members.size() == before && !adds_shape && !found->members.empty()) {
+      return bad_input(name + " adds no curve to those before it: is one given twice?");
     }
   }
   if (auto checked = check_if_asked(*table, flags); !checked) {

@@ -236,10 +236,12 @@ Result<void> merge_table(DepthTable& into, const DepthTable& from) {
   }
   std::set<decltype(key(DepthMember{}))> have;
   for (const DepthMember& member : into.members) have.insert(key(member));
+  const std::size_t before = into.members.size();
   for (const DepthMember& member : from.members) {
     if (have.insert(key(member)).second) into.members.push_back(member);
   }
   if (!into.off_axis) into.off_axis = from.off_axis;
+  if (into.members.size() == before) return {};  // what was checked is as it was
   into.checked_count = 0;
   into.checked_rms = into.checked_max = 0;
   return {};

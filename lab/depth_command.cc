@@ -260,8 +260,8 @@ void declare_depth(config::CommandLine& line, DepthFlags& flags) {
   line.text("--shard", flags.shard, "I/N", "only every Nth case, from the Ith on");
   line.toggle("--resume", flags.resume, "only the cases that FILE.partial of --cases lacks");
   line.report(flags.report, "palp.depth/1");
-  line.text("--cases", flags.cases, "FILE", "every case to the bit, for merge and --resume");
-  line.text("--csv", flags.csv, "FILE", "a line per case");
+  line.output("--cases", flags.cases, "every case to the bit, for merge and --resume");
+  line.output("--csv", flags.csv, "a line per case");
   plot::declare_picture(line, flags.picture, "estimates, intervals and the truth");
   config::declare_submission(line, flags.submission);
 }

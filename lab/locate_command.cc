@@ -50,7 +50,7 @@ void declare_locate(config::CommandLine& line, LocateFlags& flags) {
   line.number("--loss", flags.loss, {.min = 0, .max = 0.5}, "of sessions, each way");
   line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "threads at a time");
   line.report(flags.report, "palp.locate/1");
-  line.text("--csv", flags.csv, "FILE", "a line per case");
+  line.output("--csv", flags.csv, "a line per case");
   plot::declare_picture(line, flags.picture, "depth, place and radius over the true depth");
 }
 

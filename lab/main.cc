@@ -89,17 +89,34 @@ Result<SessionFiles> open_files(const std::string& prefix) {
   return files;
 }
 
-/// A run that its duration ends is done; one that the operator gave up is not, whatever was felt
-/// until then.
-ExitStatus exit_status_of(surgeon::ScriptOutcome outcome, const std::string& summary) {
-  using surgeon::ScriptOutcome;
-  if (outcome == ScriptOutcome::Completed || outcome == ScriptOutcome::None) {
-    return {ExitCode::Done, summary};
+/// Of the first file that has one; empty: both are on the disk.
+std::string recording_fault(SessionFiles& files) {
+  std::string fault;
+  for (auto* const file : {&files.surgeon, &files.patient}) {
+    if (!*file) continue;
+    (*file)->finish();
+    if (fault.empty()) fault = (*file)->fault();
   }
+  return fault;
+}
+
+/// A run that its duration ends is done; one that the operator gave up is not, whatever was felt
+/// until then, nor one whose session files are not whole.
+ExitStatus exit_status_of(surgeon::ScriptOutcome outcome,
+                          const std::string& recording_fault,
+                          const std::string& summary) {
+  using surgeon::ScriptOutcome;
+  const bool played = outcome == ScriptOutcome::Completed || outcome == ScriptOutcome::None;
+  if (played && recording_fault.empty()) return {ExitCode::Done, summary};
   (void)std::fputs(summary.c_str(), stdout);
-  return {ExitCode::CutShort,
-          "palp-lab: the script was not played to its end: " +
-              std::string{surgeon::to_string(outcome)}};
+  std::string reason = "palp-lab: ";
+  if (!played) {
+    reason += "the script was not played to its end: " + std::string{surgeon::to_string(outcome)};
+  }
+  if (!recording_fault.empty()) {
+    reason += (played ? "recording failed: " : "; recording failed: ") + recording_fault;
+  }
+  return {played ? ExitCode::Missed : ExitCode::CutShort, reason};
 }
 
 plot::Figure figure_of(const RunResult& result) {
@@ -126,7 +143,8 @@ ExitStatus run(const Arguments& arguments) {
   const io::ProcessTime end = io::process_time();
   const RunAccount account{.scenario = arguments.scenario,
                            .cpu = seconds(end.cpu - begin.cpu),
-                           .wall = seconds(end.wall - begin.wall)};
+                           .wall = seconds(end.wall - begin.wall),
+                           .recording_fault = recording_fault(*files)};
   if (!arguments.report.empty()) {
     const auto written =
         config::write_whole_file(arguments.report, run_report(*scenario, result, account));
@@ -140,7 +158,8 @@ ExitStatus run(const Arguments& arguments) {
     const auto drawn = plot::write_picture(figure_of(result), arguments.picture);
     if (!drawn) return {ExitCode::CannotOpen, "palp-lab: " + drawn.error().text};
   }
-  return exit_status_of(result.outcome, run_summary(*scenario, result, account));
+  return exit_status_of(
+      result.outcome, account.recording_fault, run_summary(*scenario, result, account));
 }
 
 /// Bits agree where these do, and mostly where they do not.
@@ -195,7 +214,7 @@ int main(int argc, char** argv) {
            "PREFIX",
            "keep the session files: PREFIXsurgeon.mcap, PREFIXpatient.mcap");
   run.report(arguments.report, "palp.run/1");
-  run.text("--trace", arguments.trace, "FILE", "every tick of the script as CSV");
+  run.output("--trace", arguments.trace, "every tick of the script as CSV");
   palp::plot::declare_picture(run, arguments.picture, "hand and tip over time");
   palp::lab::BatchArguments batch;
   palp::lab::declare_batch_verbs(line, batch);

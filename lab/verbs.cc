@@ -286,7 +286,7 @@ ExitStatus merge(const BatchArguments& arguments) {
 void declare_common(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {
   verb.whole("--seed", arguments.seed, {.min = 0, .max = kSeedMax}, "of everything random; 1");
   verb.report(arguments.report, schema);
-  verb.text("--cases", arguments.cases, "FILE", "one row per case as CSV");
+  verb.output("--cases", arguments.cases, "one row per case as CSV");
   plot::declare_picture(verb, arguments.picture, "a picture");
 }
 
@@ -378,7 +378,7 @@ void declare_batch_verbs(config::CommandLine& line, BatchArguments& arguments) {
   joined.text("--coupling", arguments.coupling, "NAME", "refuse cases of another");
   tissue_flag(joined);
   joined.text("--metric", arguments.metric, "NAME", "what the picture shows; tap_a_error");
-  joined.text("--csv", arguments.csv, "FILE", "of depth: a line per case");
+  joined.output("--csv", arguments.csv, "of depth: a line per case");
   joined.arguments("FILE", arguments.list, "as --cases wrote them");
   joined.required();
   declare_common(joined, arguments, kMontecarlo);

@@ -322,7 +322,7 @@ void declare_simulate(config::CommandLine& line, SimulateFlags& flags) {
              "of everything random");
   line.choice(
       "--mode", flags.mode, {"exact", "netem-6.1"}, "what the numbers say, or what Linux does");
-  line.text("--csv", flags.csv, "FILE", "a line for each datagram and copy");
+  line.output("--csv", flags.csv, "a line for each datagram and copy");
   line.footer(std::string{impairment_help()});
 }
 

@@ -94,7 +94,20 @@ Word place(Place& to) {
           }};
 }
 
+/// The first name that stands there twice; empty: none.
+std::string doubled(const std::vector<std::string>& names) {
+  for (auto one = names.begin(); one != names.end(); ++one) {
+    if (std::find(names.begin(), one, *one) != one) return *one;
+  }
+  return {};
+}
+
 Result<void> take_words(const Part& part, const std::vector<Word>& known) {
+  std::vector<std::string> given;
+  for (const auto& [name, text] : part.words) given.push_back(name);
+  if (const std::string name = doubled(given); !name.empty()) {
+    return fail("'" + name + "' is given twice of a " + part.name);
+  }
   for (const auto& [name, text] : part.words) {
     const auto word = std::find_if(known.begin(), known.end(), [&, &name = name](const Word& one) {
       return one.name == name;
@@ -230,7 +243,12 @@ bool are_tissue_words(std::string_view text) {
 
 Result<DescribedTissue> parse_tissue_words(std::string_view text) {
   DescribedTissue tissue;
+  std::vector<std::string> whole;  // inclusions there may be several of
   for (const Part& part : parts_of(text)) {
+    if (part.name != "ball" && part.name != "cylinder") whole.push_back(part.name);
+    if (const std::string name = doubled(whole); !name.empty()) {
+      return fail("'" + name + "' is given twice");
+    }
     if (auto taken = take_part(part, tissue); !taken) return tl::unexpected<Error>(taken.error());
   }
   if (!tissue.block.database) {

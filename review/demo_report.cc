@@ -185,6 +185,27 @@ Json site_json(const SiteData& site, const Json& report, const std::string& path
   return json;
 }
 
+Result<void> check_report(const SiteData& site, const Json& report) {
+  if (report.is_null()) return {};
+  const std::string name{record::site_name(site.site)};
+  const Json told = told_by(site);
+  if (told.is_null() && site.entry("time") == "virtual") {
+    return fail("the " + name + "'s file is of a simulation, which has no report of a site");
+  }
+  if (const Json of = member(report, "site"); !of.is_null() && of.text() != name) {
+    return fail("the report given for the " + name + "'s site is of another: " + of.dump());
+  }
+  for (const char* const key : {"seed", "ticks", "sent", "accepted", "lateness_max_us"}) {
+    const Json in_file = member(told, key);
+    const Json in_report = member(report, key);
+    if (in_file.is_null() || in_report.is_null()) continue;
+    if (in_file.dump() == in_report.dump()) continue;
+    return fail("the report given for the " + name + "'s site is of another session: " + key +
+                " is " + in_report.dump() + ", in the session file " + in_file.dump());
+  }
+  return {};
+}
+
 /// [s] since the surgeon's file begins, on the surgeon's line of time.
 double instant(const SessionPair& session, const SiteData& site, TimePoint at) {
   const bool surgeons = &site == &session.surgeon;
@@ -231,6 +252,11 @@ Json marks_json(const SessionPair& session) {
 }
 
 }  // namespace
+
+Result<void> check_reports(const SessionPair& session, const ProgramReports& reports) {
+  if (auto ours = check_report(session.surgeon, parsed(reports.surgeon)); !ours) return ours;
+  return check_report(session.patient, parsed(reports.patient));
+}
 
 std::string demo_report(const SessionPair& session,
                         const std::vector<Tap>& taps,

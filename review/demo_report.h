@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/config/json.h"
+#include "common/core/result.h"
 #include "review/site_data.h"
 #include "review/taps.h"
 #include "review/time_line.h"
@@ -24,10 +25,15 @@ struct Asked {
 /// Texts of the reports that the programs of a session wrote; empty: absent. What they would have
 /// said is then taken from the session files where these know it, else null.
 struct ProgramReports {
-  std::string surgeon;  ///< palp.site/2
-  std::string patient;  ///< palp.site/2
-  std::string relay;    ///< palp.relay/1
+  std::string surgeon{};  ///< palp.site/2
+  std::string patient{};  ///< palp.site/2
+  std::string relay{};    ///< palp.relay/1
 };
+
+/// Fails where a report is not of the program that wrote the session file: of the other site, or
+/// with another figure than the file holds of its program. What a file does not tell is believed,
+/// but a simulation has no report of a site.
+[[nodiscard]] Result<void> check_reports(const SessionPair& session, const ProgramReports& reports);
 
 struct SessionPaths {
   std::string surgeon;

@@ -10,6 +10,7 @@
 #include "common/core/printable.h"
 #include "common/record/session_encoder.h"
 #include "common/record/session_reader.h"
+#include "review/lack.h"
 #include "review/record_numbers.h"
 #include "review/text.h"
 
@@ -26,8 +27,8 @@ class Selection {
  public:
   Selection(const record::FileBytes& file, const ExportAsk& ask) : file_{file}, ask_{ask} {}
 
-  /// act(topic, record, instant, reader) for each.
-  void for_each(const auto& act) const {
+  /// act(topic, record, instant, stamp) for each. @returns what the file lacks there.
+  std::string for_each(const auto& act) const {
     record::SessionReader reader{file_};
     std::optional<TimePoint> began;
     std::map<link::Role, record::SessionEncoder> encoders;
@@ -37,7 +38,7 @@ class Selection {
       if (!prepared) continue;
       if (!began) {
         began = reader.began_at();
-        look_only_between(reader, *began);
+        if (ask_.from > 0 || ask_.to) look_only_between(reader, *began);
       }
       const double t = seconds(elapsed(*began, prepared->at));
       if (t < ask_.from || (ask_.to && t >= *ask_.to)) continue;
@@ -45,6 +46,7 @@ class Selection {
       if (std::ranges::find(ask_.topics, topic) == ask_.topics.end()) continue;
       act(topic, *entry, t, reader.clock().stamp(prepared->at));
     }
+    return lack_of(reader);
   }
 
  private:
@@ -82,14 +84,16 @@ struct Columns {
   }
 };
 
-/// Topics with what they have in the file.
-using Survey = std::map<std::string, Columns>;
+struct Survey {
+  std::map<std::string, Columns> topics;  ///< with what they have in the file
+  std::string lack;
+};
 
 Survey survey(const Selection& selection) {
   Survey found;
-  selection.for_each(
+  found.lack = selection.for_each(
       [&](const std::string& topic, const record::SessionEntry& entry, double, auto) {
-        found[topic].see(numbers_of(entry.record, entry.site));
+        found.topics[topic].see(numbers_of(entry.record, entry.site));
       });
   return found;
 }
@@ -101,7 +105,7 @@ std::uint64_t write_csv(const Selection& selection, const Columns& columns, std:
   (void)std::fputs(line.c_str(), out);
   std::vector<std::string> cells(columns.names.size());
   std::uint64_t rows = 0;
-  selection.for_each(
+  (void)selection.for_each(
       [&](const std::string&, const record::SessionEntry& entry, double t, std::uint64_t stamp) {
         std::ranges::fill(cells, std::string{});
         for (const NamedNumber& number : numbers_of(entry.record, entry.site)) {
@@ -164,7 +168,7 @@ std::string variable_of(const std::string& topic, const std::string& column) {
 std::uint64_t write_mat(const Selection& selection, const Survey& found, std::FILE* out) {
   std::uint64_t end = 0;
   std::map<std::string, std::vector<MatColumn>> files;
-  for (const auto& [topic, columns] : found) {
+  for (const auto& [topic, columns] : found.topics) {
     std::vector<MatColumn>& list = files[topic];
     for (const char* name : {"t_s", "utc_s"}) {
       list.emplace_back(out, variable_of(topic, name), columns.rows, end);
@@ -175,11 +179,11 @@ std::uint64_t write_mat(const Selection& selection, const Survey& found, std::FI
   }
   std::uint64_t rows = 0;
   std::vector<double> values;
-  selection.for_each([&](const std::string& topic,
-                         const record::SessionEntry& entry,
-                         double t,
-                         std::uint64_t stamp) {
-    const Columns& columns = found.at(topic);
+  (void)selection.for_each([&](const std::string& topic,
+                               const record::SessionEntry& entry,
+                               double t,
+                               std::uint64_t stamp) {
+    const Columns& columns = found.topics.at(topic);
     values.assign(columns.names.size(), std::nan(""));
     for (const NamedNumber& number : numbers_of(entry.record, entry.site)) {
       const auto place = columns.places.find(number.name);
@@ -202,8 +206,8 @@ Result<void> check_topics(const Survey& found, const ExportAsk& ask) {
     return fail("a CSV file holds one topic; --format mat holds several");
   }
   for (const std::string& topic : ask.topics) {
-    const auto one = found.find(topic);
-    if (one == found.end()) {
+    const auto one = found.topics.find(topic);
+    if (one == found.topics.end()) {
       return fail("topic " + printable(topic) + " has no message there; palp-review info lists " +
                   "the file's topics");
     }
@@ -217,21 +221,21 @@ Result<void> check_topics(const Survey& found, const ExportAsk& ask) {
 
 }  // namespace
 
-Result<std::uint64_t> export_file(const record::FileBytes& file,
-                                  const ExportAsk& ask,
-                                  const std::string& path) {
+Result<Exported> export_file(const record::FileBytes& file,
+                             const ExportAsk& ask,
+                             const std::string& path) {
   const Selection selection{file, ask};
   const Survey found = survey(selection);
   if (const auto fine = check_topics(found, ask); !fine) return tl::unexpected(fine.error());
   const OutFile out{std::fopen(path.c_str(), "wbx")};  // never over an existing file
   if (!out) return fail_to_reach(path + " cannot be made, or is there already");
   const std::uint64_t rows = ask.format == ExportFormat::Csv
-                                 ? write_csv(selection, found.begin()->second, out.get())
+                                 ? write_csv(selection, found.topics.begin()->second, out.get())
                                  : write_mat(selection, found, out.get());
   if (std::fflush(out.get()) != 0 || std::ferror(out.get()) != 0) {
     return fail_to_reach(path + " could not be written whole: is the disk full?");
   }
-  return rows;
+  return Exported{.messages = rows, .lack = found.lack};
 }
 
 }  // namespace palp::review

@@ -24,12 +24,17 @@ struct ExportAsk {
   ExportFormat format{ExportFormat::Csv};
 };
 
+struct Exported {
+  std::uint64_t messages{};
+  std::string lack;  ///< of what was looked at, as lack_of() has it
+};
+
 /// Writes the numbers of a session file's messages to `path`, a new file; columns carry units in
 /// their names and begin with `t_s`, since the file's first sample, and `stamp_ns` or, in MAT files
-/// whose numbers are doubles, `utc_s`. @returns how many messages were written; a sentence where a
-/// topic is not in the file, or the file cannot be made.
-[[nodiscard]] Result<std::uint64_t> export_file(const record::FileBytes& file,
-                                                const ExportAsk& ask,
-                                                const std::string& path);
+/// whose numbers are doubles, `utc_s`. @returns what was written; a sentence where a topic is not
+/// in the file, or the file cannot be made.
+[[nodiscard]] Result<Exported> export_file(const record::FileBytes& file,
+                                           const ExportAsk& ask,
+                                           const std::string& path);
 
 }  // namespace palp::review

@@ -16,7 +16,7 @@ std::string describe_topics(const record::SessionReader& reader) {
     const std::string rate =
         span > 0 ? fixed(static_cast<double>(topic.messages - 1) / span, 1) : "-";
     text += left(printable(name), 22) + right(std::to_string(topic.messages), 10) +
-            right(rate, 10) + right(std::to_string(topic.skipped), 9) + "  " +
+            right(rate, 10) + right(std::to_string(topic.sequence.missing()), 9) + "  " +
             printable(topic.schema) + '\n';
   }
   return text;

@@ -51,6 +51,9 @@ Result<record::MappedFile> open_session(const std::string& path) {
   if (!file) {
     return file;
   }
+  if (file->bytes().empty()) {
+    return fail(path + " is empty");
+  }
   const record::McapReader reader{file->bytes()};
   if (!reader.report().faults.empty()) {
     return fail(path + ": " + reader.report().faults.front().text);
@@ -86,6 +89,9 @@ ExitStatus run_recover(const std::string& in, const std::string& out) {
   const auto file = open_session(in);
   if (!file) {
     return exit_status_of(file.error());
+  }
+  if (!holds_message(file->bytes())) {
+    return bad_input(in + ": there is no message in it, nothing can be recovered");
   }
   auto sink = record::FileSink::create(out);
   if (!sink) {
@@ -132,7 +138,7 @@ ExitStatus run_merge(const MergeFlags& flags) {
   if (session->time_line.known) {
     std::cout << ", to " << fixed(seconds(session->time_line.uncertainty) * 1e3, 3) << " ms";
   }
-  std::cout << '\n';
+  std::cout << '\n' << lack_lines(*session);
   return {};
 }
 
@@ -163,9 +169,10 @@ ExitStatus run_export(const ExportFlags& flags) {
   ask.to = flags.to;
   std::stringstream list{flags.topics};
   for (std::string topic; std::getline(list, topic, ',');) ask.topics.push_back(topic);
-  const auto rows = export_file(file->bytes(), ask, flags.out);
-  if (!rows) return config::refusal("palp-review", rows.error());
-  std::cout << *rows << " messages in " << harmless_line(flags.out) << '\n';
+  const auto done = export_file(file->bytes(), ask, flags.out);
+  if (!done) return config::refusal("palp-review", done.error());
+  std::cout << done->messages << " messages in " << harmless_line(flags.out) << '\n';
+  if (!done->lack.empty()) std::cout << "the file " << done->lack << '\n';
   return {};
 }
 
@@ -233,16 +240,18 @@ ExitStatus run_compare(const std::vector<std::string>& files) {
     return bad_input("compare needs the files in pairs: surgeon, patient, surgeon, patient, ...");
   }
   std::vector<Compared> sessions;
+  std::string lacks;
   for (std::size_t i = 0; i + 1 < files.size(); i += 2) {
     const auto session = load_pair(files[i], files[i + 1]);
     if (!session) return exit_status_of(session.error());
+    lacks += lack_lines(*session);
     const auto tissue = tissue_of(session->patient, files[i + 1]);
     if (!tissue) return exit_status_of(tissue.error());
     sessions.push_back({.name = std::to_string(i / 2 + 1),
                         .coupling = session->surgeon.entry("coupling").value_or(""),
                         .metrics = judge_session(*session, *tissue ? &**tissue : nullptr).metrics});
   }
-  std::cout << comparison_text(sessions);
+  std::cout << comparison_text(sessions) << lacks;
   return {};
 }
 
@@ -261,11 +270,7 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
   if (judged.by_truth) take_truth(taps, *session, judged.run_began, judged.metrics.taps);
   if (!flags.json && flags.page.empty()) {
     std::cout << tap_table(taps, overall_depth(taps), session->patient.map);
-    for (const SiteData* site : {surgeon, patient}) {
-      if (site->report.lack.empty()) continue;
-      std::cout << "the " << record::site_name(site->site) << "'s file " << site->report.lack
-                << '\n';
-    }
+    std::cout << lack_lines(*session);
   }
   if (flags.report.empty() && flags.page.empty() && !flags.json) {
     return {};
@@ -273,6 +278,9 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
   const ProgramReports reports{.surgeon = optional_text(flags.reports.surgeon),
                                .patient = optional_text(flags.reports.patient),
                                .relay = optional_text(flags.relay)};
+  if (const auto ours = check_reports(*session, reports); !ours) {
+    return exit_status_of(ours.error());
+  }
   const auto document =
       demo_report(*session, taps, flags.asked, reports, flags.sessions, metrics_json(judged));
   if (flags.json) std::cout << document;
@@ -281,7 +289,7 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
     if (const auto written = config::write_whole_file(flags.page, page); !written) {
       return cannot_open("--out: " + written.error().text);
     }
-    std::cout << "report: " << harmless_line(flags.page) << '\n';
+    std::cout << "report: " << harmless_line(flags.page) << '\n' << lack_lines(*session);
   }
   if (flags.report.empty()) return {};
   if (const auto written = config::write_whole_file(flags.report, document); !written) {
@@ -340,7 +348,7 @@ int run(int argc, char** argv) {
   metrics.toggle("--json", flags.json, "print the report in place of the table");
   auto& report = line.verb("report", "a page of HTML that tells how the session went");
   declare(report, flags);
-  report.text("--out", flags.page, "FILE", "the page; written over");
+  report.output("--out", flags.page, "the page; written over");
   report.required();
   return config::run_program(line, argc, argv, [&] {
     const std::string verb = line.chosen_verb();

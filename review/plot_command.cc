@@ -38,7 +38,7 @@ config::ExitStatus run_plot(const PlotFlags& flags) {
   if (const auto drawn = plot::write_picture(figure, flags.picture); !drawn) {
     return {ExitCode::CannotOpen, "palp-review: " + drawn.error().text};
   }
-  return {};
+  return {ExitCode::Done, lack_lines(*session)};
 }
 
 }  // namespace palp::review

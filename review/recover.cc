@@ -4,6 +4,7 @@
 
 #include "common/core/printable.h"
 #include "common/record/mcap_writer.h"
+#include "common/record/sequence_count.h"
 #include "common/record/wall_clock.h"
 #include "review/copied_channels.h"
 #include "review/lack.h"
@@ -35,29 +36,40 @@ class Copy {
   [[nodiscard]] const std::map<std::string, TopicLoss>& losses() const { return losses_; }
 
  private:
-  struct Last {
-    std::uint32_t sequence{};
-    std::uint64_t log_time{};  ///< [ns]
+  struct Seen {
+    record::SequenceCount sequence;
+    std::uint64_t log_time{};  ///< [ns], of the newest
   };
 
   void count_gap(const record::McapMessage& message) {
-    const auto [last, first] = last_.try_emplace(message.channel->id);
-    const std::uint32_t expected = first ? 0 : last->second.sequence + 1;
-    if (const std::uint32_t gap = message.sequence - expected; gap != 0) {
+    Seen& seen = seen_[message.channel->id];
+    const std::uint64_t before = seen.sequence.missing();
+    seen.sequence.see(message.sequence);
+    const std::uint64_t missing = seen.sequence.missing();
+    if (missing > 0 || seen.sequence.disordered() > 0) {
       TopicLoss& loss = losses_[message.channel->topic];
-      loss.after = loss.messages == 0 ? last->second.log_time : loss.after;
-      loss.messages += gap;
+      if (before == 0 && missing > 0) loss.after = seen.log_time;
+      loss.messages = missing;
+      loss.disordered = seen.sequence.disordered();
     }
-    last->second = {.sequence = message.sequence, .log_time = message.log_time};
+    seen.log_time = message.log_time;
   }
 
   record::McapWriter writer_;
   CopiedChannels channels_{writer_};
-  std::map<std::uint16_t, Last> last_;
+  std::map<std::uint16_t, Seen> seen_;
   std::map<std::string, TopicLoss> losses_;
 };
 
 }  // namespace
+
+bool holds_message(const record::FileBytes& file) {
+  record::McapReader reader{file};
+  while (const auto item = reader.next()) {
+    if (std::holds_alternative<record::McapMessage>(*item)) return true;
+  }
+  return false;
+}
 
 Result<Recovery> recover(const record::FileBytes& file, record::ByteSink& out) {
   record::McapReader reader{file};
@@ -90,8 +102,14 @@ std::string describe(const Recovery& recovery) {
     text += "fault at byte " + std::to_string(fault.offset) + ": " + fault.text + '\n';
   }
   for (const auto& [topic, loss] : recovery.losses) {
-    text += printable(topic) + ": " + std::to_string(loss.messages) +
-            " messages lost, first after " + record::utc_text(loss.after) + "\n";
+    if (loss.messages > 0) {
+      text += printable(topic) + ": " + std::to_string(loss.messages) +
+              " messages lost, first after " + record::utc_text(loss.after) + "\n";
+    }
+    if (loss.disordered > 0) {
+      text += printable(topic) + ": " + std::to_string(loss.disordered) +
+              " messages twice or not in their order\n";
+    }
   }
   return text;
 }

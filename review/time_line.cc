@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/core/printable.h"
+#include "common/record/session_encoder.h"
 
 namespace palp::review {
 namespace {
@@ -134,6 +135,16 @@ Result<SessionPair> pair_of(SiteData surgeon, SiteData patient) {
   }
   pair.time_line = time_line_of(pair.surgeon, pair.patient);
   return pair;
+}
+
+std::string lack_lines(const SessionPair& session) {
+  std::string lines;
+  for (const SiteData* site : {&session.surgeon, &session.patient}) {
+    if (site->report.lack.empty()) continue;
+    lines +=
+        "the " + std::string{record::site_name(site->site)} + "'s file " + site->report.lack + '\n';
+  }
+  return lines;
 }
 
 Result<SessionPair> load_pair(const std::string& surgeon, const std::string& patient) {

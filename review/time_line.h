@@ -34,7 +34,9 @@ struct SessionPair {
 
 /// Fails where both files name sessions and none is the same: with the ids of both.
 [[nodiscard]] Result<SessionPair> pair_of(SiteData surgeon, SiteData patient);
-/// The same of two files, by their names.
+/// What the files lack, a line of text for each that lacks something.
+[[nodiscard]] std::string lack_lines(const SessionPair& session);
+/// pair_of() two files, by their names.
 [[nodiscard]] Result<SessionPair> load_pair(const std::string& surgeon, const std::string& patient);
 
 }  // namespace palp::review

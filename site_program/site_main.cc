@@ -55,7 +55,7 @@ int run(const SiteMain& program, int argc, const char* const* argv) {
     report.exit_status = exit_status_of(*exit_status);
     return finish(report, program.report_file);
   }
-  if (const auto closed = config::closed_report(program.line)) return config::leave(*closed);
+  if (const auto closed = config::closed_output(program.line)) return config::leave(*closed);
   const auto verb = std::ranges::find(program.verbs, program.line.chosen_verb(), &SideVerb::name);
   if (verb != program.verbs.end()) {
     const ExitStatus exit_status = verb->run();

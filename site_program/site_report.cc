@@ -140,7 +140,7 @@ int finish(const SiteReport& report, const std::string& path) {
       if (code == config::ExitCode::Done) code = config::ExitCode::CannotOpen;
     }
   }
-  return config::exit_value(code);
+  return config::leave({code, ""});
 }
 
 }  // namespace palp::site_program

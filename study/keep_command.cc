@@ -59,7 +59,7 @@ void declare_export(config::CommandLine& line, KeepFlags& flags) {
               flags.format,
               {std::begin(kExportFormats), std::end(kExportFormats)},
               "whose; the folder itself is a BIDS data set");
-  line.text("--out", flags.out, "FILE", "the file");
+  line.output("--out", flags.out, "the file");
   line.required();
 }
 

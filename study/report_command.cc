@@ -55,7 +55,7 @@ std::string kind_of(const std::vector<ParticipantRows>& rows) {
 void declare_report(config::CommandLine& line, StudyReportFlags& flags) {
   line.argument("FOLDER", flags.folder, "of a study whose participants answered");
   line.required();
-  line.text("--out", flags.out, "FILE", "the page; otherwise derivatives/palp-study/report.html");
+  line.output("--out", flags.out, "the page; otherwise derivatives/palp-study/report.html");
   line.toggle("--unblind", flags.unblind, "name the conditions; that it was done is written down");
   line.toggle("--pdf", flags.pdf, "the figures as PDF too");
   line.footer("One page of HTML with everything inside; the figures as SVG beside it.");

@@ -9,7 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/number.h"
-#include "common/config/report_clash.h"
+#include "common/config/output_clash.h"
 #include "common/config/settings_flags.h"
 #include "common/core/check.h"
 #include "common/core/printable.h"
@@ -18,6 +18,8 @@ namespace palp::config {
 namespace {
 
 using Values = std::vector<std::string>;
+
+constexpr const char* kReportFlag = "--report";
 
 ExitStatus bad_input(std::string text) { return {ExitCode::BadInput, std::move(text)}; }
 
@@ -47,8 +49,8 @@ struct CommandLine::Parts {
   bool verb_needed{true};
   Values words;  ///< as given to the program
 
-  const CLI::Option* report{};
-  std::string report_schema;
+  Values outputs;             ///< their flags
+  std::string report_schema;  ///< empty: there is none
 
   SettingsFlags settings;
 
@@ -68,6 +70,10 @@ struct CommandLine::Parts {
   [[nodiscard]] std::optional<ExitStatus> take_values();
   [[nodiscard]] std::optional<ExitStatus> take_all();
   [[nodiscard]] std::optional<ExitStatus> unexpected_word() const;
+  [[nodiscard]] std::vector<Output> given_outputs() const;
+  // Of the program:
+  [[nodiscard]] std::vector<const Parts*> with_verbs() const;
+  [[nodiscard]] std::optional<std::string> clash_of(const Output& output) const;
 };
 
 void CommandLine::Parts::declare(const std::string& name,
@@ -310,9 +316,13 @@ void CommandLine::knob(const std::string& flag, const std::string& path) {
   });
 }
 
+void CommandLine::output(const std::string& flag, std::string& file, const std::string& meaning) {
+  text(flag, file, "FILE", meaning);
+  parts_->outputs.push_back(flag);
+}
+
 void CommandLine::report(std::string& file, const std::string& schema) {
-  text("--report", file, "FILE", "JSON report, written also when the run fails");
-  parts_->report = parts_->declared.back().option;
+  output(kReportFlag, file, "JSON report, written also when the run fails");
   parts_->report_schema = schema;
 }
 
@@ -367,20 +377,48 @@ bool CommandLine::given(std::string_view flag) const {
   return false;
 }
 
+std::vector<Output> CommandLine::Parts::given_outputs() const {
+  std::vector<Output> given;
+  for (const Declared& one : declared) {
+    if (std::ranges::find(outputs, one.name) == outputs.end() || one.option->empty()) continue;
+    given.push_back({one.name, one.option->results().front()});
+  }
+  return given;
+}
+
+std::optional<std::string> CommandLine::Parts::clash_of(const Output& output) const {
+  if (words.empty() || output.file.empty()) return std::nullopt;
+  const auto chosen = app->get_subcommands();
+  return output_clash(output,
+                      words,
+                      chosen.empty() ? "" : chosen.front()->get_name(),
+                      settings.document != nullptr ? settings.document->text() : "");
+}
+
+std::vector<const CommandLine::Parts*> CommandLine::Parts::with_verbs() const {
+  std::vector<const Parts*> all{this};
+  for (const auto& verb : verbs) all.push_back(verb->parts_.get());
+  return all;
+}
+
 CommandLine::AskedReport CommandLine::asked_report() const {
   AskedReport asked;
-  if (parts_->report != nullptr && !parts_->report->empty()) {
-    asked = {parts_->report->results().front(), parts_->report_schema};
-  }
-  for (const auto& verb : parts_->verbs) {
-    if (asked.file.empty()) asked = verb->asked_report();
-  }
-  const Document* settings = parts_->settings.document;
-  if (!asked.file.empty() && !parts_->words.empty()) {
-    asked.clash = report_clash(
-        asked.file, parts_->words, chosen_verb(), settings != nullptr ? settings->text() : "");
+  for (const Parts* const part : parts_->with_verbs()) {
+    for (const Output& output : part->given_outputs()) {
+      if (output.flag != kReportFlag || !asked.file.empty()) continue;
+      asked = {output.file, part->report_schema, parts_->clash_of(output)};
+    }
   }
   return asked;
+}
+
+std::optional<std::string> CommandLine::clash() const {
+  for (const Parts* const part : parts_->with_verbs()) {
+    for (const Output& output : part->given_outputs()) {
+      if (auto clash = parts_->clash_of(output)) return clash;
+    }
+  }
+  return std::nullopt;
 }
 
 const std::string& CommandLine::program() const { return parts_->program; }

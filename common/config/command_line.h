@@ -77,7 +77,9 @@ class CommandLine {
   /// A boolean field gives a switch that sets it to true.
   void knob(const std::string& flag, const std::string& path);
 
-  /// --report FILE, JSON of `schema`.
+  /// A file that the program writes, over what was there.
+  void output(const std::string& flag, std::string& file, const std::string& meaning);
+  /// The output --report, JSON of `schema`.
   void report(std::string& file, const std::string& schema);
 
   /// What --help says below the flags: lines of at most 100 columns. Not beside settings(), which
@@ -100,6 +102,9 @@ class CommandLine {
     std::optional<std::string> clash{};  ///< why it must not be written there
   };
   [[nodiscard]] AskedReport asked_report() const;
+  /// Of the outputs that were given, the first that must not be written there: why; see
+  /// output_clash.h.
+  [[nodiscard]] std::optional<std::string> clash() const;
   [[nodiscard]] const std::string& program() const;
   /// The verb's name; empty: none.
   [[nodiscard]] std::string chosen_verb() const;

@@ -14,7 +14,8 @@ struct ExitStatus {
 };
 
 /// Prints the text (to standard output if Done, else to standard error; an empty one
-/// not at all) and gives main()'s value.
+/// not at all) and gives main()'s value: Done becomes CannotOpen, with a sentence, where standard
+/// output did not take all that the program has printed. Of every program the last act.
 [[nodiscard]] int leave(const ExitStatus& exit_status);
 
 /// `program` was given something wrong, or something that cannot be read.

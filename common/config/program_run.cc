@@ -6,10 +6,12 @@
 
 namespace palp::config {
 
-std::optional<ExitStatus> closed_report(const CommandLine& line) {
+std::optional<ExitStatus> closed_output(const CommandLine& line) {
+  if (const auto clash = line.clash()) {
+    return ExitStatus{ExitCode::BadInput, line.program() + ": " + *clash};
+  }
   const CommandLine::AskedReport asked = line.asked_report();
   if (asked.file.empty()) return std::nullopt;
-  if (asked.clash) return ExitStatus{ExitCode::BadInput, line.program() + ": " + *asked.clash};
   const auto can = can_write_file(asked.file);
   if (can) return std::nullopt;
   return ExitStatus{ExitCode::CannotOpen, line.program() + ": --report: " + can.error().text};
@@ -21,7 +23,7 @@ int run_program(CommandLine& line,
                 const std::function<ExitStatus()>& body) {
   std::optional<ExitStatus> exit_status = line.parse(argc, argv);
   try {
-    if (!exit_status) exit_status = closed_report(line);
+    if (!exit_status) exit_status = closed_output(line);
     if (!exit_status) exit_status = body();
   } catch (const std::exception& failure) {
     exit_status = refusal(line.program(), {.text = failure.what(), .unreachable = true});

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include <fcntl.h>
@@ -38,16 +39,29 @@ int write_all(int file, std::string_view text) {
   return 0;
 }
 
-/// Writes `text` into `path`, made or emptied first. Zero, or the error number.
-int fill_file(const std::string& path, std::string_view text, bool sync) {
-  // Opening a pipe that nobody reads would wait for a reader.
-  constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
-  const int file = ::open(path.c_str(), kFlags, 0666);
+/// Where the bytes of a file go.
+struct Destination {
+  bool renamed{};              ///< through `temporary`, else straight to the path
+  std::string target;          ///< the file behind a link
+  std::string temporary;       ///< beside it
+  std::optional<mode_t> mode;  ///< of the file that is there
+};
+
+/// Writes `text` there, into the temporary file or straight. Zero, or the error number.
+int fill_file(const Destination& to, std::string_view text) {
+  // Opening a pipe that nobody reads would wait for a reader. At the temporary name there is
+  // nothing but what a run left that was killed, or a link that somebody laid there.
+  const int flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK | O_NOCTTY |
+                    (to.renamed ? O_NOFOLLOW : 0);
+  const int file = ::open((to.renamed ? to.temporary : to.target).c_str(), flags, 0666);
   if (file < 0) {
     return errno;
   }
-  int error = write_all(file, text);
-  if (error == 0 && sync && ::fsync(file) != 0) {
+  int error = to.mode && ::fchmod(file, *to.mode) != 0 ? errno : 0;
+  if (error == 0) {
+    error = write_all(file, text);
+  }
+  if (error == 0 && to.renamed && ::fsync(file) != 0) {
     error = errno;
   }
   if (::close(file) != 0 && error == 0) {
@@ -66,24 +80,23 @@ void sync_folder(const std::filesystem::path& file) {
   }
 }
 
-/// Where the bytes of a file go.
-struct Destination {
-  bool renamed{};         ///< through `temporary`, else straight to the path
-  std::string target;     ///< the file behind a link
-  std::string temporary;  ///< beside it
-};
-
 Result<Destination> destination_of(const std::string& path) {
   struct stat there {};
   const bool exists = ::stat(path.c_str(), &there) == 0;
   if (exists && S_ISDIR(there.st_mode)) {
     return cannot_write(path, EISDIR);
   }
+  // Renaming asks for the folder's rights alone.
+  constexpr mode_t kMayWrite = S_IWUSR | S_IWGRP | S_IWOTH;
+  if (exists && S_ISREG(there.st_mode) && (there.st_mode & kMayWrite) == 0) {
+    return cannot_write(path, EACCES);
+  }
   Destination to;
   // Renaming would put a file in the place of a device.
   to.renamed = !exists || S_ISREG(there.st_mode);
   to.target = path;
-  if (exists) {  // a link stays a link: the file behind it is replaced
+  if (exists && to.renamed) {  // a link stays a link: the file behind it is replaced
+    to.mode = there.st_mode & 07777;
     std::error_code unresolved;
     const auto resolved = std::filesystem::canonical(path, unresolved);
     to.target = unresolved ? path : resolved.string();
@@ -102,7 +115,7 @@ Result<void> can_write_file(const std::string& path) {
   if (!to->renamed) {  // opening a pipe might wait for its reader
     return ::access(path.c_str(), W_OK) == 0 ? Result<void>{} : cannot_write(path, errno);
   }
-  const int error = fill_file(to->temporary, {}, false);
+  const int error = fill_file(*to, {});
   (void)::unlink(to->temporary.c_str());
   return error == 0 ? Result<void>{} : cannot_write(path, error);
 }
@@ -121,10 +134,10 @@ Result<void> write_whole_file(const std::string& path, std::string_view text) {
     return tl::unexpected(to.error());
   }
   if (!to->renamed) {
-    const int error = fill_file(path, text, false);
+    const int error = fill_file(*to, text);
     return error == 0 ? Result<void>{} : cannot_write(path, error);
   }
-  int error = fill_file(to->temporary, text, true);
+  int error = fill_file(*to, text);
   if (error == 0 && ::rename(to->temporary.c_str(), to->target.c_str()) != 0) {
     error = errno;
   }

@@ -11,8 +11,9 @@
 namespace palp::config {
 
 /// The file is there whole or not at all: written to a temporary name in the same folder, synced,
-/// renamed. A device or a pipe (/dev/stdout) is written to directly. Blocks; not for a control
-/// thread. The error is a CannotOpen.
+/// renamed. What it takes the place of keeps its rights, and stays if nobody may write to it. A
+/// device or a pipe (/dev/stdout) is written to directly. Blocks; not for a control thread. The
+/// error is a CannotOpen.
 [[nodiscard]] Result<void> write_whole_file(const std::string& path, std::string_view text);
 
 /// Whether write_whole_file() could write there now: tries, and leaves nothing behind. For runs

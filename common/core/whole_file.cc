@@ -42,6 +42,7 @@ Result<std::string> read_whole_file(const std::string& path, std::size_t size_ma
   }
   const int error = errno;
   (void)::close(file);
+  if (count < 0 && error == ETIMEDOUT) return cannot_read("it gives nothing for 2 s");
   if (count < 0) return cannot_read(std::generic_category().message(error));
   if (text.size() > size_max) {
     return cannot_read("it is longer than " + std::to_string(size_max) + " bytes");

@@ -9,8 +9,8 @@ void declare_picture(config::CommandLine& line, PictureFlags& flags, const std::
   std::vector<std::string> names;
   names.reserve(kStyles.size());
   for (const Style& style : kStyles) names.emplace_back(style.name);
-  line.text("--svg", flags.svg, "FILE", meaning);
-  line.text("--pdf", flags.pdf, "FILE", "the same as PDF");
+  line.output("--svg", flags.svg, meaning);
+  line.output("--pdf", flags.pdf, "the same as PDF");
   line.choice("--style", flags.style, names, "of the picture; a paper's column: 85 mm, 175 mm");
 }
 

@@ -82,7 +82,9 @@ std::optional<McapItem> McapReader::next_in_chunk() {
     case McapOpcode::Message: {
       auto item = read_message(*record);
       if (item) {
-        ++chunk_messages_[std::get<McapMessage>(*item).channel->id];
+        const auto& message = std::get<McapMessage>(*item);
+        ++chunk_messages_[message.channel->id];
+        check_time(message.log_time);
       }
       return item;
     }
@@ -92,6 +94,13 @@ std::optional<McapItem> McapReader::next_in_chunk() {
       }
       return std::nullopt;  // unknown opcodes are skipped: later versions may have more
   }
+}
+
+/// Who looks for a span of time would pass over such a chunk.
+void McapReader::check_time(std::uint64_t log_time) {
+  if (chunk_time_wrong_ || (log_time >= chunk_begin_ && log_time <= chunk_end_)) return;
+  chunk_time_wrong_ = true;
+  fault(chunk_at_, "a message of this chunk lies outside of the time that the chunk states");
 }
 
 std::optional<McapItem> McapReader::next_in_file() {
@@ -162,14 +171,15 @@ void McapReader::open_chunk(const RawRecord& record) {
   chunk_ = {};
   chunk_offset_ = 0;
   chunk_at_ = record.offset;
+  chunk_time_wrong_ = false;
   chunk_messages_.clear();
   if (chunk_places_.size() < limits_.chunk_places_max) {
     chunk_places_.push_back({record.offset, kMcapPrefixSize + record.content.size()});
   }
   ++report_.chunks;
   ByteCursor cursor{record.content};
-  const auto begin = cursor.read<std::uint64_t>();
-  const auto end = cursor.read<std::uint64_t>();
+  chunk_begin_ = cursor.read<std::uint64_t>();
+  chunk_end_ = cursor.read<std::uint64_t>();
   const auto size = cursor.read<std::uint64_t>();
   const auto crc = cursor.read<std::uint32_t>();
   const auto compression = cursor.text();
@@ -179,7 +189,7 @@ void McapReader::open_chunk(const RawRecord& record) {
     fault(record.offset, "a field of this chunk reaches beyond its end");
     return;
   }
-  if (passes_over(begin, end) || !admit_unpacked(record, size)) return;
+  if (passes_over(chunk_begin_, chunk_end_) || !admit_unpacked(record, size)) return;
   const auto answer = decompressor_.decompress(compression, bytes, size);
   const bool crc_wrong = answer.error.empty() && crc != 0 && crc32(answer.records) != crc;
   if (!answer.error.empty() || crc_wrong) {

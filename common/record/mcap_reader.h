@@ -135,6 +135,7 @@ class McapReader {
   static std::optional<RawRecord> cut_record(std::span<const std::byte> bytes, std::size_t& offset);
   std::optional<McapItem> interpret(const RawRecord& record);
   void open_chunk(const RawRecord& record);
+  void check_time(std::uint64_t log_time);
   [[nodiscard]] bool passes_over(std::uint64_t begin, std::uint64_t end) const noexcept;
   void find_chunks_to_pass_over();
   bool admit_unpacked(const RawRecord& record, std::uint64_t size);
@@ -176,6 +177,9 @@ class McapReader {
   std::span<const std::byte> chunk_;  ///< records of the open chunk
   std::size_t chunk_offset_{};        ///< within them
   std::uint64_t chunk_at_{};          ///< in the file
+  std::uint64_t chunk_begin_{};       ///< [ns], as it states
+  std::uint64_t chunk_end_{};         ///< [ns], as it states
+  bool chunk_time_wrong_{};           ///< and told
   bool data_ended_{};
   std::map<std::uint16_t, std::uint64_t> chunk_messages_;  ///< per channel
   std::vector<ChunkPlace> chunk_places_;                   ///< of the first ones

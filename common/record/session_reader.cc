@@ -42,7 +42,13 @@ std::optional<SessionEntry> SessionReader::next() {
 }
 
 void SessionReader::only_between(TimePoint from, TimePoint to) {
-  mcap_.only_between(clock_.stamp(from), clock_.stamp(to));
+  window_ = Window{clock_.stamp(from), clock_.stamp(to)};
+  mcap_.only_between(window_->from, window_->to);
+  for (auto& [name, topic] : topics_) {
+    topic.looked_at = false;
+    topic.sequence = SequenceCount{};
+    topic.dated_back = 0;
+  }
 }
 
 void SessionReader::keep(const McapAttachment& attachment) {
@@ -76,17 +82,27 @@ void SessionReader::keep(const McapMetadata& metadata) {
   metadata_.insert_or_assign(std::string{metadata.name}, metadata.entries);
 }
 
+void SessionReader::look_at_order(TopicCount& topic,
+                                  const McapMessage& message,
+                                  TimePoint at) const {
+  if (window_) {
+    if (message.log_time < window_->from || message.log_time > window_->to) return;
+    if (!topic.looked_at) topic.sequence = SequenceCount{message.sequence};
+  }
+  const bool tick = message.channel->topic.ends_with("/tick");
+  if (tick && topic.looked_at && at < topic.last) ++topic.dated_back;
+  topic.sequence.see(message.sequence);
+  topic.looked_at = true;
+}
+
 void SessionReader::count(const McapMessage& message) {
   TopicCount& topic = topics_[message.channel->topic];
   const TimePoint at = clock_.own(message.publish_time);
   if (topic.messages == 0) {
     topic.schema = message.schema == nullptr ? "" : message.schema->name;
     topic.first = at;
-    topic.skipped = message.sequence;
-  } else {
-    topic.skipped += static_cast<std::uint32_t>(message.sequence - topic.sequence - 1);
   }
-  topic.sequence = message.sequence;
+  look_at_order(topic, message, at);
   topic.last = at;
   ++topic.messages;
   began_at_ = began_at_ ? std::min(*began_at_, at) : at;
@@ -116,7 +132,19 @@ std::optional<SessionEntry> SessionReader::decode(const McapMessage& message) {
 
 std::uint64_t SessionReader::missing() const noexcept {
   std::uint64_t sum = 0;
-  for (const auto& [name, topic] : topics_) sum += topic.skipped;
+  for (const auto& [name, topic] : topics_) sum += topic.sequence.missing();
+  return sum;
+}
+
+std::uint64_t SessionReader::disordered() const noexcept {
+  std::uint64_t sum = 0;
+  for (const auto& [name, topic] : topics_) sum += topic.sequence.disordered();
+  return sum;
+}
+
+std::uint64_t SessionReader::dated_back() const noexcept {
+  std::uint64_t sum = 0;
+  for (const auto& [name, topic] : topics_) sum += topic.dated_back;
   return sum;
 }
 

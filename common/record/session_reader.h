@@ -11,6 +11,7 @@
 #include "common/link/telegram.h"
 #include "common/record/mcap_reader.h"
 #include "common/record/recorder.h"
+#include "common/record/sequence_count.h"
 #include "common/record/session_decoder.h"
 #include "common/record/wall_clock.h"
 
@@ -33,8 +34,9 @@ struct TopicCount {
   std::uint64_t messages{};
   TimePoint first{};  ///< the sample's own instant, as are the following
   TimePoint last{};
-  std::uint64_t skipped{};   ///< gaps in the topic's sequence: messages that a damage took
-  std::uint32_t sequence{};  ///< of the newest
+  SequenceCount sequence;
+  bool looked_at{};            ///< `sequence` has seen a message
+  std::uint64_t dated_back{};  ///< ticks that are older than the one before
 };
 
 /// Reads a session file back to Records, also one that was cut off or damaged (see McapReader).
@@ -46,8 +48,11 @@ class SessionReader {
   /// The next record, or nullopt at the end. Views carry no record; they are only counted.
   std::optional<SessionEntry> next();
 
-  /// As McapReader::only_between(), of instants of the site's own time. A first entry was read.
+  /// As McapReader::only_between(), of instants of the site's own time. A first entry was read;
+  /// sequences and dates are looked at anew, of messages in that time alone.
   void only_between(TimePoint from, TimePoint to);
+  /// It was called: what the file says of itself as a whole need not agree with what was read.
+  [[nodiscard]] bool partial() const noexcept { return window_.has_value(); }
 
   // All that was met so far; complete once next() said nullopt.
   [[nodiscard]] const McapReadReport& report() const noexcept { return mcap_.report(); }
@@ -61,8 +66,10 @@ class SessionReader {
   [[nodiscard]] std::optional<std::string_view> attachment(std::string_view name) const;
   [[nodiscard]] std::uint64_t unknown() const noexcept { return unknown_; }
   [[nodiscard]] std::uint64_t malformed() const noexcept { return malformed_; }
-  /// Messages that the sequences of all topics lack.
+  // Of all topics: see SequenceCount and TopicCount.
   [[nodiscard]] std::uint64_t missing() const noexcept;
+  [[nodiscard]] std::uint64_t disordered() const noexcept;
+  [[nodiscard]] std::uint64_t dated_back() const noexcept;
   /// Topic and sequence of the first malformed message; empty: there is none.
   [[nodiscard]] const std::string& first_malformed() const noexcept { return first_malformed_; }
   /// Sessions in the order in which they began.
@@ -74,12 +81,19 @@ class SessionReader {
   [[nodiscard]] std::optional<TimePoint> ended_at() const noexcept { return ended_at_; }
 
  private:
+  struct Window {
+    std::uint64_t from{};  ///< [ns], stamp of the file
+    std::uint64_t to{};    ///< [ns]
+  };
+
   std::optional<SessionEntry> decode(const McapMessage& message);
+  void look_at_order(TopicCount& topic, const McapMessage& message, TimePoint at) const;
   void count(const McapMessage& message);
   void keep(const McapAttachment& attachment);
   void keep(const McapMetadata& metadata);
 
   McapReader mcap_;
+  std::optional<Window> window_;
   std::map<std::string, TopicCount> topics_;
   std::map<std::string, McapMap, std::less<>> metadata_;
   std::size_t metadata_size_{};  ///< [bytes]

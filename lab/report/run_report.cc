@@ -140,6 +140,8 @@ std::string run_report(const Scenario& scenario,
   json["wall_s"] = account.wall;
   json["speed"] = number(seconds(result.virtual_span) / account.cpu);
   json["records"] = result.records;
+  json["recording_fault"] =
+      account.recording_fault.empty() ? Json(nullptr) : Json(account.recording_fault);
   json.update(metrics_json(result.metrics));
   json["taps"] = taps_json(result, scenario.estimator.kind);
   json["depth"] =

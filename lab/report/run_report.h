@@ -11,8 +11,9 @@ namespace palp::lab {
 /// What a run cost and how it was asked for: the part of a report that is not physics.
 struct RunAccount {
   std::string scenario;
-  double cpu{};   ///< [s]
-  double wall{};  ///< [s]
+  double cpu{};                   ///< [s]
+  double wall{};                  ///< [s]
+  std::string recording_fault{};  ///< of the session files; empty: none
 };
 
 /// Schema palp.run/1, as JSON text.

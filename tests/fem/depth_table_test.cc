@@ -1,5 +1,6 @@
 #include "fem/depth_table.h"
 
+#include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -105,6 +106,29 @@ TEST(DepthTableTest, MergeKeepsBothAndRefusesAnotherGrid) {
   EXPECT_EQ(one.members.size(), 3U);
   other.grid.block.poisson = 0.4;
   EXPECT_FALSE(merge_table(one, other));
+}
+
+TEST(DepthTableTest, AMergeThatAddsNothingKeepsTheStatementOfError) {
+  DepthTable table = small_table();
+  table.checked_count = 60;
+  ASSERT_TRUE(merge_table(table, small_table()));
+  EXPECT_EQ(table.checked_count, 60U);
+  DepthTable more = small_table();
+  more.members[0].ratio = 1;
+  ASSERT_TRUE(merge_table(table, more));
+  EXPECT_EQ(table.checked_count, 0U) << "that was of fewer curves";
+}
+
+TEST(DatabaseCommandTest, ADatabaseGivenTwiceIsRefusedAndNothingWritten) {
+  const std::string folder = testing::TempDir();
+  const std::string one = folder + "depth_table_one.bin";
+  const std::string out = folder + "depth_table_out.bin";
+  std::filesystem::remove(out);
+  std::ofstream{one, std::ios::binary} << table_bytes(small_table());
+  const auto merged = run_merge({.out = out, .files = {one, one}});
+  EXPECT_EQ(merged.code, config::ExitCode::BadInput);
+  EXPECT_NE(merged.text.find("given twice"), std::string::npos) << merged.text;
+  EXPECT_FALSE(std::filesystem::exists(out));
 }
 
 TEST(DatabaseBuilderTest, LeavesOutWhatDoesNotFit) {

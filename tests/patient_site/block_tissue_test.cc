@@ -182,6 +182,8 @@ TEST(BlockTissueTest, WhatNobodyComputedIsRefused) {
            {"block e_kpa=soft", "is not a number from 0.1 to 1000"},
            {"block law=jelly", "there is no law 'jelly'"},
            {"block depth=3", "'depth' is unknown of a block; there are e_kpa, height"},
+           {"ball depth=12 depth=13", "'depth' is given twice of a ball"},
+           {"block e_kpa=18; ball depth=6; block varies=0.05", "'block' is given twice"},
            {"ball depth=6; bell depth=6", "'bell' is unknown; there are ball, cylinder"},
            {"database file=none.bin; ball depth=6", "cannot read none.bin"}}) {
     const auto phantom = make_phantom(words);

@@ -110,6 +110,25 @@ TEST(DemoReportTest, TakesWhatTheProgramsDidNotSayFromTheSessionFiles) {
   EXPECT_EQ(json["transitions"][0]["t_s"], 0.5);
 }
 
+TEST(DemoReportTest, AReportOfAnotherSessionIsRefused) {
+  SessionPair session = sample_pair();
+  session.surgeon.program_report = R"({"site":"surgeon","ticks":6000,"lateness_max_us":8477.513})";
+  const auto refused = [&](const ProgramReports& reports) {
+    const auto checked = check_reports(session, reports);
+    return checked ? std::string{} : checked.error().text;
+  };
+  EXPECT_EQ(refused({}), "");
+  EXPECT_EQ(refused({.surgeon = "no JSON"}), "") << "told elsewhere";
+  EXPECT_EQ(refused({.surgeon = R"({"site":"surgeon","ticks":6000,"lateness_max_us":8477.513})"}),
+            "");
+  EXPECT_NE(refused({.surgeon = R"({"ticks":5186})"}).find("ticks is 5186"), std::string::npos);
+  EXPECT_NE(refused({.surgeon = R"({"lateness_max_us":1.5})"}), "");
+  EXPECT_NE(refused({.surgeon = R"({"site":"patient"})"}).find("of another"), std::string::npos);
+  EXPECT_EQ(refused({.patient = R"({"site":"patient","ticks":1})"}), "") << "its file is silent";
+  session.patient.metadata.emplace_back("time", "virtual");
+  EXPECT_NE(refused({.patient = R"({"ticks":1})"}).find("simulation"), std::string::npos);
+}
+
 TEST(DemoReportTest, ReportsOfTheProgramsOutrankTheFiles) {
   const auto json =
       report({.surgeon = R"({"schema":"palp.site/2","ticks":7,"outcome":"done","missed_ticks":3,

@@ -33,7 +33,8 @@ class ExportTest : public testing::Test {
 TEST_F(ExportTest, CsvHasAColumnForEachFieldWithItsUnit) {
   const auto rows = export_file(files_.surgeon, {.topics = {"surgeon/tick"}}, path_);
   ASSERT_TRUE(rows) << rows.error().text;
-  EXPECT_EQ(*rows, 2000U);
+  EXPECT_EQ(rows->messages, 2000U);
+  EXPECT_EQ(rows->lack, "");
   const std::string text = written();
   EXPECT_THAT(text, StartsWith("t_s,stamp_ns,state,epoch,position_m,velocity_m_per_s,force_n,"));
   EXPECT_THAT(text, HasSubstr("\n0.001000000,1000000,"));
@@ -41,13 +42,25 @@ TEST_F(ExportTest, CsvHasAColumnForEachFieldWithItsUnit) {
 
 TEST_F(ExportTest, AnIntervalIsCutOut) {
   const ExportAsk ask{.topics = {"surgeon/tick"}, .from = 0.5, .to = 0.6};
-  EXPECT_EQ(export_file(files_.surgeon, ask, path_).value(), 100U);
+  const Exported part = export_file(files_.surgeon, ask, path_).value();
+  EXPECT_EQ(part.messages, 100U);
+  EXPECT_EQ(part.lack, "") << "what was not asked for is not missing";
+}
+
+TEST_F(ExportTest, WhatTheFileLacksIsTold) {
+  const std::size_t middle = files_.surgeon.size() / 2;
+  files_.surgeon[middle] ^= std::byte{4};
+  const ExportAsk all{.topics = {"surgeon/tick"}};
+  EXPECT_THAT(export_file(files_.surgeon, all, path_).value().lack, HasSubstr("messages"));
+  std::filesystem::remove(path_);
+  const ExportAsk part{.topics = {"surgeon/tick"}, .from = 0.1, .to = 1.9};
+  EXPECT_THAT(export_file(files_.surgeon, part, path_).value().lack, HasSubstr("chunks"));
 }
 
 TEST_F(ExportTest, MatHasAVectorForEachColumn) {
   const ExportAsk ask{
       .topics = {"surgeon/tick", "surgeon/link"}, .from = 0, .to = 1, .format = ExportFormat::Mat};
-  EXPECT_EQ(export_file(files_.surgeon, ask, path_).value(), 1010U);
+  EXPECT_EQ(export_file(files_.surgeon, ask, path_).value().messages, 1010U);
   const std::string bytes = written();
   std::size_t at = 0;
   std::map<std::string, std::vector<double>> vectors;

@@ -1,8 +1,11 @@
 #include "review/lack.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/record/mcap_writer.h"
 #include "review/recover.h"
 #include "tests/review/session_samples.h"
 
@@ -51,6 +54,57 @@ TEST(LackTest, WhatIsMissingIsToldBeforeARecoveryAndAfterIt) {
   EXPECT_THAT(
       lack(recovered(damaged())),
       AllOf(HasSubstr("was recovered from a damaged one, lacks 1 chunks"), HasSubstr("messages")));
+}
+
+/// A closed file of estimates with these sequence numbers, stamps [ns] and payloads.
+struct Piece {
+  std::uint32_t sequence{};
+  std::uint64_t at{};
+  Bytes payload{};
+};
+Bytes file_of(const std::vector<Piece>& pieces, const char* topic = "patient/depth") {
+  record::MemorySink sink;
+  record::McapWriter writer{sink, {}};
+  const auto schema = writer.add_schema("palp.session.DepthEstimate", "protobuf", {});
+  const auto channel = writer.add_channel(schema, topic, "protobuf");
+  for (const Piece& piece : pieces) {
+    std::byte* place = writer.add_message({.channel = channel,
+                                           .sequence = piece.sequence,
+                                           .log_time = piece.at,
+                                           .publish_time = piece.at},
+                                          piece.payload.size());
+    std::copy(piece.payload.begin(), piece.payload.end(), place);
+  }
+  writer.close();
+  return test::bytes_of(sink);
+}
+
+TEST(LackTest, WhatCheckFindsIsTold) {
+  const Bytes half_a_double{std::byte{0x09}};
+  EXPECT_EQ(lack(file_of({{0}, {1}, {2}})), "");
+  EXPECT_EQ(lack(file_of({{0}, {2}})), "lacks 1 messages");
+  EXPECT_EQ(lack(file_of({{0}, {1}, {0}, {1}, {2}})), "has 2 messages twice or not in their order");
+  EXPECT_EQ(lack(file_of({{0}, {1, 0, half_a_double}})), "has 1 messages that cannot be decoded");
+  EXPECT_EQ(lack(file_of({{0, 5}, {1, 4}}, "patient/tick")),
+            "has 1 ticks that are older than the one before");
+  EXPECT_THAT(lack(file_of({{0}}, "elsewhere")), HasSubstr("on topics of no session"));
+  Bytes closing = whole();
+  closing[closing.size() - 40] ^= std::byte{1};  // in the summary, behind all messages
+  EXPECT_THAT(lack(closing), HasSubstr("has a fault: at byte "));
+}
+
+TEST(LackTest, NoFaultIsLeftUntold) {
+  const Bytes sound = whole();
+  for (std::size_t at = 8; at < sound.size(); at += sound.size() / 97) {
+    Bytes file = sound;
+    file[at] ^= std::byte{16};
+    record::SessionReader reader{file};
+    while (reader.next()) {
+    }
+    if (fault_of(reader)) {
+      EXPECT_NE(lack_of(reader), "") << at;
+    }
+  }
 }
 
 }  // namespace

@@ -67,6 +67,31 @@ TEST_F(PalpReviewTest, CheckFailsOnACutOffFileAndRecoverMendsIt) {
   EXPECT_EQ(run("recover s.mcap s.mcap"), 3);
 }
 
+TEST_F(PalpReviewTest, WhereNothingIsNothingIsRecovered) {
+  save("empty.mcap", {});
+  EXPECT_EQ(run("info empty.mcap"), 2);
+  fs::resize_file(folder_ + "/s.mcap", 100);
+  for (const char* const file : {"empty.mcap", "s.mcap"}) {
+    EXPECT_EQ(run(std::string{"recover "} + file + " out.mcap"), 2) << file;
+    EXPECT_FALSE(fs::exists(folder_ + "/out.mcap"));
+  }
+}
+
+TEST_F(PalpReviewTest, EveryVerbSaysWhatAFileLacks) {
+  cut_off("s.mcap");
+  const std::string pair = " --surgeon s.mcap --patient p.mcap ";
+  for (const std::string& line : {std::string{"info s.mcap"},
+                                  "metrics" + pair,
+                                  "report" + pair + "--out r.html",
+                                  "plot" + pair + "--svg p.svg",
+                                  std::string{"compare s.mcap p.mcap"},
+                                  std::string{"merge s.mcap p.mcap both.mcap"},
+                                  std::string{"export s.mcap --topics surgeon/tick --out t.csv"}}) {
+    EXPECT_EQ(run(line), 0) << line;
+    EXPECT_NE(text("output").find("not closed"), std::string::npos) << line << text("output");
+  }
+}
+
 TEST_F(PalpReviewTest, MetricsPrintsTheTapsAndWritesTheReport) {
   EXPECT_EQ(run("metrics --surgeon s.mcap --patient p.mcap --rtt-ms 20 --report r.json"), 0);
   EXPECT_NE(text("output").find("tap 3"), std::string::npos);

@@ -69,6 +69,32 @@ TEST_F(BadInputTest, AReportThatWouldTakeThePlaceOfAnotherFile) {
   expect_refusal("palp-lab merge " + file + " --report " + file, kBadInput, "name one file");
 }
 
+TEST_F(BadInputTest, AnOutputThatWouldTakeThePlaceOfAnotherFile) {
+  const std::string file = folder_ + "/precious";
+  std::ofstream{file} << "content";
+  const std::string pair = " --surgeon other --patient " + file;
+  for (const std::string& command : {"palp-review report" + pair + " --out ",
+                                     "palp-review plot" + pair + " --svg ",
+                                     "palp-review plot" + pair + " --pdf ",
+                                     "palp-lab run " + file + " --svg ",
+                                     "palp-lab run standard --phantom file:" + file + " --trace ",
+                                     "palp-lab merge " + file + " --cases ",
+                                     "palp-fem merge " + file + " --out ",
+                                     "palp-fem curve --vtu " + file + " --csv "}) {
+    expect_refusal(command + file, kBadInput, "name one file");
+    EXPECT_EQ(text("precious"), "content");
+  }
+  const std::string prefix = folder_ + "/q";
+  expect_refusal(
+      "palp-lab run standard --session-files " + prefix + " --trace " + prefix + "surgeon.mcap",
+      kBadInput,
+      "name one file");
+  std::ofstream{folder_ + "/old.mcap"} << "\x89MCAP0\r\n";
+  expect_refusal("palp-fem curve --indentations-mm 0.5 --csv " + folder_ + "/old.mcap",
+                 kBadInput,
+                 "a session file");
+}
+
 TEST_F(BadInputTest, UnknownFlag) {
   for (const std::string program :
        {"palp-surgeon", "palp-patient", "palp-lab run", "palp-netem relay"}) {
@@ -167,6 +193,34 @@ TEST_F(BadInputTest, EveryProgramComplainsInTheSameForm) {
     EXPECT_NE(run(program), 0);
     EXPECT_EQ(text("err").find(program.substr(0, program.find(' ')) + ": "), 0U) << text("err");
   }
+}
+
+TEST_F(BadInputTest, AResultThatStandardOutputDoesNotTakeIsNotDone) {
+  for (const std::string command : {"palp-fem curve --indentations-mm 0.5",
+                                    "palp-netem presets",
+                                    "palp-lab scenarios",
+                                    "palp-review --version",
+                                    "palp-surgeon --help"}) {
+    SCOPED_TRACE(command);
+    const std::string line =
+        "'" PALP_BINARY_FOLDER "'/" + command + " >/dev/full 2>'" + folder_ + "/err'";
+    const int status = std::system(line.c_str());
+    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, kNotReached);
+    EXPECT_THAT(text("err"), HasSubstr(": standard output could not be written"));
+  }
+}
+
+TEST_F(BadInputTest, ARunWhoseSessionFilesAreNotWholeIsNotDone) {
+  // No file of more than 100 kB, as on a disk that is full.
+  const std::string line = "trap '' XFSZ; ulimit -f 200; '" PALP_BINARY_FOLDER
+                           "'/palp-lab run standard --session-files '" +
+                           folder_ + "/x-' --report '" + folder_ + "/r.json' >'" + folder_ +
+                           "/out' 2>'" + folder_ + "/err'";
+  const int status = std::system(line.c_str());
+  EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 1);
+  EXPECT_THAT(text("err"), HasSubstr("recording failed: session file "));
+  EXPECT_THAT(text("out"), HasSubstr("stability")) << "the run is worth what it was";
+  EXPECT_THAT(text("r.json"), HasSubstr("could not be written any further"));
 }
 
 TEST_F(BadInputTest, ARunWhoseOperatorIsRefusedIsNotDone) {

@@ -125,8 +125,8 @@ Holder new_authority(const CertificatesConfig& config, const path& folder) {
 }
 
 Holder read_holder(const path& folder) {
-  const Openssl<BIO> certificate{BIO_new_file((folder / "certificate.pem").c_str(), "r")};
-  const Openssl<BIO> key{BIO_new_file((folder / "key.pem").c_str(), "r")};
+  const Openssl<BIO> certificate = open_plain_file(folder / "certificate.pem");
+  const Openssl<BIO> key = open_plain_file(folder / "key.pem");
   Holder read;
   if (certificate != nullptr && key != nullptr) {
     read.certificate.reset(PEM_read_bio_X509(certificate.get(), nullptr, nullptr, nullptr));
@@ -222,7 +222,7 @@ Result<std::string> told(Work work) {
 /// that was revoked would be good again.
 Openssl<X509_CRL> revocation_list(const path& file, const Holder& authority) {
   const bool there = std::filesystem::exists(file);
-  const Openssl<BIO> in{there ? BIO_new_file(file.c_str(), "r") : nullptr};
+  const Openssl<BIO> in = open_plain_file(file);
   Openssl<X509_CRL> list{
       in == nullptr ? nullptr : PEM_read_bio_X509_CRL(in.get(), nullptr, nullptr, nullptr)};
   ERR_clear_error();
@@ -242,7 +242,7 @@ Openssl<X509_CRL> revocation_list(const path& file, const Holder& authority) {
 std::string revoke(const CertificatesConfig& config, const std::string& certificate) {
   const path folder{config.folder};
   const Holder authority = read_holder(folder / "authority");
-  const Openssl<BIO> in{BIO_new_file(certificate.c_str(), "r")};
+  const Openssl<BIO> in = open_plain_file(certificate);
   const Openssl<X509> revoked{
       in == nullptr ? nullptr : PEM_read_bio_X509(in.get(), nullptr, nullptr, nullptr)};
   ERR_clear_error();

@@ -155,6 +155,9 @@ Error unusable(const std::filesystem::path& file, const std::string& why) {
 /// Why a file that OpenSSL did not take could not be used: it speaks of its own libraries.
 Error not_taken(const std::filesystem::path& file, const std::string& wanted) {
   ERR_clear_error();
+  if (std::filesystem::exists(file) && !is_plain_file(file)) {
+    return unusable(file, "is no regular file");
+  }
   errno = 0;
   if (!std::ifstream{file}) return unusable(file, "cannot be read: " + system_text(errno));
   return unusable(file, "holds no " + wanted);
@@ -195,12 +198,12 @@ bool stands_there(const std::filesystem::path& file) {
 
 Result<bool> trust(SSL_CTX* ssl, const std::filesystem::path& folder) {
   const std::filesystem::path authority = folder / "authority.pem";
-  if (SSL_CTX_load_verify_file(ssl, authority.c_str()) != 1) {
+  if (!is_plain_file(authority) || SSL_CTX_load_verify_file(ssl, authority.c_str()) != 1) {
     return tl::unexpected{not_taken(authority, "certificate in PEM form")};
   }
   const std::filesystem::path revoked = folder / kRevokedFile;
   if (!stands_there(revoked) || read_whole_file(revoked.string()) == kNothingRevoked) return false;
-  const Openssl<BIO> file{BIO_new_file(revoked.c_str(), "r")};
+  const Openssl<BIO> file = open_plain_file(revoked);
   X509_STORE* store = SSL_CTX_get_cert_store(ssl);
   int lists = 0;
   for (bool more = file != nullptr; more;) {
@@ -239,7 +242,8 @@ Result<std::string> use_certificates(Credentials::Context& context,
                                      Role role) {
   SSL_CTX* ssl = context.ssl.get();
   const std::filesystem::path certificate = folder / kCertificateFile;
-  if (SSL_CTX_use_certificate_chain_file(ssl, certificate.c_str()) != 1) {
+  if (!is_plain_file(certificate) ||
+      SSL_CTX_use_certificate_chain_file(ssl, certificate.c_str()) != 1) {
     return tl::unexpected{not_taken(certificate, "certificate in PEM form")};
   }
   X509* own = SSL_CTX_get0_certificate(ssl);
@@ -247,7 +251,7 @@ Result<std::string> use_certificates(Credentials::Context& context,
     return tl::unexpected{unusable(certificate, why)};
   }
   const std::filesystem::path key = folder / kKeyFile;
-  if (SSL_CTX_use_PrivateKey_file(ssl, key.c_str(), SSL_FILETYPE_PEM) != 1) {
+  if (!is_plain_file(key) || SSL_CTX_use_PrivateKey_file(ssl, key.c_str(), SSL_FILETYPE_PEM) != 1) {
     const bool other_key = ERR_GET_REASON(ERR_peek_last_error()) == X509_R_KEY_VALUES_MISMATCH;
     return tl::unexpected{other_key ? unusable(key, "does not fit the certificate beside it")
                                     : not_taken(key, "private key in PEM form without passphrase")};

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include <openssl/bio.h>
 #include <openssl/bn.h>
@@ -32,6 +34,17 @@ struct FreeOpenssl {
 
 template <class T>
 using Openssl = std::unique_ptr<T, FreeOpenssl>;
+
+/// OpenSSL opens a file and waits: of a pipe, for a writer that may never come.
+inline bool is_plain_file(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(file, ignored);
+}
+
+/// For reading; null: it is no regular file, or cannot be opened.
+inline Openssl<BIO> open_plain_file(const std::filesystem::path& file) {
+  return Openssl<BIO>{is_plain_file(file) ? BIO_new_file(file.c_str(), "r") : nullptr};
+}
 
 /// What OpenSSL complained of last on this thread, in its words; forgets all complaints.
 inline std::string openssl_complaint() {

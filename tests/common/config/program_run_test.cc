@@ -24,6 +24,7 @@ class ProgramRunTest : public testing::Test {
     CommandLine& verb = line_.verb("try", "tries");
     verb.report(report_, "palp.try/1");
     verb.argument("FILE", input_, "read");
+    verb.output("--svg", picture_, "drawn");
     verb.number("--rate", rate_, {.min = 0, .max = 1}, "how fast");
   }
   ~ProgramRunTest() override { std::filesystem::remove(file_); }
@@ -42,6 +43,7 @@ class ProgramRunTest : public testing::Test {
   CommandLine line_{"palp-x", "does x"};
   std::string report_;
   std::string input_;
+  std::string picture_;
   double rate_{1};
 };
 
@@ -80,6 +82,28 @@ TEST_F(ProgramRunTest, AReportNeverTakesThePlaceOfAnotherFile) {
   EXPECT_EQ(written(), "precious");
   EXPECT_EQ(run({"--speed", "2", file()}, [] { return ExitStatus{}; }), 2) << "of a wrong line";
   EXPECT_EQ(written(), "precious");
+}
+
+TEST_F(ProgramRunTest, NoOutputTakesThePlaceOfAnotherFileAndNothingRuns) {
+  const std::string precious = file() + ".svg";
+  ASSERT_TRUE(write_whole_file(precious, "precious"));
+  bool ran = false;
+  EXPECT_EQ(run({precious, "--svg", precious},
+                [&] {
+                  ran = true;
+                  return ExitStatus{};
+                }),
+            2);
+  EXPECT_FALSE(ran);
+  EXPECT_THAT(written(), HasSubstr("--svg and an argument name one file")) << "in the report";
+  EXPECT_EQ(run({"--svg", precious},
+                [&] {
+                  ran = true;
+                  return ExitStatus{};
+                }),
+            0);
+  EXPECT_TRUE(ran) << "an old picture is drawn anew";
+  std::filesystem::remove(precious);
 }
 
 TEST_F(ProgramRunTest, OfARunThatDidNotFailOnlyTheVerbReports) {

@@ -64,6 +64,31 @@ TEST_F(ReportTest, AReaderOfTheOldFileKeepsIt) {
   EXPECT_EQ(read_whole_file(path("held")), "old");  // replaced by renaming, not overwritten
 }
 
+TEST_F(ReportTest, AFileKeepsItsRights) {
+  ASSERT_TRUE(write_whole_file(path("secret"), "old"));
+  ASSERT_EQ(::chmod(path("secret").c_str(), 0600), 0);
+  ASSERT_TRUE(write_whole_file(path("secret"), "new"));
+  struct stat there {};
+  ASSERT_EQ(::stat(path("secret").c_str(), &there), 0);
+  EXPECT_EQ(there.st_mode & 0777U, 0600U);
+}
+
+TEST_F(ReportTest, AFileThatNobodyMayWriteToStays) {
+  ASSERT_TRUE(write_whole_file(path("kept"), "old"));
+  ASSERT_EQ(::chmod(path("kept").c_str(), 0444), 0);
+  EXPECT_FALSE(can_write_file(path("kept")));
+  EXPECT_FALSE(write_whole_file(path("kept"), "new"));
+  EXPECT_EQ(read_whole_file(path("kept")), "old");
+}
+
+TEST_F(ReportTest, ALinkAtTheTemporaryNameIsNotFollowed) {
+  const std::string temporary = path("a.json") + ".partial." + std::to_string(::getpid());
+  ASSERT_TRUE(write_whole_file(path("victim"), "old"));
+  std::filesystem::create_symlink(path("victim"), temporary);
+  EXPECT_FALSE(write_whole_file(path("a.json"), "new"));
+  EXPECT_EQ(read_whole_file(path("victim")), "old");
+}
+
 TEST_F(ReportTest, FollowsALinkInsteadOfReplacingIt) {
   ASSERT_TRUE(write_whole_file(path("real"), "old"));
   std::filesystem::create_symlink("real", path("link"));

@@ -48,6 +48,9 @@ TEST_F(FileTest, EmptyFileAndDirectoryAndNothingAreToldApart) {
   ASSERT_TRUE(empty);
   EXPECT_TRUE(empty->bytes().empty());
   EXPECT_FALSE(MappedFile::open(testing::TempDir()));
+  std::filesystem::remove(path_);
+  ASSERT_EQ(::mkfifo(path_.c_str(), 0600), 0);
+  EXPECT_FALSE(MappedFile::open(path_)) << "a pipe, whose writer is not waited for";
 }
 
 TEST_F(FileTest, OnlyTheOwnerMayRead) {

@@ -403,5 +403,29 @@ TEST(McapReaderTest, StatisticsThatCountOtherwiseAreAFault) {
   EXPECT_EQ(read_all(file.bytes()).fault_count, 1u);
 }
 
+TEST(McapReaderTest, AChunkThatStatesAnotherTimeIsNamedOnce) {
+  RawFile inner;
+  inner.add_channel(1, 0);
+  const std::size_t begin = inner.bytes().size();
+  for (const std::uint64_t at : {std::uint64_t{0}, std::uint64_t{7}, std::uint64_t{8}}) {
+    inner.add(McapOpcode::Message, [&](Bytes& out) {
+      append(out, std::uint16_t{1});
+      append(out, std::uint32_t{0});
+      append(out, at);
+      append(out, at);
+    });
+  }
+  const Bytes records{inner.bytes().begin() + static_cast<std::ptrdiff_t>(begin),
+                      inner.bytes().end()};
+  RawFile file;
+  file.add_channel(1, 0).add_chunk(records.size(), "", records);  // states 0 to 0
+  McapReader reader{file.bytes()};
+  while (reader.next()) {
+  }
+  EXPECT_EQ(reader.report().messages, 3U) << "they are there";
+  ASSERT_EQ(reader.report().fault_count, 1U);
+  EXPECT_NE(reader.report().faults.front().text.find("outside of the time"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace palp::record

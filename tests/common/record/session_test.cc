@@ -229,7 +229,7 @@ TEST(SessionTest, TopicsCarryTheSamplesOwnInstantAndNoGap) {
   EXPECT_EQ(ticks.messages, 5000u);
   EXPECT_EQ(ticks.first, at_ms(0));
   EXPECT_EQ(ticks.last, at_ms(4999));
-  EXPECT_EQ(ticks.skipped, 0u);
+  EXPECT_EQ(ticks.sequence.missing(), 0u);
   EXPECT_EQ(ticks.schema, "palp.session.PatientTick");
   EXPECT_EQ(reader.began_at(), at_ms(0));
 }
@@ -243,7 +243,7 @@ TEST(SessionTest, DamagedChunkShowsAsAGapOfEachTopic) {
   EXPECT_EQ(reader.report().chunks_damaged, 1u);
   EXPECT_LT(entries.size(), 10050u);
   const TopicCount& ticks = reader.topics().at("patient/tick");
-  EXPECT_EQ(ticks.messages + ticks.skipped, 5000u);
+  EXPECT_EQ(ticks.messages + ticks.sequence.missing(), 5000u);
 }
 
 TEST(SessionTest, RecordWithoutATopicAtThisSiteIsCountedNotWritten) {

@@ -27,6 +27,14 @@ TEST(RunReportTest, ReportAndSummaryTellTheDigest) {
   }
 }
 
+TEST(RunReportTest, TellsWhatASessionFileLacks) {
+  const auto fault_of = [](const RunAccount& account) {
+    return nlohmann::json::parse(run_report(metro(), RunResult{}, account)).at("recording_fault");
+  };
+  EXPECT_TRUE(fault_of({.scenario = "metro"}).is_null());
+  EXPECT_EQ(fault_of({.scenario = "metro", .recording_fault = "disk full"}), "disk full");
+}
+
 TEST(RunReportTest, WhatWasNotMeasuredIsADash) {
   RunResult result;
   result.metrics.taps.resize(1);

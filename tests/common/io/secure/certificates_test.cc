@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <openssl/crypto.h>
 #include <openssl/pem.h>
+#include <sys/stat.h>
 
 #include "common/io/secure/openssl_handles.h"
 #include "tests/common/io/secure/keys_folder.h"
@@ -51,6 +52,30 @@ TEST(CertificatesTest, AnAuthorityCannotRevokeItself) {
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().text, HasSubstr("is the authority's own"));
   EXPECT_FALSE(std::filesystem::exists(keys.site(Role::Patient) / "revoked.pem"));
+}
+
+/// A pipe in the place of the file, without a writer: whoever opens it waits for ever.
+void put_pipe(const std::filesystem::path& file) {
+  std::filesystem::remove(file);
+  ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+}
+
+TEST(CertificatesTest, APipeIsNotWaitedFor) {
+  const KeysFolder keys{"pipe"};
+  put_pipe(keys.path() / "pipe.pem");
+  EXPECT_FALSE(revoke_certificate(keys.config(), keys.path() / "pipe.pem"));
+  put_pipe(keys.path() / "authority/key.pem");
+  EXPECT_FALSE(make_certificates(keys.config()));
+}
+
+TEST(CredentialsTest, APipeIsNotWaitedForAndToldAsSuch) {
+  for (const char* const name : {"key.pem", "certificate.pem", "authority.pem"}) {
+    const KeysFolder keys{"pipe"};
+    put_pipe(keys.site(Role::Patient) / name);
+    const auto read = Credentials::read(keys.site(Role::Patient), Role::Patient);
+    ASSERT_FALSE(read) << name;
+    EXPECT_THAT(read.error().text, AllOf(HasSubstr(name), HasSubstr("is no regular file")));
+  }
 }
 
 TEST(CertificatesTest, ANewAuthorityDoesNotBeginBesideTheListOfAnother) {

@@ -1,4 +1,4 @@
-#include "common/config/report_clash.h"
+#include "common/config/output_clash.h"
 
 #include <filesystem>
 #include <fstream>
@@ -12,10 +12,10 @@ namespace {
 
 using testing::HasSubstr;
 
-class ReportClashTest : public testing::Test {
+class OutputClashTest : public testing::Test {
  protected:
-  ReportClashTest() { std::filesystem::create_directories(folder_); }
-  ~ReportClashTest() override { std::filesystem::remove_all(folder_); }
+  OutputClashTest() { std::filesystem::create_directories(folder_); }
+  ~OutputClashTest() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
   [[nodiscard]] std::string made(const std::string& name) const {
@@ -27,14 +27,14 @@ class ReportClashTest : public testing::Test {
                              const std::string& settings = {}) const {
     words.insert(words.begin(), {"palp-x", "run"});
     words.insert(words.end(), {"--report", report, "--report=" + report});
-    return report_clash(report, words, "run", settings).has_value();
+    return output_clash({"--report", report}, words, "run", settings).has_value();
   }
 
  private:
   std::string folder_ = testing::TempDir() + "palp_clash_" + std::to_string(::getpid());
 };
 
-TEST_F(ReportClashTest, AFileThatIsReadOrWrittenIsNotTakenByTheReport) {
+TEST_F(OutputClashTest, AFileThatIsReadOrWrittenIsNotTakenByAnother) {
   const std::string there = made("cases.csv");
   const std::string absent = path("new.json");
   for (const std::string& file : {there, absent}) {
@@ -46,11 +46,11 @@ TEST_F(ReportClashTest, AFileThatIsReadOrWrittenIsNotTakenByTheReport) {
     EXPECT_TRUE(clashes(file, {}, "a: 1 phantom: \"file:" + file + "\" b: \"\""));
     EXPECT_FALSE(clashes(file, {path("other"), "--seed", "1"}, "b: \"other\""));
   }
-  EXPECT_THAT(report_clash(there, {"palp-x", "--cases", there}, "", "").value(),
+  EXPECT_THAT(output_clash({"--report", there}, {"palp-x", "--cases", there}, "", "").value(),
               HasSubstr("--report and --cases name one file, "));
 }
 
-TEST_F(ReportClashTest, UnderAnyName) {
+TEST_F(OutputClashTest, UnderAnyName) {
   const std::string there = made("a.csv");
   std::filesystem::create_symlink(there, path("link"));
   std::filesystem::create_hard_link(there, path("hard"));
@@ -60,7 +60,7 @@ TEST_F(ReportClashTest, UnderAnyName) {
   EXPECT_FALSE(clashes("/dev/null", {"--csv", "/dev/null"})) << "nothing is lost there";
 }
 
-TEST_F(ReportClashTest, NamesThatProgramsMakeOfThoseTheyAreGiven) {
+TEST_F(OutputClashTest, NamesThatProgramsMakeOfThoseTheyAreGiven) {
   EXPECT_TRUE(clashes(path("s-surgeon.mcap"), {"--session-files", path("s-")}));
   EXPECT_TRUE(clashes(path("s-001.mcap"), {"--session-files", path("s-")}));
   EXPECT_FALSE(clashes(path("s-last.mcap"), {"--session-files", path("s-")}));
@@ -71,7 +71,7 @@ TEST_F(ReportClashTest, NamesThatProgramsMakeOfThoseTheyAreGiven) {
   EXPECT_FALSE(clashes(path("report.json"), {"--session-files", path("")}));
 }
 
-TEST_F(ReportClashTest, WhatAScenarioNamesIsNotTakenEither) {
+TEST_F(OutputClashTest, WhatAScenarioNamesIsNotTakenEither) {
   const std::string scenario = path("mine.textproto");
   std::ofstream{scenario} << "surgeon { script: \"" << path("press.txt") << "\" }";
   EXPECT_TRUE(clashes(path("press.txt"), {scenario}));
@@ -80,7 +80,18 @@ TEST_F(ReportClashTest, WhatAScenarioNamesIsNotTakenEither) {
   EXPECT_FALSE(clashes(path("press.txt"), {path("absent.textproto")}));
 }
 
-TEST_F(ReportClashTest, AVerbOrANumberIsNoFile) {
+TEST_F(OutputClashTest, ASessionFileIsTakenByNoOutput) {
+  std::ofstream{path("s.mcap")} << "\x89MCAP0\r\nrecorded once";
+  std::filesystem::create_symlink("s.mcap", path("link"));
+  for (const char* const name : {"s.mcap", "link"}) {
+    EXPECT_THAT(output_clash({"--csv", path(name)}, {"palp-x"}, "", "").value(),
+                HasSubstr("a session file"));
+  }
+  EXPECT_FALSE(output_clash({"--csv", made("old.csv")}, {"palp-x"}, "", ""));
+  EXPECT_FALSE(output_clash({"--csv", path("new.csv")}, {"palp-x"}, "", ""));
+}
+
+TEST_F(OutputClashTest, AVerbOrANumberIsNoFile) {
   EXPECT_FALSE(clashes("run", {"--seed", "1"}));
   EXPECT_FALSE(clashes("7", {"--seed", "7"}));
 }
