@@ -25,13 +25,13 @@ struct DatabaseFlags {
   std::string report{};
   std::vector<std::string> files{};  ///< of merge
   std::string file{};                ///< of info
-  config::Submission submission{
-      .form = {.program = "palp-fem",
-               .part_flag = "--out",
-               .part_ending = ".bin",
-               .first = 1,
-               .of_merge = {
-                   "--out", "--report", "--check", "--off-axis", "--accuracy"}}};  ///< of database
+  config::Submission submission{.form = {.program = "palp-fem",
+                                         .part_flag = "--out",
+                                         .part_ending = ".bin",
+                                         .first = 1,
+                                         .of_merge = {"--out", "--report", "--check"},
+                                         .switches = {"--off-axis"},
+                                         .of_both = {"--accuracy"}}};  ///< of database
   /// [s] since some instant; empty: nobody watches. main() knows clocks and terminals.
   std::function<double()> wall{};
   /// Work on so many threads, as io::for_each_index() does.

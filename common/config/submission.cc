@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <string_view>
 
 #include <unistd.h>
@@ -116,11 +117,19 @@ std::vector<std::string> command_of_shard(const Submission& submission) {
   auto words =
       words_of(words_of(submission.command, kOfEngine, false), submission.form.of_merge, false);
   std::erase(words, submission.form.resume);
+  for (const std::string& one : submission.form.switches) std::erase(words, one);
   return words;
 }
 
 std::vector<std::string> outputs_of(const Submission& submission) {
-  return words_of(submission.command, submission.form.of_merge, true);
+  const ShardForm& form = submission.form;
+  std::vector<std::string> flags = form.of_merge;
+  flags.insert(flags.end(), form.of_both.begin(), form.of_both.end());
+  std::vector<std::string> words = words_of(submission.command, flags, true);
+  std::ranges::copy_if(form.switches, std::back_inserter(words), [&](const std::string& one) {
+    return std::ranges::find(submission.command, one) != submission.command.end();
+  });
+  return words;
 }
 
 std::string shard_script(const Submission& submission) {

@@ -17,6 +17,8 @@ struct ShardForm {
   std::string resume{};                 ///< what makes a shard go on; empty: it does so by itself
   std::uint64_t first{};                ///< number of the first shard: 0 or 1
   std::vector<std::string> of_merge{};  ///< flags with a value that no shard gets
+  std::vector<std::string> switches{};  ///< the same without a value
+  std::vector<std::string> of_both{};   ///< flags with a value that the merge gets as well
 };
 
 /// A run of many cases that other people's schedulers spread over machines: a folder with a script

@@ -105,26 +105,28 @@ add_vpn() { # namespace address
     done
   fi
   (umask 077 && wg genkey >"$work/vpn-$1.key") &&
-    inside "$1" wg set "$device" private-key "$work/vpn-$1.key" &&
     inside "$1" ip addr add "$2/24" dev "$device" &&
     inside "$1" ip link set "$device" mtu 1420 up
 }
-make_vpn() {
-  add_vpn r 10.66.0.1 && add_vpn s 10.66.0.3 && add_vpn p 10.66.0.2 || return 1
-  local one
-  inside r wg set "$(vpn_of r)" listen-port 51820
-  inside r sh -c 'echo 1 >/proc/sys/net/ipv4/ip_forward'
-  for one in s:10.66.0.3 p:10.66.0.2; do
-    inside r wg set "$(vpn_of r)" peer "$(wg pubkey <"$work/vpn-${one%:*}.key")" \
-      allowed-ips "${one#*:}/32" || return 1
-  done
+configure_vpn() { # namespace block-of-the-guide sed-script
+  awk -v block="$2" '/^```/ { on = ($0 == "```ini " block); next } on && !/^Address/' \
+    "$root/docs/two-sites.md" | sed "$3" >"$work/vpn-$1.conf"
+  [ -s "$work/vpn-$1.conf" ] && inside "$1" wg setconf "$(vpn_of "$1")" "$work/vpn-$1.conf"
 }
-# Both sites anew, from other ports: no router knows them.
+private_key() { sed 's,[&/],\\&,g' "$work/vpn-$1.key"; }
+public_key() { wg pubkey <"$work/vpn-$1.key" | sed 's,[&/],\\&,g'; }
+make_vpn() { # as the guide has it
+  add_vpn r 10.66.0.1 && add_vpn s 10.66.0.3 && add_vpn p 10.66.0.2 || return 1
+  inside r sh -c 'echo 1 >/proc/sys/net/ipv4/ip_forward'
+  configure_vpn r hub "s/PRIVATE_KEY_OF_HUB/$(private_key r)/
+    s/PUBLIC_KEY_OF_PATIENT/$(public_key p)/; s/PUBLIC_KEY_OF_SURGEON/$(public_key s)/"
+}
+# Both sites anew, from other ports: no router knows them. They show themselves each second.
 call_vpn() { # port
-  local one hub
-  hub=$(wg pubkey <"$work/vpn-r.key")
+  local one
   for one in s p; do
-    inside "$one" wg set "$(vpn_of $one)" listen-port "$1" peer "$hub" \
-      endpoint $public:51820 allowed-ips 10.66.0.0/24 persistent-keepalive 1 || return 1
+    configure_vpn $one site "s/PRIVATE_KEY_OF_SITE/$(private_key $one)/
+      s/PUBLIC_KEY_OF_HUB/$(public_key r)/; s/HUB:/$public:/; s/^\(Persist.*\) 20/\1 1/" &&
+      inside "$one" wg set "$(vpn_of $one)" listen-port "$1" || return 1
   done
 }

@@ -71,6 +71,18 @@ TEST(CommandOfShardTest, KeepsWhatTheCasesAreAndDropsTheRest) {
   EXPECT_THAT(outputs_of(submission), ElementsAre("--report", "all.json"));
 }
 
+TEST(CommandOfShardTest, ASwitchOfTheMergeTakesNoWordAndWhatBothNeedBothGet) {
+  Submission submission{.form = kForm};
+  submission.form.switches = {"--off-axis"};
+  submission.form.of_both = {"--accuracy"};
+  submission.command = {
+      "palp-fem", "database", "--off-axis", "--report", "r.json", "--accuracy", "coarse"};
+  EXPECT_THAT(command_of_shard(submission),
+              ElementsAre("palp-fem", "database", "--accuracy", "coarse"));
+  EXPECT_THAT(outputs_of(submission),
+              ElementsAre("--report", "r.json", "--accuracy", "coarse", "--off-axis"));
+}
+
 TEST_F(SubmissionTest, AShardRunsItsPartOnlyOnceAndTheMergeWritesTheReport) {
   const std::string shard = shard_script(submission_);
   EXPECT_THAT(shard, HasSubstr("[ -s \"$part\" ] && exit 0"));
