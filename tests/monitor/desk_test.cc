@@ -79,6 +79,7 @@ TEST(DeskTest, AClientIsToldWhoServesAndWhat) {
                                             "surgeon/link",
                                             "surgeon/event",
                                             "surgeon/depth",
+                                            "surgeon/map",
                                             "surgeon/status",
                                             "surgeon/client"));
   EXPECT_THAT(rig.next(client), HasSubstr("pointer/take"));

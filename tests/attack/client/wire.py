@@ -9,8 +9,8 @@ from cryptography.exceptions import InvalidTag
 from cryptography.hazmat.primitives.ciphers import Cipher, algorithms, modes
 from cryptography.hazmat.primitives.ciphers.aead import AESGCM
 
-PROTOCOL_VERSION = 8
-PROTOCOL_NAME = b"palp/8"
+PROTOCOL_VERSION = 9
+PROTOCOL_NAME = b"palp/9"
 EXPORTER_LABEL = b"EXPORTER-palp-session"
 
 DATA, CONTROL, PATH, CLOSE = range(4)
