@@ -10,7 +10,7 @@
 
 namespace palp::lab {
 
-double direct_touch_force(const Scenario& scenario) {
+std::vector<TouchTick> direct_touch(const Scenario& scenario) {
   constexpr Duration kStep = std::chrono::milliseconds{1};
   const patient::SimulatedPhantomConfig& tissue = scenario.tissue;
   const auto field = patient::make_field(scenario.phantom, tissue.viscous_factor);
@@ -18,7 +18,7 @@ double direct_touch_force(const Scenario& scenario) {
   const surgeon::GestureScript& script = scenario.script;
   surgeon::HandPlant hand{scenario.hand.plant, script.at({}).position};
   double force = 0;
-  double most = 0;
+  std::vector<TouchTick> ticks;
   double depth = -1;  // [m]
   for (Duration at{}; at < script.length(); at += kStep) {
     const surgeon::Intent begin = script.at(at);
@@ -31,8 +31,14 @@ double direct_touch_force(const Scenario& scenario) {
     const double rate = (depth - before) / seconds(kStep);
     const double elastic = relaxing.step(field->elastic_force(end.place, depth), seconds(kStep));
     force = std::max(0.0, elastic * field->growth(before > 0 ? rate : 0));
-    most = std::max(most, force);
+    ticks.push_back({at + kStep, depth, force, end.place});
   }
+  return ticks;
+}
+
+double direct_touch_force(const Scenario& scenario) {
+  double most = 0;
+  for (const TouchTick& tick : direct_touch(scenario)) most = std::max(most, tick.force);
   return most;
 }
 
