@@ -24,8 +24,8 @@ struct FittedBlock {
 
 /// Who is left out, and why.
 struct Exclusion {
-  std::string id;
-  std::string why;
+  std::string id{};
+  std::string why{};
 };
 
 struct StudyFit {

@@ -21,7 +21,7 @@ namespace palp::study {
 
 /// Where everything lies below a folder.
 struct DataSet {
-  std::string folder;
+  std::string folder{};
 
   [[nodiscard]] std::string code(const std::string& name) const;
   [[nodiscard]] std::string derived(const std::string& name) const;
@@ -49,7 +49,7 @@ struct PlannedStudy {
 
 /// All answers of a participant.
 struct ParticipantRows {
-  std::string id;
+  std::string id{};
   std::vector<TrialRow> rows;
 };
 [[nodiscard]] Result<std::vector<ParticipantRows>> read_rows(const PlannedStudy& planned);

@@ -9,10 +9,10 @@ namespace palp::study {
 
 /// `palp-study export`, `check`, `withdraw`, as given on the command line.
 struct KeepFlags {
-  std::string folder;
+  std::string folder{};
   std::string format{"quickpsy"};
-  std::string out;
-  std::string participant;
+  std::string out{};
+  std::string participant{};
 };
 
 void declare_export(config::CommandLine& line, KeepFlags& flags);

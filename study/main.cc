@@ -2,12 +2,16 @@
 
 #include <cstdio>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "common/config/command_line.h"
 #include "common/config/program_run.h"
 #include "common/io/process/parallel.h"
 #include "site_program/build_info.h"
+#include "study/closed_loop/felt_observer.h"
+#include "study/closed_loop/foretell_command.h"
 #include "study/compare_command.h"
 #include "study/fit_command.h"
 #include "study/keep_command.h"
@@ -27,10 +31,17 @@ void for_each_index(std::size_t count, const std::function<void(std::size_t)>& w
 
 ExitStatus run(const RunFlags& flags) {
   std::mutex one_line;
+  std::optional<FeltParticipants> felt;
   return run_run(
       flags,
       [&](const Study& study) -> Result<Observer> {
-        return formula_participants(study, flags.people);
+        if (flags.observer != "felt") return formula_participants(study, flags.people);
+        auto made = FeltParticipants::make(study, flags.people);
+        if (!made) return tl::unexpected(made.error());
+        felt = std::move(*made);
+        return [&felt](const TrialPlace& place, const TrialAsk& ask) {
+          return felt->answer(place, ask);
+        };
       },
       for_each_index,
       [&](const std::string& line) {
@@ -53,6 +64,9 @@ int main(int argc, char** argv) {
   declare_run(line.verb("run", "simulated participants go through a study"), run_flags);
   SimulateFlags simulate;
   declare_simulate(line.verb("simulate", "does a method find a known truth?"), simulate);
+  ForetellFlags foretold;
+  declare_foretell(line.verb("foretell", "what a study's conditions will do to JND and bias"),
+                   foretold);
   FitFlags fit;
   declare_fit(line.verb("fit", "JND and bias from a table of trials, or of a study"), fit);
   std::string compared;
@@ -73,6 +87,7 @@ int main(int argc, char** argv) {
     const std::string verb = line.chosen_verb();
     if (verb == "plan") return run_plan(plan, made_by);
     if (verb == "run") return run(run_flags);
+    if (verb == "foretell") return run_foretell(foretold, for_each_index);
     if (verb == "fit") return run_fit(fit);
     if (verb == "compare") return run_compare(compared);
     if (verb == "report") return run_report(report);

@@ -9,8 +9,8 @@ namespace palp::study {
 
 /// `palp-study plan`, as given on the command line.
 struct PlanFlags {
-  std::string file;
-  std::string folder;
+  std::string file{};
+  std::string folder{};
 };
 
 void declare_plan(config::CommandLine& line, PlanFlags& flags);

@@ -8,8 +8,8 @@ namespace palp::study {
 
 /// `palp-study report`, as given on the command line.
 struct StudyReportFlags {
-  std::string folder;
-  std::string out;
+  std::string folder{};
+  std::string out{};
   bool unblind{};
   bool pdf{};
 };

@@ -1,6 +1,7 @@
 #include "study/trial_row.h"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -9,6 +10,8 @@
 
 namespace palp::study {
 namespace {
+
+constexpr double kNumberMax = 1e9;  // [as the column]
 
 std::string digits(double value) {
   std::array<char, 32> text{};
@@ -74,7 +77,7 @@ Result<TrialRow> row_of(const std::vector<std::string_view>& cells, bool two_sid
                         kForce,
                         kContact}) {
     const auto value = config::parse_number(cells[at]);
-    if (!value) {
+    if (!value || std::abs(*value) > kNumberMax) {
       return fail(std::string{row_columns()[at].name} + " is \"" + printable(cells[at]) +
                   "\", expected a number");
     }

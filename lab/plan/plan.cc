@@ -239,7 +239,7 @@ Result<Scenario> make_case(const Plan& plan, const Case& one) {
   if (!scenario) return scenario;
   scenario->bare = true;
   scenario->depths = false;
-  if (plan.direct_touch) scenario->finger = direct_touch(*scenario);
+  if (plan.direct_touch) scenario->finger = own_finger(*scenario);
   scenario->lying = plan.lying || one.lying;
   if (plan.blackout) place_blackout(*scenario);
   if (one.fault.kind == FaultKind::None) return scenario;

@@ -12,7 +12,7 @@
 
 namespace palp::lab {
 
-OwnFinger direct_touch(const Scenario& scenario) {
+std::vector<TouchTick> direct_touch(const Scenario& scenario) {
   constexpr Duration kStep = std::chrono::milliseconds{1};
   const patient::SimulatedPhantomConfig& tissue = scenario.tissue;
   const auto field = patient::make_field(scenario.phantom, tissue.viscous_factor);
@@ -20,9 +20,7 @@ OwnFinger direct_touch(const Scenario& scenario) {
   const surgeon::GestureScript& script = scenario.script;
   surgeon::HandPlant hand{scenario.hand.plant, script.at({}).position};
   double force = 0;
-  OwnFinger finger{.force = 0};
-  judge::SwingFinder swing;
-  review::PhaseFinder phases{script};
+  std::vector<TouchTick> ticks;
   double depth = -1;  // [m]
   for (Duration at{}; at < script.length(); at += kStep) {
     const surgeon::Intent begin = script.at(at);
@@ -35,9 +33,19 @@ OwnFinger direct_touch(const Scenario& scenario) {
     const double rate = (depth - before) / seconds(kStep);
     const double elastic = relaxing.step(field->elastic_force(end.place, depth), seconds(kStep));
     force = std::max(0.0, elastic * field->growth(before > 0 ? rate : 0));
-    finger.force = std::max(finger.force, force);
-    if (phases.at(at).kind == judge::PhaseKind::FreeAir) swing.restart();
-    swing.look(seconds(at), depth);
+    ticks.push_back({at + kStep, depth, force, end.place});
+  }
+  return ticks;
+}
+
+OwnFinger own_finger(const Scenario& scenario) {
+  OwnFinger finger{.force = 0};
+  judge::SwingFinder swing;
+  review::PhaseFinder phases{scenario.script};
+  for (const TouchTick& tick : direct_touch(scenario)) {
+    finger.force = std::max(finger.force, tick.force);
+    if (phases.at(tick.at).kind == judge::PhaseKind::FreeAir) swing.restart();
+    swing.look(seconds(tick.at), tick.position);
   }
   finger.swing = swing.largest();
   return finger;

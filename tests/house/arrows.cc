@@ -11,7 +11,7 @@ namespace palp::house {
 namespace {
 
 /// Rooms, the longer name first where one lies in another.
-constexpr std::array<std::string_view, 37> kRooms{"common/core",
+constexpr std::array<std::string_view, 38> kRooms{"common/core",
                                                   "common/message",
                                                   "common/coupling",
                                                   "common/link",
@@ -45,6 +45,7 @@ constexpr std::array<std::string_view, 37> kRooms{"common/core",
                                                   "lab/report",
                                                   "lab",
                                                   "review",
+                                                  "study/closed_loop",
                                                   "study",
                                                   "proto",
                                                   "tests"};
@@ -222,10 +223,24 @@ const std::vector<Arrow>& arrows() {
         "common/plot",
         "common/io/process/process_time.h",
         "common/io/process/parallel.h"}},
-      // Experiments with observers: no I/O, no clock.
-      {"study/main.cc", {"common/config", "common/io/process/parallel.h"}},
+      // Experiments with observers: no clock; files in commands, the journal and the data set only.
+      {"study/main.cc",
+       {"study/closed_loop",
+        "common/config",
+        "common/io/process/parallel.h",
+        "site_program/build_info.h"}},
+      {"study/report_command.*", {"common/config", "common/plot"}},
       {"study/*_command.*", {"common/config"}},
+      {"study/study_report.*", {"common/plot"}},
+      {"study/study_file.*", {"common/config"}},
+      {"study/data_set.*", {"common/config"}},
+      {"study/schedule.*", {"common/config/json.h"}},
       {"study/answers_file.*", {"common/config/number.h"}},
+      {"study/trial_row.*", {"common/config/number.h"}},
+      {"study/exports.*", {"common/config/number.h"}},
+      // Observers that feel whole sessions: where study and lab meet.
+      {"study/closed_loop/*",
+       {"study", "lab/run", "lab/plan", "surgeon_site", "patient_site", "common/config"}},
       {"study/*", {}},
       // What a site did is done again by the site's own control, and judged as the lab judges.
       {"review/*",
@@ -259,6 +274,7 @@ const std::vector<std::string_view>& protobuf_files() {
                                                    "lab/plan/scenario*.cc",
                                                    "netem/syntax/timeline.cc",
                                                    "video/camera_frame.cc",
+                                                   "study/study_file.cc",
                                                    "fem/depth_table.cc"};
   return files;
 }
@@ -288,7 +304,8 @@ const std::vector<Fence>& fences() {
         "common/io/secure/room_key.cc",
         "common/io/secure/certificates.cc",
         "common/io/secure/openssl_*.h",
-        "common/io/secure/site_certificate.*"}},
+        "common/io/secure/site_certificate.*",
+        "study/data_set.cc"}},
       {"readerwriterqueue/", {"common/core/spsc_queue.h"}},
       // link answers with reasons of its own, not with sentences.
       {"tl/expected.hpp", {"common/core/result.h"}},

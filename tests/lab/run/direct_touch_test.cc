@@ -15,7 +15,7 @@ namespace {
 double touched(const std::vector<std::string>& settings) {
   config::Document document = load_scenario("standard").value();
   for (const std::string& setting : settings) EXPECT_TRUE(document.set(setting)) << setting;
-  return direct_touch(make_scenario("touch", document).value()).force;
+  return own_finger(make_scenario("touch", document).value()).force;
 }
 
 const std::string kPlain = "patient.simulated_phantom.phantom=closed-form:100";
@@ -53,7 +53,7 @@ TEST(DirectTouchTest, ALightHandThatTapsQuicklyOnSomethingStiffBounces) {
   Scenario scenario = make_scenario("touch", document).value();
   const auto swing_at = [&](const std::string& taps) {
     scenario.script = surgeon::parse_script(taps, scenario.hand.plant.grip.stiffness).value();
-    return direct_touch(scenario).swing;
+    return own_finger(scenario).swing;
   };
   EXPECT_GT(swing_at("hold 1\nmove -3 0.5\ntaps 5 4 0.24 0\nlift 1 1\n"), 0.3e-3);
   EXPECT_EQ(swing_at("hold 1\nmove -3 0.5\npress 4 1 3\nlift 1 1\n"), 0);

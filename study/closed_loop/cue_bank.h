@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "study/closed_loop/felt_observer.h"
+#include "study/recovery.h"
+
+/// What would be answered, foretold from few sessions: felt slopes, kept for some levels.
+namespace palp::study {
+
+/// Differences of what both intervals felt like [ln, as with the own finger], session by session.
+struct CueBank {
+  std::vector<double> levels{};                    ///< [-], rising
+  std::vector<std::vector<double>> differences{};  ///< [-], of each level, session by session;
+                                                   ///< NaN: an interval told nothing
+};
+
+/// `levels` of either sign where `two_sided`, as setting_of() has it; `count` sessions each.
+[[nodiscard]] CueBank bank_of(const FeltSession& session,
+                              const Judgement& judgement,
+                              bool two_sided,
+                              const std::vector<double>& levels,
+                              std::size_t count,
+                              std::uint64_t seed,
+                              const ForEachIndex& for_each_index);
+
+/// Share [-] of "the second is stiffer" or of right answers, lapses left out, at a level: mean over
+/// the bank's sessions, interpolated between its levels.
+[[nodiscard]] double banked_share(const CueBank& bank,
+                                  const Judgement& judgement,
+                                  int taps,
+                                  double level) noexcept;
+
+/// What is foretold of an observer.
+struct Foretold {
+  double jnd{};  ///< [-]; infinite: never told apart
+  double pse{};  ///< [-], two-sided; not finite: nothing seems equal
+};
+/// From banked_share(): where a half and three quarters are.
+[[nodiscard]] Foretold banked(const CueBank& bank, const Judgement& judgement, int taps);
+
+/// How what is felt follows what is there: felt difference = offset + gain * level, by least
+/// squares over levels up to 0.6. No difference was felt, or at one level only: 0.
+struct FeltLine {
+  double gain{};    ///< [-]; own finger: 1
+  double offset{};  ///< [-]
+};
+[[nodiscard]] FeltLine line_of(const CueBank& bank);
+/// JND_0 / gain and -offset / gain.
+[[nodiscard]] Foretold closed_form(const FeltLine& line,
+                                   const Judgement& judgement,
+                                   int taps) noexcept;
+
+/// The same sessions, some of them more than once, others not: for bootstraps.
+[[nodiscard]] CueBank resampled(const CueBank& bank, std::uint64_t seed, std::uint64_t stream);
+
+}  // namespace palp::study
