@@ -11,6 +11,7 @@
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -280,6 +281,7 @@ class Server::Io {
   /// A round: what is new goes out, then whatever clients say for a while.
   void work(TimePoint now);
   [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
+  void wake();
 
  private:
   struct Listener {
@@ -374,7 +376,15 @@ void Server::Io::take(tcp::socket socket) {
   connections_.emplace_back(shared_, std::move(socket)).start();
 }
 
+void Server::Io::wake() {
+  asio::post(context_, [this] {
+    publish_camera();
+    for (Connection& one : connections_) one.pump();
+  });
+}
+
 void Server::Io::publish_camera() {
+  if (camera_ == nullptr) return;
   while (camera_->frames.take(frame_)) {
     shared_.desk.publish(frame_, feed_.stamp(frame_.captured_at));
   }
@@ -387,7 +397,7 @@ void Server::Io::publish_camera() {
 void Server::Io::work(TimePoint now) {
   while (feed_.next(message_)) shared_.desk.publish(message_);
   shared_.desk.publish(feed_.status());
-  if (camera_ != nullptr) publish_camera();
+  publish_camera();
   for (Connection& one : connections_) {
     one.pump();
     one.ping(now);
@@ -405,6 +415,8 @@ Server::Server(const ServerConfig& config, Controls controls, Feed& feed)
 Server::~Server() = default;
 
 std::uint16_t Server::port() const noexcept { return io_->port(); }
+
+void Server::wake() { io_->wake(); }
 
 std::optional<std::string> Server::failure() const { return loop_->failure(); }
 

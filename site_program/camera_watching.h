@@ -1,8 +1,7 @@
 #pragma once
 
+#include <functional>
 #include <memory>
-#include <optional>
-#include <string>
 
 #include "common/io/net/media_door.h"
 #include "common/io/realtime/background_loop.h"
@@ -17,11 +16,12 @@ namespace palp::site_program {
 class CameraWatching {
  public:
   /// All outlive it. `records`: there is a session file, so pictures are wanted although nobody
-  /// looks.
+  /// looks. `arrived`: called where `feed` has one more, on the thread of the video.
   CameraWatching(bool records,
                  io::MediaDoor& door,
                  CameraRecording& recording,
-                 monitor::CameraFeed& feed);
+                 monitor::CameraFeed& feed,
+                 std::function<void()> arrived);
   ~CameraWatching();
   CameraWatching(const CameraWatching&) = delete;
   CameraWatching& operator=(const CameraWatching&) = delete;

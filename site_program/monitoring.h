@@ -53,6 +53,10 @@ class Monitoring {
   [[nodiscard]] std::uint32_t marks() const noexcept { return marks_; }
   [[nodiscard]] std::uint32_t resets() const noexcept { return resets_; }
   [[nodiscard]] bool end_asked() const noexcept { return end_asked_; }
+  /// A picture has come for the page. Thread: any, between construction and stop().
+  void wake() {
+    if (server_) server_->wake();
+  }
   /// Nobody looks on any more. Idempotent.
   void stop();
 

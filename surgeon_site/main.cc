@@ -307,7 +307,8 @@ ExitStatus Program::run(io::Terminal& terminal) {
         !settings_.record.file.empty() || !settings_.record.files.empty(),
         runner_.media_door(),
         *recording_.camera(),
-        camera_feed_);
+        camera_feed_,
+        [this] { monitoring_.wake(); });
   }
   runner_.start(link_, [this](TimePoint now) { node_.tick(now); });
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);

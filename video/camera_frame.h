@@ -13,7 +13,7 @@ struct CameraFrame {
   TimePoint captured_at{};  ///< on this site's line
   bool key{};
   bool jpeg{};
-  Bytes bytes;
+  Bytes bytes{};
 };
 
 /// How session files and live clients know it: foxglove.CompressedVideo, or CompressedImage.
