@@ -157,6 +157,7 @@ void CameraSending::Io::shoot(TimePoint now) {
       *shot.picture, shot.captured_at - force_.began_at, io::SteadyClock{}.now());
   if (!frame) return;
   (void)recording_.frames().offer({.captured_at = shot.captured_at,
+                                   .delivered_at = now,
                                    .key = frame->nature.key,
                                    .jpeg = frame->jpeg,
                                    .bytes = frame->bytes});

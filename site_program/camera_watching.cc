@@ -129,6 +129,7 @@ void CameraWatching::Io::hear(std::span<const std::byte> datagram,
 
 void CameraWatching::Io::show(video::ReceivedFrame&& frame, TimePoint now) {
   const video::CameraFrame shown{.captured_at = force_.own_line(frame.captured, now),
+                                 .delivered_at = now,
                                  .key = frame.key,
                                  .jpeg = frame.jpeg,
                                  .bytes = std::move(frame.bytes)};
