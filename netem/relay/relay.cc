@@ -5,7 +5,7 @@
 #include <poll.h>
 #include <time.h>
 
-#include "common/io/net/media_door.h"
+#include "common/io/net/media_wait.h"
 #include "common/io/realtime/realtime.h"
 
 namespace palp::netem {
