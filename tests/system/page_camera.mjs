@@ -10,7 +10,10 @@ class Decoder {
   decode(chunk) { this.given.push(chunk); }
   close() { this.state = 'closed'; }
   /** Gives back the oldest that waits. */
-  put() { this.given.shift(); this.does.output({ displayWidth: 4, displayHeight: 2, close() {} }); }
+  put() {
+    const { timestamp } = this.given.shift();
+    this.does.output({ timestamp, displayWidth: 4, displayHeight: 2, close() {} });
+  }
 }
 Object.assign(globalThis, { VideoDecoder: Decoder, EncodedVideoChunk: class { constructor(chunk) { Object.assign(this, chunk); } } });
 Object.defineProperty(globalThis, 'performance', { value: { now: () => now } });
@@ -48,6 +51,16 @@ const tests = {
     now += 5;
     decoder().put();
     assert.deepEqual(camera.shown, { stamp: 9990, at: 10005, age: 15 });
+  },
+  'a frame that a decoder swallowed shifts no stamp'() {
+    const { camera, decoder } = rig();
+    camera.hear(KEY, 9970, now);
+    camera.hear(DELTA, 9990, now);
+    decoder().given.shift();
+    decoder().put();
+    assert.equal(camera.shown.stamp, 9990);
+    for (let i = 0; i < 3; i++) camera.hear(DELTA, 9991 + i, now);
+    assert.equal(camera.resets, 0, 'nor does it wait for ever');
   },
   'a decoder that is behind is begun anew, from a key frame only'() {
     const { camera, asked, decoder } = rig();

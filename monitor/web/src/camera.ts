@@ -33,7 +33,7 @@ export class Camera {
   resets = 0;
   drawn: number[] = [];
   private decoder: VideoDecoder | undefined;
-  private waiting: number[] = [];  // stamps, the oldest first
+  private waiting: number[] = [];  // timestamps [us], the oldest first
   private askedAt = -1e9;
   private jpegUnderWay = false;
 
@@ -51,8 +51,9 @@ export class Camera {
     if (!this.decoder) return this.askForKey(now);
     if (this.waiting.length >= WAITING_MAX || (this.waiting.length > 0 && now - this.heardAt > WAITING_AGE_MS)) return this.giveUp(now);
     if (this.waiting.length === 0) this.heardAt = now;
-    this.waiting.push(stamp);
-    this.decoder.decode(new EncodedVideoChunk({ type: codec ? 'key' : 'delta', timestamp: Math.round(stamp * 1000), data: frame }));
+    const timestamp = Math.round(stamp * 1000);
+    this.waiting.push(timestamp);
+    this.decoder.decode(new EncodedVideoChunk({ type: codec ? 'key' : 'delta', timestamp, data: frame }));
   }
   private heardAt = 0;  // page time of the oldest that waits
 
@@ -78,9 +79,12 @@ export class Camera {
     this.close();
     const decoder: VideoDecoder = new VideoDecoder({
       output: frame => {
-        const stamp = this.decoder === decoder ? this.waiting.shift() : undefined;
+        const at = this.decoder === decoder ? this.waiting.indexOf(frame.timestamp) : -1;
         this.heardAt = performance.now();
-        if (stamp !== undefined) this.draw(frame, frame.displayWidth, frame.displayHeight, stamp);
+        if (at >= 0) {
+          this.waiting.splice(0, at + 1);
+          this.draw(frame, frame.displayWidth, frame.displayHeight, frame.timestamp / 1000);
+        }
         frame.close();
       },
       error: () => { if (this.decoder === decoder) this.giveUp(performance.now()); },
