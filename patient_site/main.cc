@@ -322,6 +322,7 @@ void Program::look(TimePoint now) {
   if (const auto peer = runner_.take_peer()) recording_.tell_of_peer(*peer);
   recording_.tell_news(line_);
   monitoring_.tell_news(line_);
+  if (sending_) sending_->tell_news(line_);
   tell_of_devices();
   show(status, now);
 }

@@ -205,4 +205,11 @@ CameraWatching::~CameraWatching() = default;
 
 void CameraWatching::stop() { loop_.reset(); }
 
+void CameraWatching::tell_news(StatusLine& line) {
+  const auto failure = loop_ ? loop_->failure() : std::nullopt;
+  if (!failure || std::exchange(told_, true)) return;
+  line.warn("the thread that looks through the camera has ended: " + *failure +
+            "; the session goes on without pictures");
+}
+
 }  // namespace palp::site_program

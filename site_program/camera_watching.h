@@ -7,6 +7,7 @@
 #include "common/io/realtime/background_loop.h"
 #include "monitor/camera_feed.h"
 #include "site_program/camera_recording.h"
+#include "site_program/status_line.h"
 
 namespace palp::site_program {
 
@@ -29,10 +30,14 @@ class CameraWatching {
   /// Idempotent.
   void stop();
 
+  /// Says once what keeps pictures away for good.
+  void tell_news(StatusLine& line);
+
  private:
   class Io;
   std::unique_ptr<Io> io_;
   std::unique_ptr<io::BackgroundLoop> loop_;
+  bool told_{};
 };
 
 }  // namespace palp::site_program

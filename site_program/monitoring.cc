@@ -84,6 +84,7 @@ void Monitoring::announce(StatusLine& line) const {
 }
 
 void Monitoring::tell_news(StatusLine& line) {
+  if (watching_) watching_->tell_news(line);
   if (!server_ || told_of_failure_) return;
   const auto failure = server_->failure();
   if (!failure) return;
