@@ -8,9 +8,12 @@
 
 namespace palp::io {
 
-bool MediaDoor::take(std::span<const std::byte> datagram, const Endpoint& from, TimePoint now) {
+bool MediaDoor::take(MediaDoor* door,
+                     std::span<const std::byte> datagram,
+                     const Endpoint& from,
+                     TimePoint now) {
   if (datagram.empty() || datagram[0] != kMediaFirstByte) return false;
-  (void)heard.try_emplace(datagram, from, now);
+  if (door != nullptr) (void)door->heard.try_emplace(datagram, from, now);
   return true;
 }
 

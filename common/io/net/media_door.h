@@ -30,8 +30,11 @@ class MediaDoor {
 
   /// io: another session, or none any more.
   void begin(const MediaSession& session) { (void)sessions.try_enqueue(session); }
-  /// io: what came to the listening socket. false: it is not of video.
-  [[nodiscard]] bool take(std::span<const std::byte> datagram, const Endpoint& from, TimePoint now);
+  /// io: what came to the listening socket; `door` null: nobody wants video. false: it is no video.
+  [[nodiscard]] static bool take(MediaDoor* door,
+                                 std::span<const std::byte> datagram,
+                                 const Endpoint& from,
+                                 TimePoint now);
   /// io: what the thread of the video cannot do. `listening`: the socket that has `local`.
   void serve(int listening, const Endpoint& local);
 

@@ -219,7 +219,7 @@ void SessionServer::Io::hear(std::span<const std::byte> datagram, const Endpoint
     if (const auto answer = relay_->hear(datagram, from, now)) send(*answer, from);
     return;
   }
-  if (config_.media != nullptr && config_.media->take(datagram, from, now)) return;
+  if (MediaDoor::take(config_.media, datagram, from, now)) return;
   SessionEndpointOutput output = session_endpoint_->hear(datagram, from, now);
   if (output.detours) (void)desk_.inbox().detours.try_emplace(datagram, from, now);
   carry_out(std::move(output), from);

@@ -10,19 +10,21 @@ const Endpoint kStranger = *resolve_endpoint("127.0.0.1:1");
 
 TEST(MediaDoorTest, TakesWhatBeginsLikeVideoAndNothingElse) {
   MediaDoor door;
-  EXPECT_FALSE(door.take({}, kStranger, {}));
-  EXPECT_FALSE(door.take(test::bytes_of(0x80, 40), kStranger, {}));
-  EXPECT_TRUE(door.take(test::bytes_of(0x85, 40), kStranger, TimePoint{Duration{7}}));
+  EXPECT_FALSE(MediaDoor::take(&door, {}, kStranger, {}));
+  EXPECT_FALSE(MediaDoor::take(&door, test::bytes_of(0x80, 40), kStranger, {}));
+  EXPECT_TRUE(MediaDoor::take(&door, test::bytes_of(0x85, 40), kStranger, {}));
   SideDatagram taken;
   ASSERT_TRUE(door.heard.try_dequeue(taken));
   EXPECT_EQ(taken.from, kStranger);
   EXPECT_EQ(taken.size, 40U);
   EXPECT_FALSE(door.heard.try_dequeue(taken));
+  EXPECT_TRUE(MediaDoor::take(nullptr, test::bytes_of(0x85, 40), kStranger, {}));
 }
 
 TEST(MediaDoorTest, AFloodIsLeftOut) {
   MediaDoor door;
-  for (int i = 0; i < 10000; ++i) EXPECT_TRUE(door.take(test::bytes_of(0x85, 9), kStranger, {}));
+  for (int i = 0; i < 10000; ++i)
+    EXPECT_TRUE(MediaDoor::take(&door, test::bytes_of(0x85, 9), kStranger, {}));
   std::size_t kept = 0;
   for (SideDatagram taken; door.heard.try_dequeue(taken);) ++kept;
   EXPECT_LT(kept, 4 * MediaDoor::kDatagrams);
