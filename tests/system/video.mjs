@@ -6,11 +6,18 @@ import { Browser, pause } from './browser.mjs';
 const must = (holds, what) => { if (!holds) throw new Error(what); };
 const quantile = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
 
+// A copy is read: reading back would change how the page's own canvas is drawn.
+const READER = `(canvas, top, height) => {
+  const copy = new OffscreenCanvas(canvas.width, height), to = copy.getContext('2d', { willReadFrequently: true });
+  to.drawImage(canvas, 0, -top);
+  return to.getImageData(0, 0, canvas.width, height).data;
+}`;
+
 // The ball alone is blue; 8 pixels are 1 mm, the picture's corner lies at -40 and -20 mm.
 const READ_TIP = `(() => {
   const canvas = document.getElementById('picture'), { shown } = window.palpPicture();
   if (!canvas || !shown) return null;
-  const { width, height } = canvas, { data } = canvas.getContext('2d').getImageData(0, 0, width, height);
+  const { width, height } = canvas, data = (${READER})(canvas, 0, height);
   let count = 0, across = 0, down = 0;
   for (let y = 0; y < height; y++) for (let x = 0; x < width; x++) {
     const i = 4 * (y * width + x);
@@ -40,7 +47,7 @@ async function readTips(page, result) {
 async function readJpeg(page, result) {
   await page.until('window.palpPicture().shown', 'a picture', 30000);
   const white = () => page.eval(`(() => { const c = document.getElementById('picture');
-    const { data } = c.getContext('2d').getImageData(0, 420, c.width, 1);
+    const data = (${READER})(c, 420, 1);
     let sum = 0, count = 0;
     for (let x = 0; x < c.width; x++) if (data[4 * x] > 180) { sum += x; count++; }
     return count ? sum / count : -1; })()`);
