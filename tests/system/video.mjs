@@ -3,6 +3,7 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { Browser, pause } from './browser.mjs';
 
+const WHOLE_BALL = 0.96 * Math.PI * 40 ** 2;  // pixels
 const must = (holds, what) => { if (!holds) throw new Error(what); };
 const quantile = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
 
@@ -68,7 +69,8 @@ function compare(read, csv, name) {
   const [head, ...rows] = readFileSync(csv, 'utf8').trim().split('\n');
   const names = head.split(','), at = n => names.indexOf(n);
   const log = rows.map(row => row.split(',')).map(r => ({ t: Number(BigInt(r[at('stamp_ns')]) / 1000n) / 1e3, x: r[at('x_m')] * 1e3, depth: r[at('position_m')] * 1e3 }));
-  const seen = tips.filter(tip => tip.depth !== undefined);
+  // Of a ball that hangs out of the picture the middle is another.
+  const seen = tips.filter(tip => tip.depth !== undefined && tip.count > WHOLE_BALL);
   const errors = seen.map(tip => Math.min(...log.filter(l => Math.abs(l.t - tip.stamp) <= 34).map(l => Math.hypot(l.x - tip.x, l.depth - tip.depth))));
   const moved = Math.max(...seen.map(t => t.depth)) - Math.min(...seen.map(t => t.depth));
   const added = drawn.map(age => age - way), frames = video.delivered + video.not_shown;
