@@ -22,6 +22,8 @@ struct Frame {
 class Outbox {
  public:
   static constexpr std::size_t kStayingMax = 2048;  ///< frames that do not give way
+  /// Chained frames that wait: beyond 250 ms of them a key frame is better than the rest.
+  static constexpr std::size_t kChainedMax = 8;
 
   explicit Outbox(std::size_t bound) noexcept : bound_{bound} {}
 
@@ -44,11 +46,13 @@ class Outbox {
 
  private:
   void give_way(std::list<Frame>::iterator& one);
+  void break_chain();
 
   std::size_t bound_;  ///< [bytes]
   std::list<Frame> frames_;
   std::size_t waiting_{};
   std::size_t staying_{};  ///< of the frames
+  std::size_t chained_{};  ///< likewise
   std::uint64_t dropped_{};
   bool sending_{};
   bool broken_{};

@@ -1,7 +1,6 @@
 #include "monitor/server.h"
 
 #include <algorithm>
-#include <cstring>
 #include <list>
 #include <optional>
 #include <stdexcept>
@@ -11,12 +10,14 @@
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
 #include "common/io/realtime/background_loop.h"
 #include "common/io/realtime/steady_clock.h"
+#include "monitor/live_source.h"
 #include "monitor/page_files.h"
 
 namespace palp::monitor {
@@ -276,10 +277,20 @@ void Connection::heard_pong(std::string_view payload) {
 /// All that the monitor's thread owns.
 class Server::Io {
  public:
-  Io(const ServerConfig& config, Controls controls, Feed& feed);
+  Io(const ServerConfig& config, Controls controls, Feed& feed)
+      : source_{feed, controls.camera},
+        shared_{Access{config.tokens, config.origins}, Desk{config.desk, controls}} {
+    listen(config.port);
+  }
   /// A round: what is new goes out, then whatever clients say for a while.
   void work(TimePoint now);
   [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
+  void wake() {
+    asio::post(context_, [this] {
+      source_.publish_camera(shared_.desk);
+      for (Connection& one : connections_) one.pump();
+    });
+  }
 
  private:
   struct Listener {
@@ -292,12 +303,8 @@ class Server::Io {
   beast::error_code open(const asio::ip::address& address);
   void accept(Listener& listener);
   void take(tcp::socket socket);
-  void publish_camera();
 
-  Feed& feed_;
-  CameraFeed* camera_;
-  video::CameraFrame frame_;
-  TimePoint shown_at_{};  ///< what was told of the video last
+  LiveSource source_;
   Shared shared_;
   asio::io_context context_{1};
   /// A round has its length also while nothing is asked of any socket.
@@ -305,16 +312,7 @@ class Server::Io {
   std::list<Listener> listeners_;
   std::uint16_t port_{};
   std::list<Connection> connections_;  ///< the oldest first
-  LiveMessage message_;
 };
-
-Server::Io::Io(const ServerConfig& config, Controls controls, Feed& feed)
-    : feed_{feed},
-      camera_{controls.camera},
-      shared_{.access = Access{config.tokens, config.origins},
-              .desk = Desk{config.desk, controls}} {
-  listen(config.port);
-}
 
 /// At both addresses or not at all: a browser may take "localhost" for either, and whoever held the
 /// port of the other would be shown the key. Only a machine without IPv6 has one.
@@ -374,20 +372,8 @@ void Server::Io::take(tcp::socket socket) {
   connections_.emplace_back(shared_, std::move(socket)).start();
 }
 
-void Server::Io::publish_camera() {
-  while (camera_->frames.take(frame_)) {
-    shared_.desk.publish(frame_, feed_.stamp(frame_.captured_at));
-  }
-  const VideoShown& shown = camera_->shown.get();
-  if (std::exchange(shown_at_, shown.at) != shown.at) {
-    shared_.desk.publish(shown, feed_.stamp(shown.at));
-  }
-}
-
 void Server::Io::work(TimePoint now) {
-  while (feed_.next(message_)) shared_.desk.publish(message_);
-  shared_.desk.publish(feed_.status());
-  if (camera_ != nullptr) publish_camera();
+  source_.publish_all(shared_.desk);
   for (Connection& one : connections_) {
     one.pump();
     one.ping(now);
@@ -405,6 +391,8 @@ Server::Server(const ServerConfig& config, Controls controls, Feed& feed)
 Server::~Server() = default;
 
 std::uint16_t Server::port() const noexcept { return io_->port(); }
+
+void Server::wake() { io_->wake(); }
 
 std::optional<std::string> Server::failure() const { return loop_->failure(); }
 

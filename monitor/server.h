@@ -36,6 +36,8 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   [[nodiscard]] std::uint16_t port() const noexcept;
+  /// A picture has come: it does not wait for the next round. Thread: any.
+  void wake();
   /// What ended its thread; nullopt: it serves.
   [[nodiscard]] std::optional<std::string> failure() const;
 

@@ -10,4 +10,12 @@ video::Shot DrawnCamera::shoot(TimePoint /*now*/) {
           .captured_at = tip.at};
 }
 
+std::unique_ptr<video::Camera> make_camera(std::string_view source,
+                                           Mailbox<video::TipSeen>* tip,
+                                           double surface) {
+  if (source == "phantom") return std::make_unique<DrawnCamera>(*tip, surface);
+  if (source == "test") return std::make_unique<video::TestCamera>();
+  return nullptr;
+}
+
 }  // namespace palp::patient

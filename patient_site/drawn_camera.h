@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <string_view>
+
 #include "common/core/mailbox.h"
 #include "video/camera.h"
 
@@ -25,5 +28,10 @@ class DrawnCamera final : public video::Camera {
   TimePoint drawn_at_{};
   video::PhantomPicture picture_;
 };
+
+/// By its name in the settings: phantom, test; null: any other. `tip` is that of a phantom.
+[[nodiscard]] std::unique_ptr<video::Camera> make_camera(std::string_view source,
+                                                         Mailbox<video::TipSeen>* tip,
+                                                         double surface);
 
 }  // namespace palp::patient

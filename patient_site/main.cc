@@ -172,15 +172,6 @@ std::unique_ptr<DeviceRig> start_devices(const std::optional<DevicePlans>& plans
   return plans ? std::make_unique<DeviceRig>(*plans, std::max(0, priority - 1)) : nullptr;
 }
 
-/// Null where there is none. `recording` outlives it.
-std::unique_ptr<video::Camera> make_camera(const Settings& settings,
-                                           site_program::Recording& recording) {
-  if (settings.camera.source == "test") return std::make_unique<video::TestCamera>();
-  if (settings.camera.source != "phantom") return nullptr;
-  return std::make_unique<DrawnCamera>(recording.camera()->force().tip(),
-                                       settings.simulation.surface_offset);
-}
-
 /// A patient site in real time, its parts in the order in which they need each other.
 /// Thread: main.
 class Program {
@@ -213,7 +204,9 @@ class Program {
                      {"version", std::string{site_program::version()}}},
                     recording_,
                     std::nullopt},
-        camera_{make_camera(settings_, recording_)},
+        camera_{make_camera(settings_.camera.source,
+                            settings_.camera.any() ? &recording_.camera()->force().tip() : nullptr,
+                            settings_.simulation.surface_offset)},
         began_at_{clock_.now()},
         estimator_{"palp-estimator", kEstimatorPause, [this](TimePoint) { listen(); }} {}
   ~Program() { runner_.halt(); }
@@ -329,6 +322,7 @@ void Program::look(TimePoint now) {
   if (const auto peer = runner_.take_peer()) recording_.tell_of_peer(*peer);
   recording_.tell_news(line_);
   monitoring_.tell_news(line_);
+  if (sending_) sending_->tell_news(line_);
   tell_of_devices();
   show(status, now);
 }

@@ -175,6 +175,9 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
     return fail("camera 'phantom' is drawn beside a simulated stage; this stage is '" + made.stage +
                 "'");
   }
+  if (camera->any() && !made.protection.through.empty()) {
+    return fail("camera '" + camera->source + "': there is no video through a relay");
+  }
   made.camera = std::move(*camera);
   made.duration = from_seconds(message.duration_s());
   made.seed = message.seed();

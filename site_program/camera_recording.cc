@@ -16,8 +16,9 @@ void CameraRecording::write_to(record::SessionWriter* writer,
                                  .schema = format.schema,
                                  .descriptors = format.descriptors});
     }
-    (void)writer->write(
-        *topic, frame_.captured_at, video::camera_message(frame_, clock.stamp(frame_.captured_at)));
+    (void)writer->write(*topic,
+                        {.sample = frame_.captured_at, .logged = frame_.delivered_at},
+                        video::camera_message(frame_, clock.stamp(frame_.captured_at)));
   }
 }
 

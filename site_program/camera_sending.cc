@@ -35,6 +35,7 @@ class CameraSending::Io {
       : config_{config}, camera_{camera}, door_{door}, recording_{recording} {}
 
   void work(TimePoint now);
+  [[nodiscard]] std::unique_ptr<video::Encoder> make_encoder() const;
 
  private:
   struct Session {
@@ -61,7 +62,6 @@ class CameraSending::Io {
   void shoot(TimePoint now);
   void send(TimePoint now);
   void say_why_not(TimePoint now);
-  [[nodiscard]] std::unique_ptr<video::Encoder> make_encoder() const;
   [[nodiscard]] TimePoint next_at(TimePoint now) const;
 
   CameraSendingConfig config_;
@@ -157,6 +157,7 @@ void CameraSending::Io::shoot(TimePoint now) {
       *shot.picture, shot.captured_at - force_.began_at, io::SteadyClock{}.now());
   if (!frame) return;
   (void)recording_.frames().offer({.captured_at = shot.captured_at,
+                                   .delivered_at = now,
                                    .key = frame->nature.key,
                                    .jpeg = frame->jpeg,
                                    .bytes = frame->bytes});
@@ -198,11 +199,21 @@ CameraSending::CameraSending(const CameraSendingConfig& config,
                              io::MediaDoor& door,
                              CameraRecording& recording)
     : io_{std::make_unique<Io>(config, camera, door, recording)},
+      encodes_{io_->make_encoder() != nullptr},
       loop_{std::make_unique<io::BackgroundLoop>(
           "palp-video", Duration{0}, [io = io_.get()](TimePoint now) { io->work(now); })} {}
 
 CameraSending::~CameraSending() = default;
 
 void CameraSending::stop() { loop_.reset(); }
+
+void CameraSending::tell_news(StatusLine& line) {
+  const auto failure = loop_ ? loop_->failure() : std::nullopt;
+  if (told_ || (encodes_ && !failure)) return;
+  told_ = true;
+  line.warn(failure ? "the camera's thread has ended: " + *failure +
+                          "; the session goes on without pictures"
+                    : "nobody sees the camera's pictures: this build has no encoder for them");
+}
 
 }  // namespace palp::site_program

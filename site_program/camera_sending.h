@@ -9,6 +9,7 @@
 #include "common/io/realtime/background_loop.h"
 #include "site_program/address_proof.h"
 #include "site_program/camera_recording.h"
+#include "site_program/status_line.h"
 #include "video/camera.h"
 #include "video/media_seal.h"
 #include "video/sender.h"
@@ -36,10 +37,15 @@ class CameraSending {
   /// No picture leaves any more. Idempotent.
   void stop();
 
+  /// Says once what keeps pictures away for good.
+  void tell_news(StatusLine& line);
+
  private:
   class Io;
   std::unique_ptr<Io> io_;
+  bool encodes_;
   std::unique_ptr<io::BackgroundLoop> loop_;
+  bool told_{};
 };
 
 }  // namespace palp::site_program

@@ -1,6 +1,6 @@
 #include "site_program/camera_watching.h"
 
-#include <algorithm>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -29,8 +29,16 @@ constexpr Duration kRateSpan = seconds{1};
 /// All that the thread owns.
 class CameraWatching::Io {
  public:
-  Io(bool records, io::MediaDoor& door, CameraRecording& recording, monitor::CameraFeed& feed)
-      : records_{records}, door_{door}, recording_{recording}, feed_{feed} {}
+  Io(bool records,
+     io::MediaDoor& door,
+     CameraRecording& recording,
+     monitor::CameraFeed& feed,
+     std::function<void()> arrived)
+      : records_{records},
+        door_{door},
+        recording_{recording},
+        feed_{feed},
+        arrived_{std::move(arrived)} {}
 
   void work(TimePoint now);
 
@@ -61,6 +69,7 @@ class CameraWatching::Io {
   io::MediaDoor& door_;
   CameraRecording& recording_;
   monitor::CameraFeed& feed_;
+  std::function<void()> arrived_;
   ForceSeen force_;
   std::optional<Session> session_;
   std::unique_ptr<io::DatagramSocket> socket_;
@@ -120,12 +129,14 @@ void CameraWatching::Io::hear(std::span<const std::byte> datagram,
 
 void CameraWatching::Io::show(video::ReceivedFrame&& frame, TimePoint now) {
   const video::CameraFrame shown{.captured_at = force_.own_line(frame.captured, now),
+                                 .delivered_at = now,
                                  .key = frame.key,
                                  .jpeg = frame.jpeg,
                                  .bytes = std::move(frame.bytes)};
   session_->age = now - shown.captured_at;
   const bool recorded = recording_.frames().offer(shown);
   const bool looked_at = feed_.frames.offer(shown);
+  arrived_();
   if (!recorded || !looked_at) session_->receiver.want_key();
 }
 
@@ -184,13 +195,21 @@ void CameraWatching::Io::tell(TimePoint now) {
 CameraWatching::CameraWatching(bool records,
                                io::MediaDoor& door,
                                CameraRecording& recording,
-                               monitor::CameraFeed& feed)
-    : io_{std::make_unique<Io>(records, door, recording, feed)},
+                               monitor::CameraFeed& feed,
+                               std::function<void()> arrived)
+    : io_{std::make_unique<Io>(records, door, recording, feed, std::move(arrived))},
       loop_{std::make_unique<io::BackgroundLoop>(
           "palp-video", Duration{0}, [io = io_.get()](TimePoint now) { io->work(now); })} {}
 
 CameraWatching::~CameraWatching() = default;
 
 void CameraWatching::stop() { loop_.reset(); }
+
+void CameraWatching::tell_news(StatusLine& line) {
+  const auto failure = loop_ ? loop_->failure() : std::nullopt;
+  if (!failure || std::exchange(told_, true)) return;
+  line.warn("the thread that looks through the camera has ended: " + *failure +
+            "; the session goes on without pictures");
+}
 
 }  // namespace palp::site_program

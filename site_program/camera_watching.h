@@ -1,13 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <memory>
-#include <optional>
-#include <string>
 
 #include "common/io/net/media_door.h"
 #include "common/io/realtime/background_loop.h"
 #include "monitor/camera_feed.h"
 #include "site_program/camera_recording.h"
+#include "site_program/status_line.h"
 
 namespace palp::site_program {
 
@@ -17,11 +17,12 @@ namespace palp::site_program {
 class CameraWatching {
  public:
   /// All outlive it. `records`: there is a session file, so pictures are wanted although nobody
-  /// looks.
+  /// looks. `arrived`: called where `feed` has one more, on the thread of the video.
   CameraWatching(bool records,
                  io::MediaDoor& door,
                  CameraRecording& recording,
-                 monitor::CameraFeed& feed);
+                 monitor::CameraFeed& feed,
+                 std::function<void()> arrived);
   ~CameraWatching();
   CameraWatching(const CameraWatching&) = delete;
   CameraWatching& operator=(const CameraWatching&) = delete;
@@ -29,10 +30,14 @@ class CameraWatching {
   /// Idempotent.
   void stop();
 
+  /// Says once what keeps pictures away for good.
+  void tell_news(StatusLine& line);
+
  private:
   class Io;
   std::unique_ptr<Io> io_;
   std::unique_ptr<io::BackgroundLoop> loop_;
+  bool told_{};
 };
 
 }  // namespace palp::site_program

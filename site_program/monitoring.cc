@@ -49,7 +49,7 @@ Monitoring::Monitoring(const settings::MonitorSettings& settings,
     controls = {.requests = &requests_,
                 .stops = site->stops,
                 .pointer = site->pointer,
-                .camera = site->camera};
+                .camera = site->media != nullptr ? &camera_ : nullptr};
   }
   const std::string site_name{record::site_name(feed->site())};
   monitor::ServerConfig config{.desk = {.site = feed->site(),
@@ -64,7 +64,13 @@ Monitoring::Monitoring(const settings::MonitorSettings& settings,
     server_ = std::make_unique<monitor::Server>(config, controls, *feed);
   } catch (const std::runtime_error& error) {
     fault_ = error.what();
+    return;
   }
+  if (controls.camera == nullptr) return;
+  watching_ = std::make_unique<CameraWatching>(
+      recording.has_file(), *site->media, *recording.camera(), camera_, [server = server_.get()] {
+        server->wake();
+      });
 }
 
 Monitoring::~Monitoring() = default;
@@ -78,6 +84,7 @@ void Monitoring::announce(StatusLine& line) const {
 }
 
 void Monitoring::tell_news(StatusLine& line) {
+  if (watching_) watching_->tell_news(line);
   if (!server_ || told_of_failure_) return;
   const auto failure = server_->failure();
   if (!failure) return;
@@ -94,6 +101,9 @@ void Monitoring::look(Recording& recording, TimePoint now) {
   }
 }
 
-void Monitoring::stop() { server_.reset(); }
+void Monitoring::stop() {
+  watching_.reset();
+  server_.reset();
+}
 
 }  // namespace palp::site_program

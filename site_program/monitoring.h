@@ -13,6 +13,7 @@
 #include "common/settings/site_settings.h"
 #include "monitor/controls.h"
 #include "monitor/server.h"
+#include "site_program/camera_watching.h"
 #include "site_program/recording.h"
 #include "site_program/status_line.h"
 
@@ -22,7 +23,7 @@ namespace palp::site_program {
 struct MonitoredSite {
   Mailbox<std::uint32_t>* stops{};
   Mailbox<PointerReport>* pointer{};
-  monitor::CameraFeed* camera{};
+  io::MediaDoor* media{};  ///< the patient's camera is looked through
 };
 
 /// The live page of a site's session, and what its clients ask of the program. A page that cannot
@@ -62,7 +63,9 @@ class Monitoring {
   SpscQueue<monitor::Request> requests_{kRequestsMax};  ///< writer: monitor, reader: main
   monitor::Tokens tokens_;
   std::string fault_;
+  monitor::CameraFeed camera_;
   std::unique_ptr<monitor::Server> server_;
+  std::unique_ptr<CameraWatching> watching_;  ///< null: no picture is wanted
   std::uint32_t marks_{};
   std::uint32_t resets_{};
   bool end_asked_{};

@@ -67,8 +67,10 @@ RecordDesk::RecordDesk(const settings::RecordSettings& settings,
                        std::size_t writer_count,
                        std::optional<Duration> live_period,
                        bool with_camera)
-    : prefix_{settings.files}, info_{std::move(info)} {
-  if (!prefix_.empty() || !settings.file.empty()) {
+    : has_file_{!settings.file.empty() || !settings.files.empty()},
+      prefix_{settings.files},
+      info_{std::move(info)} {
+  if (has_file_) {
     open(prefix_.empty() ? settings.file : next_path());
     if (!sink_) throw std::runtime_error{file_fault_};
   }

@@ -65,6 +65,8 @@ class RecordDesk {
 
   /// Null where nobody looks on.
   [[nodiscard]] monitor::Feed* feed() noexcept { return feed_ ? &*feed_ : nullptr; }
+  /// One was asked for. Thread: the maker's.
+  [[nodiscard]] bool has_file() const noexcept { return has_file_; }
   /// Null where no picture is sent or looked at.
   [[nodiscard]] CameraRecording* camera() noexcept { return camera_ ? &*camera_ : nullptr; }
   [[nodiscard]] record::Recorder& recorder(std::size_t writer) { return *queues_.at(writer); }
@@ -95,6 +97,7 @@ class RecordDesk {
   /// Less than so much recording left is told.
   static constexpr Duration kNearlyFull = std::chrono::minutes{5};
 
+  bool has_file_;
   std::string prefix_;  ///< of the files of sessions; empty: one file
   record::SessionInfo info_;
   std::uint64_t session_id_{};  ///< of the newest session

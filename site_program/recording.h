@@ -35,6 +35,8 @@ class Recording {
   [[nodiscard]] record::Recorder& recorder(std::size_t writer) { return desk_->recorder(writer); }
   /// What the site's monitor shows; null where nobody looks on. Until stop().
   [[nodiscard]] monitor::Feed* feed() noexcept { return desk_->feed(); }
+  /// Somebody will look at what is recorded. Until stop().
+  [[nodiscard]] bool has_file() const noexcept { return desk_->has_file(); }
   /// For the thread of the video; null where there is none. Until stop().
   [[nodiscard]] CameraRecording* camera() noexcept { return desk_->camera(); }
   /// What a client asked for.

@@ -15,7 +15,6 @@
 #include "common/io/realtime/steady_clock.h"
 #include "common/link/codec_wire.h"
 #include "site_program/build_info.h"
-#include "site_program/camera_watching.h"
 #include "site_program/certificates_command.h"
 #include "site_program/check_command.h"
 #include "site_program/exit_status.h"
@@ -95,6 +94,11 @@ struct Plan {
   site_program::RunnerConfig runner;
   record::SessionInfo info;
 };
+
+/// Where somebody could look. A relay between the sites knows one address of each, that of force.
+bool shows_camera(const Settings& settings) {
+  return settings.monitor.serve && settings.protection.through.empty();
+}
 
 /// Whose hand it is, of a person or of a script.
 struct HandPlan {
@@ -179,7 +183,7 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   runner.protection = settings->protection;
   runner.wrap_transport = std::move(*wrap);
   runner.loop = settings->loop;
-  runner.with_media = settings->monitor.serve;
+  runner.with_media = shows_camera(*settings);
   auto info =
       site_program::session_info(link::Role::Surgeon, "palp-surgeon", settings->seed, document);
   info.metadata.emplace_back("coupling", settings->coupling.name);
@@ -213,17 +217,17 @@ class Program {
                    proven(std::move(plan.info)),
                    1,
                    settings_.monitor.serve ? std::optional{settings_.loop.period} : std::nullopt,
-                   settings_.monitor.serve},
+                   shows_camera(settings_)},
         node_{settings_.node, {device(), law_, link_, recording_.recorder(0)}},
-        monitoring_{
-            settings_.monitor,
-            {{"coupling", settings_.coupling.name},
-             {"master", settings_.master},
-             {"version", std::string{site_program::version()}}},
-            recording_,
-            site_program::MonitoredSite{.stops = &node_.stops(),
-                                        .pointer = pointer_ ? &pointer_->reports() : nullptr,
-                                        .camera = &camera_feed_}},
+        monitoring_{settings_.monitor,
+                    {{"coupling", settings_.coupling.name},
+                     {"master", settings_.master},
+                     {"version", std::string{site_program::version()}}},
+                    recording_,
+                    site_program::MonitoredSite{
+                        .stops = &node_.stops(),
+                        .pointer = pointer_ ? &pointer_->reports() : nullptr,
+                        .media = shows_camera(settings_) ? &runner_.media_door() : nullptr}},
         began_at_{clock_.now()},
         watch_{{.peer = settings_.peer,
                 .patience_at_first = settings_.link.closed_after,
@@ -266,7 +270,6 @@ class Program {
   site_program::Runner runner_;
   site_program::Recording recording_;
   SurgeonNode node_;
-  monitor::CameraFeed camera_feed_;
   site_program::Monitoring monitoring_;
   io::SteadyClock clock_;
   TimePoint began_at_;
@@ -274,7 +277,6 @@ class Program {
   site_program::StatusLine line_;
   site_program::RoundTrips round_trips_;
   bool advised_{};
-  std::unique_ptr<site_program::CameraWatching> watching_;  ///< null: nobody could look
 };
 
 std::optional<ExitStatus> Program::await_master(io::Terminal& terminal) {
@@ -302,13 +304,6 @@ ExitStatus Program::run(io::Terminal& terminal) {
     return site_program::cannot_start("no pointer without its page: " + monitoring_.fault());
   }
   if (auto ended = await_master(terminal)) return *ended;
-  if (settings_.monitor.serve) {
-    watching_ = std::make_unique<site_program::CameraWatching>(
-        !settings_.record.file.empty() || !settings_.record.files.empty(),
-        runner_.media_door(),
-        *recording_.camera(),
-        camera_feed_);
-  }
   runner_.start(link_, [this](TimePoint now) { node_.tick(now); });
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
   monitoring_.announce(line_);
@@ -362,7 +357,6 @@ void Program::show(const SurgeonStatus& status, TimePoint now) {
 }
 
 void Program::stop(site_program::SiteReport& report) {
-  watching_.reset();
   runner_.stop(report.exit_status.reason.empty()
                    ? "the surgeon site has ended"
                    : "the surgeon site has ended: " + report.exit_status.reason);

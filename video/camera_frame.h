@@ -10,10 +10,11 @@ namespace palp::video {
 
 /// A frame at the site where it is shown or recorded.
 struct CameraFrame {
-  TimePoint captured_at{};  ///< on this site's line
+  TimePoint captured_at{};   ///< on this site's line
+  TimePoint delivered_at{};  ///< likewise: it left, or had come; the difference is its age
   bool key{};
   bool jpeg{};
-  Bytes bytes;
+  Bytes bytes{};
 };
 
 /// How session files and live clients know it: foxglove.CompressedVideo, or CompressedImage.

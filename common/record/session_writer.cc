@@ -124,9 +124,12 @@ std::uint16_t SessionWriter::add_topic(const ForeignTopic& topic) {
   return static_cast<std::uint16_t>(foreign_.size() - 1);
 }
 
-bool SessionWriter::write(std::uint16_t topic, TimePoint at, std::span<const std::byte> message) {
+bool SessionWriter::write(std::uint16_t topic,
+                          const Instants& at,
+                          std::span<const std::byte> message) {
   if (closed_) return false;
-  std::byte* place = place_for(foreign_.at(topic), clock_.stamp(at), message.size());
+  std::byte* place = place_for(
+      foreign_.at(topic), clock_.stamp(at.logged), clock_.stamp(at.sample), message.size());
   if (place == nullptr) return false;
   std::memcpy(place, message.data(), message.size());
   ++counts_.foreign;
@@ -154,11 +157,14 @@ bool SessionWriter::put(const Prepared& prepared) {
   return true;
 }
 
-std::byte* SessionWriter::place_for(Channel& channel, std::uint64_t stamp, std::size_t size) {
+std::byte* SessionWriter::place_for(Channel& channel,
+                                    std::uint64_t logged,
+                                    std::uint64_t published,
+                                    std::size_t size) {
   std::byte* place = mcap_.add_message({.channel = channel.id,
                                         .sequence = channel.sequence,
-                                        .log_time = stamp,
-                                        .publish_time = stamp},
+                                        .log_time = logged,
+                                        .publish_time = published},
                                        size);
   if (place == nullptr) return nullptr;
   if (mcap_.waiting() == 1) settled_ = counts_;  // all before are written

@@ -78,8 +78,13 @@ class SessionWriter {
     Bytes descriptors;   ///< FileDescriptorSet
   };
   std::uint16_t add_topic(const ForeignTopic& topic);
-  /// A message there, of that instant. @returns false: not written, and counted.
-  bool write(std::uint16_t topic, TimePoint at, std::span<const std::byte> message);
+  /// When a sample was taken, and when the site had it: publish_time and log_time of its message.
+  struct Instants {
+    TimePoint sample{};
+    TimePoint logged{};
+  };
+  /// A message there. @returns false: not written, and counted.
+  bool write(std::uint16_t topic, const Instants& at, std::span<const std::byte> message);
   /// Facts that become known while it runs: a metadata record of that name.
   void add_facts(const std::string& name, const McapMap& facts);
   /// Total of records that a full queue dropped; shown in the next link status and the summary.
@@ -115,7 +120,13 @@ class SessionWriter {
     std::uint32_t sequence{};
   };
   /// Room for a message; nullptr: the recording has ended.
-  std::byte* place_for(Channel& channel, std::uint64_t stamp, std::size_t size);
+  std::byte* place_for(Channel& channel, std::uint64_t stamp, std::size_t size) {
+    return place_for(channel, stamp, stamp, size);
+  }
+  std::byte* place_for(Channel& channel,
+                       std::uint64_t logged,
+                       std::uint64_t published,
+                       std::size_t size);
   void view(const SiteTick& tick);
   void write_view();
   void write_log_line(const Record& event, TimePoint at);

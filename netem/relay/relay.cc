@@ -5,7 +5,7 @@
 #include <poll.h>
 #include <time.h>
 
-#include "common/io/net/media_door.h"
+#include "common/io/net/media_wait.h"
 #include "common/io/realtime/realtime.h"
 
 namespace palp::netem {
@@ -30,6 +30,10 @@ constexpr Duration kRestMax = milliseconds{10};
 timespec to_timespec(Duration span) noexcept {
   const auto whole = std::chrono::duration_cast<std::chrono::seconds>(span);
   return {.tv_sec = whole.count(), .tv_nsec = (span - whole).count()};
+}
+
+bool looks_like_video(std::span<const std::byte> datagram) noexcept {
+  return !datagram.empty() && datagram[0] == io::kMediaFirstByte;
 }
 
 }  // namespace
@@ -91,7 +95,9 @@ void Relay::drain(Readable readable) noexcept {
     if (datagrams.empty()) break;
     for (std::size_t i = 0; i < datagrams.size(); ++i) {
       const ReceivedDatagram& one = datagrams[i];
-      clients_[lane_of(one.bytes)].heard(client_side_.sender_of(i), one.bytes, one.arrived_at);
+      const io::Endpoint from = client_side_.sender_of(i);
+      const bool beside = looks_like_video(one.bytes) && client() && !(from == *client());
+      clients_[beside ? kVideo : kForce].heard(from, one.bytes, one.arrived_at);
     }
     push(Direction::Up, datagrams);
     if (datagrams.size() < kDatagramBatch) break;
@@ -119,8 +125,9 @@ void Relay::push(Direction direction, std::span<const ReceivedDatagram> datagram
   }
 }
 
-std::size_t Relay::lane_of(std::span<const std::byte> datagram) noexcept {
-  return !datagram.empty() && datagram[0] == io::kMediaFirstByte ? kVideo : kForce;
+/// Another protocol's datagrams may begin so too: there is no second client then.
+std::size_t Relay::lane_of(std::span<const std::byte> datagram) const noexcept {
+  return looks_like_video(datagram) && clients_[kVideo].client() ? kVideo : kForce;
 }
 
 Crossing Relay::crossing(std::uint8_t side, std::size_t lane) const noexcept {

@@ -147,11 +147,11 @@ class Relay {
     return direction == Direction::Up ? up_ : down_;
   }
 
-  /// By their first byte (WIRE.md); all that is not video is Force's.
+  /// By their first byte (WIRE.md), once a second client has sent such; all else is force's.
   static constexpr std::size_t kForce = 0;
   static constexpr std::size_t kVideo = 1;
   static constexpr std::size_t kLanes = 2;
-  [[nodiscard]] static std::size_t lane_of(std::span<const std::byte> datagram) noexcept;
+  [[nodiscard]] std::size_t lane_of(std::span<const std::byte> datagram) const noexcept;
 
   DatagramSocket client_side_;
   std::array<DatagramSocket, kLanes> server_side_;

@@ -22,8 +22,9 @@ struct Rig {
   SpscQueue<Request> requests{64};
   Mailbox<std::uint32_t> stops;
   Mailbox<PointerReport> pointer;
+  CameraFeed camera;
   Desk desk{{.site = link::Role::Surgeon, .program = "palp-surgeon", .run = "r"},
-            {.requests = &requests, .stops = &stops, .pointer = &pointer}};
+            {.requests = &requests, .stops = &stops, .pointer = &pointer, .camera = &camera}};
 
   std::string next(std::uint32_t client) {
     Outbox& box = desk.outbox(client);
@@ -61,6 +62,59 @@ struct Rig {
   }
 };
 
+video::CameraFrame frame_of(bool key, char content) {
+  return {.captured_at = kNow, .key = key, .jpeg = false, .bytes = {std::byte(content)}};
+}
+constexpr const char* kLook = R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":102}]})";
+
+TEST(DeskTest, PicturesBeginWithOneThatRefersToNothing) {
+  Rig rig;
+  const std::uint32_t client = rig.join(Right::View);
+  EXPECT_FALSE(rig.camera.wishes.get().watched);
+  EXPECT_TRUE(rig.desk.hear_text(client, kLook, kNow));
+  EXPECT_TRUE(rig.camera.wishes.get().watched);
+  EXPECT_EQ(rig.camera.wishes.get().keys, 1U);
+  rig.desk.publish(frame_of(false, 'd'), 7);
+  EXPECT_EQ(rig.next(client), "");
+  rig.desk.publish(frame_of(true, 'k'), 8);
+  rig.desk.publish(frame_of(false, 'e'), 9);
+  EXPECT_THAT(rig.next(client), HasSubstr("k"));
+  EXPECT_THAT(rig.next(client), HasSubstr("e"));
+  EXPECT_TRUE(rig.desk.hear_text(client, R"({"op":"unsubscribe","subscriptionIds":[5]})", kNow));
+  EXPECT_FALSE(rig.camera.wishes.get().watched);
+}
+
+TEST(DeskTest, AClientThatMissedAPictureGetsNoneThatRestsOnIt) {
+  Rig rig;
+  const std::uint32_t client = rig.join(Right::View);
+  EXPECT_TRUE(rig.desk.hear_text(client, kLook, kNow));
+  rig.desk.publish(frame_of(true, 'k'), 1);
+  for (std::size_t i = 0; i < Outbox::kChainedMax; ++i) rig.desk.publish(frame_of(false, 'd'), 2);
+  EXPECT_EQ(rig.next(client), "") << "all of them gave way";
+  rig.desk.publish(frame_of(false, 'd'), 3);
+  EXPECT_EQ(rig.next(client), "");
+  EXPECT_EQ(rig.camera.wishes.get().keys, 2U);
+  rig.desk.publish(frame_of(true, 'k'), 4);
+  EXPECT_THAT(rig.next(client), HasSubstr("k"));
+}
+
+TEST(DeskTest, NobodyLooksOnceTheLastWhoDidHasGone) {
+  Rig rig;
+  const std::uint32_t client = rig.join(Right::View);
+  EXPECT_TRUE(rig.desk.hear_text(client, kLook, kNow));
+  rig.desk.leave(client, kNow);
+  EXPECT_FALSE(rig.camera.wishes.get().watched);
+}
+
+TEST(DeskTest, WhyNoPictureComesIsTold) {
+  Rig rig;
+  const std::uint32_t client = rig.join(Right::View);
+  EXPECT_TRUE(rig.desk.hear_text(
+      client, R"({"op":"subscribe","subscriptions":[{"id":6,"channelId":104}]})", kNow));
+  rig.desk.publish(VideoShown{.at = kNow, .state = video::VideoState::PathFull}, 3);
+  EXPECT_THAT(rig.next(client), HasSubstr("the path carries force only"));
+}
+
 const std::string kHeld = R"({"press":1,"held":true,"into_m":0.001,"x_m":0,"y_m":0})";
 
 TEST(DeskTest, AClientIsToldWhoServesAndWhat) {
@@ -81,7 +135,10 @@ TEST(DeskTest, AClientIsToldWhoServesAndWhat) {
                                             "surgeon/depth",
                                             "surgeon/map",
                                             "surgeon/status",
-                                            "surgeon/client"));
+                                            "surgeon/client",
+                                            "surgeon/camera",
+                                            "surgeon/camera_jpeg",
+                                            "surgeon/video"));
   EXPECT_THAT(rig.next(client), HasSubstr("pointer/take"));
 }
 

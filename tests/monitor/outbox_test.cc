@@ -52,6 +52,35 @@ TEST(OutboxTest, NorMayManySmallAnswersPileUp) {
   EXPECT_FALSE(box.hopeless());
 }
 
+Frame picture(const std::string& body) {
+  return {.text = false, .passing = true, .chained = true, .body = body};
+}
+
+TEST(OutboxTest, APictureThatGivesWayTakesAlongWhatRestsOnIt) {
+  Outbox box{20};
+  for (const char* one : {"p1p1", "p2p2", "p3p3"}) box.push(picture(one));
+  EXPECT_FALSE(box.take_broken());
+  (void)box.begin_first();
+  box.push(passing("1111222233334444"));
+  EXPECT_TRUE(box.take_broken());
+  EXPECT_FALSE(box.take_broken()) << "told once";
+  EXPECT_EQ(box.dropped(), 2U);
+  EXPECT_EQ(box.begin_first().body, "p1p1") << "what is on its way stays";
+  box.pop();
+  EXPECT_EQ(box.begin_first().body, "1111222233334444");
+}
+
+TEST(OutboxTest, PicturesDoNotPileUpBeforeAClientThatIsSlow) {
+  Outbox box{1024 * 1024};
+  for (std::size_t i = 0; i < Outbox::kChainedMax; ++i) box.push(picture("p"));
+  EXPECT_FALSE(box.take_broken());
+  box.push(picture("p"));
+  EXPECT_TRUE(box.take_broken());
+  EXPECT_TRUE(box.empty());
+  box.push(picture("k"));
+  EXPECT_FALSE(box.take_broken());
+}
+
 RC_GTEST_PROP(OutboxTest,
               NeverHoldsMoreThanItsBoundAndTheNewest,
               (const std::vector<std::string>& all)) {

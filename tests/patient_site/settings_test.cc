@@ -90,6 +90,7 @@ std::string text_of(const Settings& settings) {
   add(list, settings.impairment);
   add(list, settings.record);
   add(list, settings.monitor);
+  add(list, settings.camera);
   list.add("duration", settings.duration).add("seed", settings.seed);
   return list.text();
 }
@@ -132,6 +133,19 @@ TEST(PatientSettingsTest, UnknownDevicesAreErrorsThatListTheKnownOnes) {
   EXPECT_THAT(make_settings(document).error().text, HasSubstr("do not go together"));
   ASSERT_TRUE(document.set("force=modbus"));
   EXPECT_THAT(make_settings(document).error().text, HasSubstr("needs --devices FILE"));
+}
+
+TEST(PatientSettingsTest, ACameraIsOneThatCanBe) {
+  EXPECT_FALSE(settings_with({}).camera.any());
+  EXPECT_TRUE(settings_with({"camera.source=phantom"}).camera.any());
+  EXPECT_TRUE(settings_with({"camera.codec=jpeg"}).camera.jpeg);
+  config::Document document = config::patient_document();
+  ASSERT_TRUE(document.set("camera.source=film"));
+  EXPECT_THAT(make_settings(document).error().text,
+              HasSubstr("unknown camera 'film'; there are: none, phantom, test"));
+  ASSERT_TRUE(document.set("camera.source=test"));
+  ASSERT_TRUE(document.set("link.through=127.0.0.1:9"));
+  EXPECT_THAT(make_settings(document).error().text, HasSubstr("no video through a relay"));
 }
 
 TEST(PatientSettingsTest, TheEstimatorHasTheLoopsPeriod) {

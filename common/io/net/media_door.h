@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "common/core/spsc_queue.h"
 #include "common/io/net/datagram_socket.h"
@@ -23,8 +24,19 @@ struct MediaSession {
 /// that thread unread; a socket of the same port to an address that it has proven is made by io,
 /// who alone has the port. Where a queue is full, what is new is left out: all of it is repeated.
 /// Outlives the server.
-struct MediaDoor {
+class MediaDoor {
+ public:
   static constexpr std::size_t kDatagrams = 64;
+
+  /// io: another session, or none any more.
+  void begin(const MediaSession& session) { (void)sessions.try_enqueue(session); }
+  /// io: what came to the listening socket; `door` null: nobody wants video. false: it is no video.
+  [[nodiscard]] static bool take(MediaDoor* door,
+                                 std::span<const std::byte> datagram,
+                                 const Endpoint& from,
+                                 TimePoint now);
+  /// io: what the thread of the video cannot do. `listening`: the socket that has `local`.
+  void serve(int listening, const Endpoint& local);
 
   SpscQueue<SideDatagram> heard{kDatagrams};           ///< writer: io, reader: video
   SpscQueue<MediaSession> sessions{16};                ///< writer: io, reader: video
@@ -32,8 +44,5 @@ struct MediaDoor {
   SpscQueue<Endpoint> wanted{4};                       ///< writer: video, reader: io
   SpscQueue<std::unique_ptr<DatagramSocket>> ways{4};  ///< writer: io, reader: video
 };
-
-/// Marks of every datagram of video (WIRE.md): version 8, type 5.
-inline constexpr std::byte kMediaFirstByte{0x85};
 
 }  // namespace palp::io

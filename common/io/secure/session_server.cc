@@ -6,7 +6,6 @@
 #include <exception>
 #include <span>
 #include <stdexcept>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <variant>
@@ -74,10 +73,7 @@ class SessionServer::Io {
   void hear(std::span<const std::byte> datagram, const Endpoint& from);
   /// `from`: where the datagram came from that is answered; none: nothing came.
   void carry_out(SessionEndpointOutput output, const Endpoint& from);
-  void meet(const link::Established& session,
-            std::unique_ptr<link::PacketProtection> protection,
-            const std::optional<link::PlaneKeys>& media,
-            const Endpoint& peer);
+  void meet(const link::Established& session, SessionEndpointOutput& output, const Endpoint& peer);
   void carry_on(std::unique_ptr<link::Transport> transport,
                 std::unique_ptr<link::PacketProtection> protection);
   void move(const Endpoint& peer, const Endpoint& former);
@@ -86,7 +82,6 @@ class SessionServer::Io {
   [[nodiscard]] Result<std::unique_ptr<link::Transport>> way_to(const Endpoint& peer,
                                                                 const Endpoint& former);
   void offer_waiting();
-  void serve_media();
   void keep_seat();
   void send(std::span<const std::byte> datagram, const Endpoint& to);
   void leave();
@@ -175,8 +170,7 @@ void SessionServer::Io::run_round() {
   desk_.destroy_retired();
   SideDatagram aside;
   for (std::size_t i = 0; i < SideInbox::kCapacity; ++i) {
-    if (!desk_.inbox().datagrams.try_dequeue(aside)) break;
-    hear(aside.datagram(), aside.from);
+    if (desk_.inbox().datagrams.try_dequeue(aside)) hear(aside.datagram(), aside.from);
   }
   carry_out(session_endpoint_->tick(clock_.now(), desk_.link()), callee_);
   for (std::deque<Early> early = std::exchange(early_, {}); !early.empty(); early.pop_front()) {
@@ -184,7 +178,7 @@ void SessionServer::Io::run_round() {
   }
   follow_machine();
   keep_seat();
-  serve_media();
+  if (config_.media != nullptr) config_.media->serve(listening_.native_handle(), local_);
   offer_waiting();
   noise_.put(session_endpoint_->counters());
   strangers_ = 0;
@@ -225,10 +219,7 @@ void SessionServer::Io::hear(std::span<const std::byte> datagram, const Endpoint
     if (const auto answer = relay_->hear(datagram, from, now)) send(*answer, from);
     return;
   }
-  if (config_.media != nullptr && !datagram.empty() && datagram[0] == kMediaFirstByte) {
-    (void)config_.media->heard.try_emplace(datagram, from, now);
-    return;
-  }
+  if (MediaDoor::take(config_.media, datagram, from, now)) return;
   SessionEndpointOutput output = session_endpoint_->hear(datagram, from, now);
   if (output.detours) (void)desk_.inbox().detours.try_emplace(datagram, from, now);
   carry_out(std::move(output), from);
@@ -237,7 +228,7 @@ void SessionServer::Io::hear(std::span<const std::byte> datagram, const Endpoint
 void SessionServer::Io::carry_out(SessionEndpointOutput output, const Endpoint& from) {
   if (output.event) {
     if (const auto* session = std::get_if<link::Established>(&*output.event)) {
-      meet(*session, std::move(output.protection), output.media, from);
+      meet(*session, output, from);
     } else if (const auto* refused = std::get_if<link::Refused>(&*output.event)) {
       const auto why = refusal_text(*refused, output.unanswered, relay_);
       if (why) tell(SessionNews::Kind::Refused, from, refusal_opening() + *why, refused->final);
@@ -262,26 +253,6 @@ void SessionServer::Io::send(std::span<const std::byte> datagram, const Endpoint
                  to.size());
 }
 
-/// What the thread of the video cannot do: it has no way to strangers, and not the port.
-void SessionServer::Io::serve_media() {
-  if (config_.media == nullptr) return;
-  SideDatagram letter;
-  for (std::size_t i = 0; i < MediaDoor::kDatagrams; ++i) {
-    if (!config_.media->letters.try_dequeue(letter)) break;
-    send(letter.datagram(), letter.from);
-  }
-  Endpoint peer;
-  if (!config_.media->wanted.try_dequeue(peer)) return;
-  share_port(listening_.native_handle(), true);
-  try {
-    auto way = std::make_unique<DatagramSocket>(DatagramSocket::sharing(local_, peer));
-    (void)config_.media->ways.try_enqueue(std::move(way));
-  } catch (const std::system_error&) {
-    // It is asked for again.
-  }
-  share_port(listening_.native_handle(), false);
-}
-
 /// A session that works is not disturbed with what the relay says.
 void SessionServer::Io::keep_seat() {
   if (!relay_) return;
@@ -301,11 +272,10 @@ void SessionServer::Io::offer_waiting() {
 }
 
 void SessionServer::Io::meet(const link::Established& session,
-                             std::unique_ptr<link::PacketProtection> protection,
-                             const std::optional<link::PlaneKeys>& media,
+                             SessionEndpointOutput& output,
                              const Endpoint& peer) {
   link::LinkUpdate next{.transport = nullptr,
-                        .protection = std::move(protection),
+                        .protection = std::move(output.protection),
                         .send_connection = session.send_connection,
                         .receive_connection = session.receive_connection,
                         .session_id = session.session_id,
@@ -323,9 +293,7 @@ void SessionServer::Io::meet(const link::Established& session,
   present_ = session;
   met_ = identity_of(session, *session_endpoint_);
   waiting_.push_back(std::move(next));
-  if (config_.media != nullptr) {
-    (void)config_.media->sessions.try_enqueue({present_.session_id, media, peer});
-  }
+  if (config_.media != nullptr) config_.media->begin({session.session_id, output.media, peer});
   tell(SessionNews::Kind::Established,
        peer,
        session_sentence(config_.session.role, peer, session, session_endpoint_->proof()));
@@ -396,7 +364,7 @@ Result<std::unique_ptr<link::Transport>> SessionServer::Io::way_to(const Endpoin
 void SessionServer::Io::leave() {
   connected_ = {};
   present_ = {};
-  if (config_.media != nullptr) (void)config_.media->sessions.try_enqueue(MediaSession{});
+  if (config_.media != nullptr) config_.media->begin({});
   waiting_.push_back({});
 }
 

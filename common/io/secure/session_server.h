@@ -31,7 +31,7 @@ struct SessionServerConfig {
   TransportWrap wrap_transport;      ///< empty: the link gets the socket itself
   int priority{};                    ///< SCHED_FIFO of the io thread, below rt's; 0: leave as it is
   const Credentials* credentials{};  ///< outlives the server; null: plain, for benches
-  MediaDoor* media{};                ///< outlives the server; null: video is foreign here
+  MediaDoor* media{};                ///< outlives the server; null: there is no video
   Duration rekey_after{std::chrono::hours{1}};  ///< age of keys that the surgeon replaces
 };
 

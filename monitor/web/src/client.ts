@@ -18,6 +18,8 @@ const ENCODE = new TextEncoder(), DECODE = new TextDecoder();
 const POINTER_CHANNEL = 1;
 const RETRY_MS = 1000;
 
+const nameOf = (topic: Topic): string => topic.topic.replace(/^.*\//, '');
+
 function bytesOf(base64: string): Uint8Array {
   return Uint8Array.from(atob(base64), c => c.charCodeAt(0));
 }
@@ -28,6 +30,7 @@ export class Client {
   private services = new Map<string, number>();
   private calls = new Map<number, (answer: Answer) => void>();
   private lastCall = 0;
+  private left = new Set<string>();  // topics that nobody wants now
   private open = false;
 
   constructor(private readonly token: string, private readonly listener: Listener) { this.connect(); }
@@ -65,7 +68,7 @@ export class Client {
       for (const topic of topics) {
         this.topics.set(topic.id, { topic, schema: topic.encoding === 'protobuf' ? readSchema(bytesOf(topic.schema)) : undefined });
       }
-      this.send({ op: 'subscribe', subscriptions: topics.map(t => ({ id: t.id, channelId: t.id })) });
+      this.subscribe(topics.filter(t => !this.left.has(nameOf(t))));
     } else if (said.op === 'advertiseServices') {
       for (const one of said.services as { id: number; name: string }[]) this.services.set(one.name, one.id);
     } else if (said.op === 'status') {
@@ -84,7 +87,7 @@ export class Client {
       const payload = new Uint8Array(view.buffer, 13);
       const message = known.schema ? decode(known.schema, `.${known.topic.schemaName}`, payload)
         : JSON.parse(DECODE.decode(payload)) as Message;
-      this.listener.heard(known.topic.topic.replace(/^.*\//, ''), stamp, message);
+      this.listener.heard(nameOf(known.topic), stamp, message);
     } else if (kind === 3) {
       const encoding = view.getUint32(9, true);
       this.settle(view.getUint32(5, true), JSON.parse(DECODE.decode(new Uint8Array(view.buffer, 13 + encoding))) as Answer);
@@ -97,6 +100,21 @@ export class Client {
   }
 
   private send(json: unknown): void { if (this.open) this.socket!.send(JSON.stringify(json)); }
+
+  private subscribe(topics: Topic[]): void {
+    if (topics.length > 0) this.send({ op: 'subscribe', subscriptions: topics.map(t => ({ id: t.id, channelId: t.id })) });
+  }
+
+  /** Whether the site has such a topic. */
+  tells(name: string): boolean { return [...this.topics.values()].some(one => nameOf(one.topic) === name); }
+
+  /** Of these topics nothing more, or all of it from now on: of the camera a key frame first. */
+  follow(names: string[], wanted: boolean): void {
+    for (const name of names) if (wanted) this.left.delete(name); else this.left.add(name);
+    const topics = [...this.topics.values()].map(one => one.topic).filter(t => names.includes(nameOf(t)));
+    if (wanted) this.subscribe(topics);
+    else if (topics.length > 0) this.send({ op: 'unsubscribe', subscriptionIds: topics.map(t => t.id) });
+  }
 
   /** Whether the site has such a service for us. */
   offers(service: string): boolean { return this.services.has(service); }

@@ -1,8 +1,10 @@
 import { render, type ComponentChildren } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
 import { ForceStrip, PlaceStrip } from './charts';
+import { Camera } from './camera';
 import { Client } from './client';
 import { Model, type Status } from './model';
+import { Picture } from './picture';
 import { Pilot } from './pilot';
 import { Section } from './section';
 import { Sound } from './sound';
@@ -27,10 +29,17 @@ const model = new Model(), sound = new Sound();
 let wantsPointer = true, askedAt = -1e9;
 const say = (text: string, tone: '' | 'warn' | 'bad' = '') => model.happen(Date.now(), text, tone);
 
-const client = new Client(token(), {
-  greeted: greeting => model.begin(greeting),
+const camera: Camera = new Camera((stamp, now) => model.ageOf(stamp, now), () => {
+  client.follow(PICTURES, false);
+  client.follow(PICTURES, true);
+});
+
+const client: Client = new Client(token(), {
+  greeted: greeting => { model.begin(greeting); camera.end(); },
   heard: (topic, stamp, message) => {
     const now = performance.now();
+    if (topic === 'camera') return camera.hear(message.data as Uint8Array, stamp, now);
+    if (topic === 'camera_jpeg') return void camera.hearJpeg(message.data as Uint8Array, stamp);
     model.hear(topic, stamp, message, now);
     if (topic !== 'status') return;
     const s = model.status!;
@@ -41,6 +50,13 @@ const client = new Client(token(), {
   ended: refused => { pilot.up(); model.refused = refused && !model.greeting; },
 });
 const pilot = new Pilot(client, model);
+
+// Nobody looks at a hidden page: its pictures are not sent.
+const PICTURES = ['camera', 'camera_jpeg'];
+document.addEventListener('visibilitychange', () => {
+  client.follow(PICTURES, !document.hidden);
+  if (document.hidden) camera.end();
+});
 
 async function takePointer(now: number): Promise<void> {
   askedAt = now;
@@ -143,6 +159,19 @@ function LinkCard({ s, stale }: { s: Status | undefined; stale: boolean }) {
   </section>;
 }
 
+function VideoCard() {
+  const v = model.video, seen = v ? v.delivered + v.not_shown : 0;
+  return <section class="card link">
+    <header><h2>Picture</h2><span class={'unit ' + (v?.sending ? 'ok' : 'bad')}>{v?.sending ? '✓ sent' : '▲ not sent'}</span></header>
+    <dl>
+      <Row name="Rate" unit="kbit/s">{v ? v.kbps.toFixed(0) : '-'}</Row>
+      <Row name="Pictures" unit="/s">{v ? v.fps.toFixed(0) : '-'}</Row>
+      <Row name="Repaired" unit="%">{v && v.delivered > 0 ? (v.repaired / v.delivered * 100).toFixed(1) : '-'}</Row>
+      <Row name="Not shown" unit="%">{seen > 0 ? (v!.not_shown / seen * 100).toFixed(1) : '-'}</Row>
+    </dl>
+  </section>;
+}
+
 function Session({ s }: { s: Status | undefined }) {
   const facts = model.greeting?.metadata ?? {};
   return <section class="card session">
@@ -192,8 +221,8 @@ function Page() {
         <Section model={model} pilot={pilot} control={model.hasPointer} />
         <div class="pair"><Touch s={s} /><Inclusion /></div>
       </div>
-      <div class="middle"><ForceStrip model={model} /><PlaceStrip model={model} /><Strokes /></div>
-      <aside class="right"><LinkCard s={s} stale={stale} /><Session s={s} /><Events /></aside>
+      <div class="middle">{client.tells('camera') && <Picture model={model} camera={camera} now={performance.now()} />}<ForceStrip model={model} /><PlaceStrip model={model} /><Strokes /></div>
+      <aside class="right"><LinkCard s={s} stale={stale} />{camera.shown && <VideoCard />}<Session s={s} /><Events /></aside>
     </main>
   </div>;
 }
@@ -201,6 +230,8 @@ function Page() {
 // What is shown, in numbers, for whoever automates a browser.
 Object.assign(window, {
   palpStrokes: () => model.strokes.map(one => ({ ...one, verdict: one.depth?.verdict ?? '' })),
+  palpPicture: () => ({ shown: camera.shown, drawn: camera.drawn, resets: camera.resets, video: model.video, behind: camera.shown ? model.behindTouch(camera.shown.age) : 0 }),
+  palpWay: () => model.way,
   palpTip: () => { const s = model.status!; return { x: model.tipX(s), y: model.tipY(s), tip: model.tip(s) }; },
 });
 

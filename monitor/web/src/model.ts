@@ -13,6 +13,8 @@ export interface Status {
   pilot: number; pilot_name: string; pilot_obstacle: string;
 }
 
+/** How the camera's pictures come. */
+export interface Video { sending: boolean; state: string; age_ms: number; kbps: number; fps: number; standing_ms: number; delivered: number; repaired: number; not_shown: number }
 export interface Depth { number: number; verdict: string; reason: string; depth: number; low: number; high: number; x: number; y: number }
 export interface Stroke { began: number; ended: number; x: number; y: number; press: number; force: number; stiffness: number; depth: Depth | undefined }
 export interface Happening { at: number; text: string; tone: '' | 'warn' | 'bad' }
@@ -22,6 +24,7 @@ export interface Trace { t: number[]; tip: number[]; hand: number[]; contact: nu
 const SPAN_MS = 12500;
 const CONTACT_N = 0.12, AIR_N = 0.06;
 const KEPT = 200;
+const LEADS_MS = 10000;
 export const OLD_MS = 500;
 const REASONS: Record<string, string> = {
   STROKE_TOO_SHORT: 'the press was too shallow', STROKE_TOO_FEW_SAMPLES: 'the press was too quick',
@@ -37,6 +40,7 @@ export class Model {
   heardAt = 0;  // page time of the newest status
   roundTrip = 0;  // [ms] between the site and this page, as the site measures it
   link: Message = {};
+  video: Video | undefined;
   depth: Depth | undefined;
   strokes: Stroke[] = [];  // newest first
   happenings: Happening[] = [];  // newest first
@@ -44,6 +48,7 @@ export class Model {
   refused = false;
   private onset: { stroke: Stroke; tip: number; force: number } | undefined;
   private lastDepth = 0;
+  private leads: { at: number; lead: number }[] = [];  // page time - the site's, of late
 
   get patient(): boolean { return this.greeting?.metadata.site === 'patient'; }
   get mayControl(): boolean { return this.greeting?.metadata.right === 'control'; }
@@ -68,6 +73,21 @@ export class Model {
     return this.patient ? 0 : way + s.gap_ms;
   }
 
+  /** [ms] of the way between the sites. */
+  get way(): number { return number(this.link.delay_in_ns) / 1e6 || (this.status?.round_trip_ms ?? 0) / 2; }
+  /** [ms] since the site's instant `stamp`: messages that took least tell the site's clock. */
+  ageOf(stamp: number, now: number): number {
+    const lead = this.leads.reduce((least, one) => Math.min(least, one.lead), Infinity);
+    return Math.max(0, now - stamp - lead + this.roundTrip / 2);
+  }
+  /** [ms] that a picture of that age lags behind touch. A model of the tissue gives the force of
+   *  what the hand does now; its picture shows what the hand did a way there before. Else force is
+   *  as old as it is. */
+  behindTouch(age: number): number {
+    const local = this.greeting?.metadata.coupling === 'mmt';
+    return local ? age + this.way : age - (this.status ? this.age(this.status) : 0);
+  }
+
   begin(greeting: Greeting): void {
     if (this.greeting && this.greeting.sessionId !== greeting.sessionId) Object.assign(this, new Model());
     // The site tells again what happened before.
@@ -82,6 +102,7 @@ export class Model {
     if (topic === 'status') this.hearStatus(message as unknown as Status, stamp, now);
     else if (topic === 'client') this.roundTrip = number(message.round_trip_ms);
     else if (topic === 'link') this.link = message;
+    else if (topic === 'video') this.video = message as unknown as Video;
     else if (topic === 'depth') this.hearDepth(message, stamp);
     else if (topic === 'event') this.hearEvent(message, stamp);
   }
@@ -89,6 +110,8 @@ export class Model {
   private hearStatus(s: Status, stamp: number, now: number): void {
     this.status = s;
     this.heardAt = now;
+    this.leads.push({ at: now, lead: now - stamp });
+    while (this.leads[0]!.at < now - LEADS_MS) this.leads.shift();
     const t = this.trace;
     t.t.push(stamp);
     t.tip.push(this.tip(s));

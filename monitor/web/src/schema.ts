@@ -1,7 +1,7 @@
 // Reads protobuf messages by the descriptors that the site sends with each topic: no code is made
 // for them beforehand, and none at run time, which the page's policy forbids.
 
-export type Value = number | string | boolean | Message;
+export type Value = number | string | boolean | Uint8Array | Message;
 export interface Message { [field: string]: Value }
 interface Field { name: string; type: number; typeName: string }
 export type Fields = Map<number, Field>;
@@ -101,6 +101,7 @@ export function decode(schema: Schema, name: string, bytes: Uint8Array): Message
       case 6: out[field.name] = Number(view.getBigUint64(0, true)); break;
       case 8: out[field.name] = value !== 0; break;
       case 9: out[field.name] = TEXT.decode(part); break;
+      case 12: out[field.name] = part; break;
       case 11: out[field.name] = decode(schema, field.typeName, part); break;
       case 14: out[field.name] = schema.enums.get(field.typeName)?.get(value) ?? String(value); break;
       default: out[field.name] = value;

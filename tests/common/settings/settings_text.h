@@ -93,6 +93,12 @@ inline void add(FieldList& list, const settings::MonitorSettings& monitor) {
       .add("monitor.origin", monitor.origin);
 }
 
+inline void add(FieldList& list, const settings::CameraSettings& camera) {
+  list.add("camera.source", camera.source)
+      .add("camera.jpeg", camera.jpeg)
+      .add("camera.rate_max_kbps", camera.rate_max_kbps);
+}
+
 inline void add(FieldList& list, const settings::RecordSettings& record) {
   list.add("record.file", record.file)
       .add("record.files", record.files)

@@ -57,6 +57,28 @@ TEST_F(RelayTest, CarriesDatagramsBothWays) {
   EXPECT_EQ(relay.traffic(Direction::Down).forwarded, 50U);
 }
 
+TEST_F(RelayTest, TellsVideoFromForceByAPortOfItsOwn) {
+  Relay relay = this->relay("delay 5ms", "delay 5ms");
+  DatagramSocket force = DatagramSocket::connected(relay.listening_on());
+  DatagramSocket video = DatagramSocket::connected(relay.listening_on());
+  auto picture = saying(0);
+  picture[0] = std::byte{0x85};
+  force.send(saying(1), std::nullopt);
+  const Heard from_force = serve(relay, server_, 1);
+  video.send(picture, std::nullopt);
+  const Heard from_video = serve(relay, server_, 1);
+  ASSERT_EQ(from_video.numbers.size(), 1U);
+  EXPECT_FALSE(from_force.from == from_video.from);
+  // Each gets what is meant for it, in whatever order.
+  for (int i = 0; i < 3; ++i) {
+    server_.send(saying(2), from_force.from);
+    server_.send(picture, from_video.from);
+  }
+  EXPECT_EQ(serve(relay, force, 3).numbers, (std::vector<std::uint32_t>{2, 2, 2}));
+  EXPECT_EQ(serve(relay, video, 3).numbers, (std::vector<std::uint32_t>{0x85, 0x85, 0x85}));
+  EXPECT_EQ(relay.client()->port(), force.local().port()) << "video is no other client of force";
+}
+
 TEST_F(RelayTest, HoldsEachDatagramForItsDelay) {
   Relay relay = this->relay("delay 30ms");
   DatagramSocket client = DatagramSocket::connected(relay.listening_on());
