@@ -12,6 +12,7 @@
 #include "patient_site/phantom.h"
 #include "review/phase_finder.h"
 #include "review/tick_source.h"
+#include "surgeon_site/script_reader.h"
 #include "surgeon_site/script_source.h"
 #include "surgeon_site/settings.h"
 
@@ -26,10 +27,16 @@ std::optional<surgeon::Settings> settings_of(const SiteData& surgeon) {
   return settings ? std::optional{std::move(*settings)} : std::nullopt;
 }
 
-/// The script that the surgeon's settings name; nothing: there is none, or it cannot be had.
+/// The script that was played. A file's text is in the recording: what lies at that path today is
+/// another. Nothing: there is none, or it was not recorded.
 std::optional<surgeon::GestureScript> script_of(const SiteData& surgeon) {
   const auto settings = settings_of(surgeon);
-  if (!settings || settings->master.starts_with("replay:")) return std::nullopt;
+  if (!settings) return std::nullopt;
+  if (surgeon.script) {
+    auto recorded = surgeon::parse_script(*surgeon.script, settings->hand.plant.grip.stiffness);
+    return recorded ? std::optional{std::move(*recorded)} : std::nullopt;
+  }
+  if (!surgeon::is_ready_made(settings->master)) return std::nullopt;
   const double round_trip = surgeon.number("script_round_trip_s").value_or(0);
   auto script =
       surgeon::load_script(settings->master,

@@ -11,6 +11,7 @@
 #include "common/record/session_writer.h"
 #include "review/lack.h"
 #include "review/thinned.h"
+#include "surgeon_site/script_record.h"
 
 namespace palp::review {
 namespace {
@@ -152,6 +153,7 @@ Result<SiteData> load_site(const record::FileBytes& file,
   data.peer = reader.metadata("palp.peer");
   data.records_dropped = reader.metadata("palp.summary", "records_dropped");
   data.settings = text_of(reader, "config.textproto");
+  data.script = text_of(reader, surgeon::kScriptAttachment);
   data.tissue_csv = text_of(reader, "tissue.csv");
   data.tissue_words = text_of(reader, "tissue.txt");
   return data;

@@ -71,6 +71,7 @@ struct SiteData {
   std::optional<std::string> tissue_csv;       ///< attachment tissue.csv
   std::optional<std::string> tissue_words;     ///< attachment tissue.txt
   std::optional<std::string> settings;         ///< attachment config.textproto
+  std::optional<std::string> script;           ///< the surgeon's, where it came from a file
   std::optional<std::string> program_report;   ///< of the program, as JSON, where it was closed
   std::uint64_t records{};                     ///< decoded
   std::optional<std::string> records_dropped;  ///< from the summary

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/place.h"
@@ -95,6 +96,9 @@ class GestureScript {
   [[nodiscard]] bool has_tremor() const noexcept { return has_tremor_; }
   [[nodiscard]] std::span<const Stretch> stretches() const noexcept { return stretches_; }
   [[nodiscard]] std::span<const ScriptPhase> phases() const noexcept { return phases_; }
+  /// The file that it was read from, for the session's record; empty: it is a ready-made one.
+  [[nodiscard]] const std::string& text() const noexcept { return text_; }
+  void set_text(std::string text) { text_ = std::move(text); }
 
  private:
   [[nodiscard]] const Stretch& stretch_at(Duration script_time) const noexcept;
@@ -103,6 +107,7 @@ class GestureScript {
   std::vector<Stretch> stretches_;
   std::vector<ScriptPhase> phases_;
   std::vector<ReplayPoint> points_;
+  std::string text_;
   Duration length_{};
   bool has_tremor_{};
 };

@@ -32,6 +32,7 @@
 #include "surgeon_site/devices_command.h"
 #include "surgeon_site/display.h"
 #include "surgeon_site/pointer_hand.h"
+#include "surgeon_site/script_record.h"
 #include "surgeon_site/script_source.h"
 #include "surgeon_site/settings.h"
 #include "surgeon_site/settings_devices.h"
@@ -192,6 +193,7 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
   info.metadata.emplace_back("surface_offset_mm",
                              config::number_text(settings->hand.person.surface_offset * 1e3));
   info.metadata.emplace_back("hand", describe(hand->facts));
+  if (hand->script) describe_script(*hand->script, info);
   return Plan{std::move(*settings),
               std::move(hand->script),
               std::move(hand->master),

@@ -1,5 +1,6 @@
 #include "surgeon_site/script_source.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
@@ -33,24 +34,31 @@ Result<GestureScript> random_script(std::string_view text, const ScriptSetting& 
   return drawn_script(seed, setting);
 }
 
+struct Ready {
+  std::string_view name;
+  GestureScript (*make)(const ScriptSetting&);
+};
+
+constexpr std::array kReady{Ready{"script:standard", standard_script},
+                            Ready{"script:demo", demo_script},
+                            Ready{"script:map", map_script},
+                            Ready{"script:search", search_script},
+                            Ready{"script:breath", breath_script},
+                            Ready{"script:long", long_script}};
+constexpr std::string_view kRandom = "script:random:";
+
 }  // namespace
 
+bool is_ready_made(const std::string& source) {
+  return source.starts_with(kRandom) ||
+         std::ranges::any_of(kReady, [&](const Ready& one) { return one.name == source; });
+}
+
 Result<GestureScript> load_script(const std::string& source, const ScriptSetting& setting) {
-  struct Ready {
-    std::string_view name;
-    GestureScript (*make)(const ScriptSetting&);
-  };
-  constexpr std::array kReady{Ready{"script:standard", standard_script},
-                              Ready{"script:demo", demo_script},
-                              Ready{"script:map", map_script},
-                              Ready{"script:search", search_script},
-                              Ready{"script:breath", breath_script},
-                              Ready{"script:long", long_script}};
   for (const Ready& ready : kReady) {
     if (source == ready.name) return ready.make(setting);
   }
   constexpr std::string_view kScript = "script:";
-  constexpr std::string_view kRandom = "script:random:";
   constexpr std::string_view kReplay = "replay:";
   constexpr std::string_view kRecording = "recording:";
   if (source.starts_with(kRandom)) return random_script(source.substr(kRandom.size()), setting);
@@ -71,6 +79,7 @@ Result<GestureScript> load_script(const std::string& source, const ScriptSetting
   Result<GestureScript> script =
       replay ? parse_replay(*text) : parse_script(*text, setting.hand_stiffness);
   if (!script) return fail(path, script.error());
+  if (!replay) script->set_text(*text);
   return script;
 }
 

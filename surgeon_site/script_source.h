@@ -14,4 +14,7 @@ namespace palp::surgeon {
 [[nodiscard]] Result<GestureScript> load_script(const std::string& source,
                                                 const ScriptSetting& setting);
 
+/// Whether a source is made by the program itself, and so the same everywhere.
+[[nodiscard]] bool is_ready_made(const std::string& source);
+
 }  // namespace palp::surgeon

@@ -6,6 +6,7 @@
 #include "common/link/session.h"
 #include "lab/run/session_setup.h"
 #include "patient_site/tissue_record.h"
+#include "surgeon_site/script_record.h"
 
 namespace palp::lab {
 namespace {
@@ -45,6 +46,7 @@ SessionFiles::SessionFiles(const Scenario& scenario, const RunFiles& files, Time
   surgeon.metadata.emplace_back(
       "script_round_trip_s",
       config::number_text(seconds(scenario.up.delay.mean + scenario.down.delay.mean)));
+  surgeon::describe_script(scenario.script, surgeon);
   surgeon_.emplace(files.surgeon != nullptr ? *files.surgeon : null_surgeon_, surgeon);
   record::SessionInfo patient = info_of(scenario, link::Role::Patient, start);
   const PatientDevices devices = patient_devices_of(scenario);

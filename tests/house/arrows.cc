@@ -156,6 +156,7 @@ const std::vector<Arrow>& arrows() {
        {"patient_site/stage.h",
         "patient_site/force_sensor.h",
         "patient_site/plane_motion.h",
+        "patient_site/servo_watch.h",
         "common/io/*"}},
       {"patient_site/devices_command.*",
        {"patient_site/devices", "common/config", "common/io/*", "site_program"}},

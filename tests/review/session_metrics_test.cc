@@ -1,6 +1,8 @@
 #include "review/session_metrics.h"
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
@@ -46,6 +48,28 @@ TEST(SessionMetricsTest, FindsTheLabsTapsAndForcesInTheFiles) {
   }
   EXPECT_NEAR(one.review.force_peak, one.lab.force_peak, 0.02);
   EXPECT_TRUE(std::isnan(one.review.whole.force_kick)) << "nobody wrote that down";
+}
+
+TEST(SessionMetricsTest, AScriptOfAFileIsTheOneThatWasPlayed) {
+  const std::filesystem::path file = std::filesystem::path{testing::TempDir()} / "played.txt";
+  const auto write = [&](const char* text) { std::ofstream{file} << text; };
+  write("move -2 0.5\ntaps 3 4 1 0.5\nlift 1 0.5\n");
+  lab::Scenario scenario =
+      test::lab_scenario(12s, {"surgeon.hand.master=script:" + file.string()});
+  const test::LabFiles files = test::lab_files(scenario);
+  const auto looked = [&] {
+    auto surgeon = load_site(files.surgeon.bytes(), "s", link::Role::Surgeon).value();
+    auto patient = load_site(files.patient.bytes(), "p", link::Role::Patient).value();
+    return metrics_json(judge_session(pair_of(std::move(surgeon), std::move(patient)).value(),
+                                      nullptr));
+  };
+  const auto before = looked();
+  EXPECT_TRUE(before["tap2_a_error"].is_null()) << "no tissue to compare with";
+  EXPECT_FALSE(before["drag_rms_n"].is_null()) << "but phases";
+  write("move -2 0.5\ntaps 6 4 0.7 0.4\nlift 1 0.5\n");
+  EXPECT_EQ(looked(), before);
+  std::filesystem::remove(file);
+  EXPECT_EQ(looked(), before);
 }
 
 TEST(SessionMetricsTest, WithoutSettingsThereAreNoPhases) {
