@@ -67,6 +67,14 @@ std::optional<Stroke> StrokeTracker::take(const ContactSample& sample) {
   return describe_stroke();
 }
 
+void StrokeTracker::forget() {
+  cutter_.reset();
+  previous_.reset();
+  places_.clear();
+  used_.clear();
+  learning_.reset();
+}
+
 StrokeSample StrokeTracker::filter(const ContactSample& sample) noexcept {
   StrokeSample out{.measured = sample, .tip = sample.position};
   if (previous_) {

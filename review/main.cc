@@ -257,7 +257,7 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
   auto taps = match_taps(*surgeon, *patient, session->time_line, judged.excursions);
   if (judged.by_truth) take_truth(taps, *session, judged.run_began, judged.metrics.taps);
   if (!flags.json && flags.page.empty()) {
-    std::cout << tap_table(taps, overall_depth(taps), session->patient.map);
+    std::cout << tap_table(taps, overall_depth(taps), session->patient.map.report);
     for (const SiteData* site : {surgeon, patient}) {
       if (site->report.lack.empty()) continue;
       std::cout << "the " << record::site_name(site->site) << "'s file " << site->report.lack

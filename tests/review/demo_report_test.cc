@@ -16,7 +16,7 @@ SessionPair sample_pair() {
 
 nlohmann::json report(const ProgramReports& reports = {}, const Asked& asked = {}) {
   const SessionPair session = sample_pair();
-  const auto tissue = judge::TissueTable::parse(*session.patient.tissue_csv);
+  const auto tissue = judge::TissueTable::parse(*session.patient.texts.tissue_csv);
   const auto taps =
       match_taps(session.surgeon,
                  session.patient,
