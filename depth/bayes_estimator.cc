@@ -37,6 +37,11 @@ DepthEstimate BayesEstimator::judge(const Stroke& stroke) {
   return estimate;
 }
 
+void BayesEstimator::forget() {
+  reference_.reset();
+  settled_.clear();
+}
+
 void BayesEstimator::update(const TouchedPlace& place) {
   DepthModel::Input input{.touches = place.touches,
                           .surface = place.surface,

@@ -33,6 +33,9 @@ class BayesEstimator {
 
   [[nodiscard]] DepthEstimate judge(const Stroke& stroke);
 
+  /// Another patient: no place is the reference.
+  void forget();
+
   /// Of the last estimate that was not invalid.
   [[nodiscard]] const DepthPosterior& posterior() const noexcept { return posterior_; }
 

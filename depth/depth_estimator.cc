@@ -41,7 +41,15 @@ DepthEstimatorConfig with_devices(DepthEstimatorConfig config, const PatientDevi
 DepthEstimator::DepthEstimator(const DepthEstimatorConfig& config)
     : tracker_{config.strokes}, estimator_{make(config)}, map_{make_map(config)} {}
 
+void DepthEstimator::forget() {
+  tracker_.forget();
+  if (auto* bayes = std::get_if<BayesEstimator>(&estimator_)) bayes->forget();
+  if (map_) map_->forget();
+}
+
 std::optional<DepthEstimate> DepthEstimator::add(const ContactSample& sample) {
+  if (sample.session != session_) forget();
+  session_ = sample.session;
   const std::optional<Stroke> stroke = tracker_.take(sample);
   if (!stroke) return std::nullopt;
   if (map_) map_->hear(*stroke);

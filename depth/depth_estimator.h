@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "depth/bayes_estimator.h"
 #include "depth/depth_database.h"
@@ -40,16 +42,25 @@ class DepthEstimator {
   explicit DepthEstimator(const DepthEstimatorConfig& config);
 
   /// @returns the estimate when a stroke's reversal was seen.
+  /// A sample of another session forgets all before.
   [[nodiscard]] std::optional<DepthEstimate> add(const ContactSample& sample);
 
   /// What all strokes say together, where the last one tells something new of it: a longer work.
   [[nodiscard]] std::optional<MapReport> map() { return map_ ? map_->judge() : std::nullopt; }
 
+  /// The stiffness map behind it, cell by cell.
+  [[nodiscard]] std::vector<MapCell> map_cells() const {
+    return map_ ? map_->cells() : std::vector<MapCell>{};
+  }
+
   /// The loading branch that gave an estimate. Valid until the next add().
   [[nodiscard]] std::span<const StrokeSample> stroke() const noexcept { return tracker_.loading(); }
 
  private:
+  void forget();
+
   StrokeTracker tracker_;
+  std::uint64_t session_{};
   std::variant<BayesEstimator, PaperEstimator> estimator_;
   std::optional<MapEstimator> map_;  ///< nothing: of `paper`, and of cylinders
 };

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "depth/stiffness_map.h"
+
 namespace palp::depth {
 namespace {
 
@@ -47,6 +49,12 @@ void MapEstimator::hear(const Stroke& stroke) {
   if (data) touched_.push_back({known.index, known.generation, *data});
 }
 
+void MapEstimator::forget() {
+  touched_.clear();
+  judged_ = heard_;
+  answer_.reset();
+}
+
 std::optional<MapReport> MapEstimator::judge() {
   if (heard_ == judged_ || touched_.size() < kMapPlacesMin) return std::nullopt;
   judged_ = heard_;
@@ -61,6 +69,13 @@ std::optional<MapReport> MapEstimator::judge() {
   auto next = next_touch(likelihood, parts_->field, posterior, config_.travel);
   answer_.emplace(Answer{std::move(likelihood), std::move(posterior), std::move(verdict), next});
   return report();
+}
+
+std::vector<MapCell> MapEstimator::cells() const {
+  if (!answer_) return {};
+  auto cells = stiffness_map(answer_->likelihood, parts_->field, answer_->posterior);
+  for (MapCell& cell : cells) cell.number = judged_;
+  return cells;
 }
 
 MapStop MapEstimator::stop() const {

@@ -43,21 +43,24 @@ class MapEstimator {
   /// The stroke's touches, a millisecond's work.
   void hear(const Stroke& stroke);
 
+  /// Another patient: no place was touched.
+  void forget();
+
   /// What all strokes so far say together; nothing where no stroke has come since, or of too few
   /// places. Tens of milliseconds, the first time more.
   [[nodiscard]] std::optional<MapReport> judge();
 
-  /// What stands behind the last answer; nullptr: there was none.
+  /// The stiffness map of the last answer, with its number; empty: there was none.
+  [[nodiscard]] std::vector<MapCell> cells() const;
+
+ private:
+  /// What stands behind the last answer.
   struct Answer {
     MapLikelihood likelihood;
     MapPosterior posterior;
     MapVerdict verdict;
     std::optional<NextTouch> next;
   };
-  [[nodiscard]] const Answer* answer() const noexcept { return answer_ ? &*answer_ : nullptr; }
-  [[nodiscard]] const BallField& field() const { return parts_->field; }  ///< of an answer
-
- private:
   /// What balls do to the force: made when it is first asked for.
   struct Parts {
     Parts(const DepthDatabase& database, const DepthPrior& ball);

@@ -3,50 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "depth/seen_balls.h"
+
 namespace palp::depth {
 namespace {
 
 constexpr double kGrid = 4e-3;         // [m]
 constexpr double kRound = 12e-3;       // [m], farther than that from every touch nothing is sought
 constexpr double kTouchError = 0.012;  // [-], of the force, of one touch
-constexpr std::size_t kBalls = 200;    // that stand for the posterior
-constexpr std::size_t kMiddle = 3;     // a node of the curve
-
-/// Some of the balls, each as likely as the others.
-std::vector<MapBall> even_balls(const MapPosterior& posterior) {
-  std::vector<MapBall> out;
-  double sum = 0;
-  double next = 0.5 / kBalls;
-  for (const LikelyBall& one : posterior.balls) {
-    sum += one.share;
-    for (; next < sum && out.size() < kBalls; next += 1.0 / kBalls) out.push_back(one.ball);
-  }
-  return out;
-}
-
-struct Seen {
-  BallField::Ball ball;
-  Place axis;
-};
-
-std::vector<Seen> seen_balls(const BallField& field, const MapPosterior& posterior) {
-  std::vector<Seen> out;
-  for (const MapBall& ball : even_balls(posterior)) {
-    out.push_back(
-        {field.at(ball.log_depth, ball.radius, effect_of(std::exp(ball.log_ratio))), ball.place});
-  }
-  return out;
-}
 
 /// Of a touch that comes on top of those already there: they share the place's own stiffness.
 double gain_at(const MapLikelihood& likelihood,
                double spread,
-               const std::vector<Seen>& balls,
+               const std::vector<SeenBall>& balls,
                const Place& place) {
   double mean = 0;
   double square = 0;
-  for (const Seen& one : balls) {
-    const double told = std::log(one.ball.ratio(distance(one.axis, place))[kMiddle]);
+  for (const SeenBall& one : balls) {
+    const double told = one.log_ratio(place);
     mean += told;
     square += told * told;
   }
@@ -78,7 +52,7 @@ std::optional<NextTouch> next_touch(const MapLikelihood& likelihood,
                                     const MapPosterior& posterior,
                                     double travel) {
   const double spread = likelihood.rest(&posterior.best).spread;
-  const std::vector<Seen> balls = seen_balls(field, posterior);
+  const std::vector<SeenBall> balls = seen_balls(field, posterior);
   Place low = likelihood.places().front().place;
   Place high = low;
   for (const PlaceData& touched : likelihood.places()) {

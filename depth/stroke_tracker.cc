@@ -81,6 +81,15 @@ std::optional<Stroke> StrokeTracker::follow(const AlignedSample& aligned) {
   return describe_stroke();
 }
 
+void StrokeTracker::forget() {
+  aligner_.reset();
+  cutter_.reset();
+  previous_.reset();
+  places_.clear();
+  used_.clear();
+  learning_.reset();
+}
+
 StrokeSample StrokeTracker::filter(const AlignedSample& aligned) noexcept {
   const ContactSample& sample = aligned.sample;
   StrokeSample out{.measured = sample, .tip = sample.position, .read = aligned.read};

@@ -54,6 +54,9 @@ class StrokeTracker {
   /// @returns the stroke when its reversal was seen.
   [[nodiscard]] std::optional<Stroke> take(const ContactSample& sample);
 
+  /// Another patient: what is known of the places goes; strokes are counted on.
+  void forget();
+
   /// The loading branch of the last stroke, from the air on. Valid until the next take().
   [[nodiscard]] std::span<const StrokeSample> loading() const noexcept { return cutter_.loading(); }
 

@@ -22,7 +22,7 @@ struct LocateFlags {
   std::string set{};
   std::string script{};
   double round_trip_ms{};
-  double loss{};
+  double loss{};          ///< [-]
   std::uint64_t cores{};  ///< 0: all
   std::string report{};
   std::string csv{};

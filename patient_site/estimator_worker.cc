@@ -31,6 +31,10 @@ void EstimatorWorker::judge_map() {
   found_.map = *map;
   parts_.found.put(found_);
   record(MapEstimate{.at = found_.depth.stroke_ended_at, .report = *map});
+  for (MapCell& cell : estimator_.map_cells()) {
+    cell.at = found_.depth.stroke_ended_at;
+    record(cell);
+  }
 }
 
 void EstimatorWorker::record(const Record& record) {

@@ -189,6 +189,7 @@ PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
 
   session_began_ = in.link.session_id != now_.link.session_id;
   if (session_began_) now_.peer_devices = in.peer_devices;
+  if (session_began_ && in.link.session_id != 0) found_before_ = in.found.depth.number;
   now_.link = in.link;
   now_.peer_heard = in.arrived.peer_heard;
   now_.peer_state = in.arrived.peer.state;
@@ -204,8 +205,7 @@ PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
   const bool place_asked = in.arrived.peer_heard && now_.state == SiteState::Engaged;
   const MotionAnswer answer =
       limit(wanted.target_position, place_asked ? in.arrived.peer.place : gate_.place(), lapse);
-  now_.depth = in.found.depth;
-  now_.map = in.found.map;
+  take_findings(in.found);
   return {.halt = answer.halt,
           .target = {answer.position, answer.place},
           .to_peer = {{now_.state, now_.epoch, now_.place, depth_report(), map_report()},
@@ -259,8 +259,15 @@ void PatientControl::give_contact_sample() noexcept {
                                   .force = now_.contact_force,
                                   .place = now_.place,
                                   .position_age = elapsed(stage_sampled_at_, now_.at),
-                                  .force_age = elapsed(force_sampled_at_, now_.at)});
+                                  .force_age = elapsed(force_sampled_at_, now_.at),
+                                  .session = now_.link.session_id});
   ++(taken ? now_.contact_samples : now_.contact_samples_lost);
+}
+
+/// What was found in an earlier session is no answer in this one.
+void PatientControl::take_findings(const Findings& found) noexcept {
+  now_.depth = found.depth.number > found_before_ ? found.depth : DepthEstimate{};
+  now_.map = found.map.number > found_before_ ? found.map : MapReport{};
 }
 
 DepthReport PatientControl::depth_report() const noexcept {

@@ -89,6 +89,7 @@ class PatientControl {
   [[nodiscard]] MotionAnswer limit(double target, const Place& place, const Lapse& lapse) noexcept;
   [[nodiscard]] DepthReport depth_report() const noexcept;
   [[nodiscard]] MapReport map_report() const noexcept;
+  void take_findings(const Findings& found) noexcept;
   void give_contact_sample() noexcept;
   void record_readings(const PatientInputs& in) noexcept;
 
@@ -108,8 +109,9 @@ class PatientControl {
   bool session_began_{};  ///< or ended, in this tick
   TimePoint stage_sampled_at_{};
   TimePoint force_sampled_at_{};
-  TimePoint awake_since_{};  ///< the site stood still, until then
-  std::uint32_t resets_{};   ///< last heard of
+  TimePoint awake_since_{};       ///< the site stood still, until then
+  std::uint32_t resets_{};        ///< last heard of
+  std::uint32_t found_before_{};  ///< number of the last stroke before this session
 };
 
 }  // namespace palp::patient

@@ -9,7 +9,7 @@
 #include "common/message/health_counters.h"
 #include "common/record/notes.h"
 #include "common/record/session_encoder.h"
-#include "review/map_json.h"
+#include "judge/map_json.h"
 
 namespace palp::review {
 namespace {
@@ -159,7 +159,7 @@ Json rejected_json(const SiteData& site, const Json& report) {
 }
 
 /// What the site's program reported in its file.
-Json told_by(const SiteData& site) { return parsed(site.program_report.value_or("")); }
+Json told_by(const SiteData& site) { return parsed(site.texts.program_report.value_or("")); }
 
 Json site_json(const SiteData& site, const Json& report, const std::string& path) {
   Json json;
@@ -285,7 +285,7 @@ std::string demo_report(const SessionPair& session,
     json["taps"].push_back(tap_json(tap, patient));
   }
   json["depth"] = depth_json(overall_depth(taps));
-  json["map"] = map_json(patient.map);
+  json["map"] = judge::map_json(patient.map.report, patient.map.cells);
   json["metrics"] = metrics;
   json["sites"]["surgeon"] = site_json(surgeon, surgeon_report, paths.surgeon);
   json["sites"]["patient"] = site_json(patient, patient_report, paths.patient);

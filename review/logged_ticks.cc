@@ -15,7 +15,8 @@ bool of_no_tick(const Record& record) {
     return static_cast<NoteCode>(note->code) >= NoteCode::Marked;
   }
   return std::holds_alternative<DepthEstimate>(record) ||
-         std::holds_alternative<MapEstimate>(record) || std::holds_alternative<PlantTruth>(record);
+         std::holds_alternative<MapEstimate>(record) || std::holds_alternative<MapCell>(record) ||
+         std::holds_alternative<PlantTruth>(record);
 }
 
 /// No site makes more in one tick; a file may hold any number.

@@ -269,7 +269,7 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
   auto taps = match_taps(*surgeon, *patient, session->time_line, judged.excursions);
   if (judged.by_truth) take_truth(taps, *session, judged.run_began, judged.metrics.taps);
   if (!flags.json && flags.page.empty()) {
-    std::cout << tap_table(taps, overall_depth(taps), session->patient.map);
+    std::cout << tap_table(taps, overall_depth(taps), session->patient.map.report);
     std::cout << lack_lines(*session);
   }
   if (flags.report.empty() && flags.page.empty() && !flags.json) {

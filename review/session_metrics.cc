@@ -20,9 +20,9 @@ namespace palp::review {
 namespace {
 
 std::optional<surgeon::Settings> settings_of(const SiteData& surgeon) {
-  if (!surgeon.settings) return std::nullopt;
+  if (!surgeon.texts.settings) return std::nullopt;
   config::Document document = config::surgeon_document();
-  if (!document.merge(*surgeon.settings, "config.textproto")) return std::nullopt;
+  if (!document.merge(*surgeon.texts.settings, "config.textproto")) return std::nullopt;
   auto settings = surgeon::make_settings(document);
   return settings ? std::optional{std::move(*settings)} : std::nullopt;
 }
@@ -32,8 +32,9 @@ std::optional<surgeon::Settings> settings_of(const SiteData& surgeon) {
 std::optional<surgeon::GestureScript> script_of(const SiteData& surgeon) {
   const auto settings = settings_of(surgeon);
   if (!settings) return std::nullopt;
-  if (surgeon.script) {
-    auto recorded = surgeon::parse_script(*surgeon.script, settings->hand.plant.grip.stiffness);
+  if (surgeon.texts.script) {
+    auto recorded =
+        surgeon::parse_script(*surgeon.texts.script, settings->hand.plant.grip.stiffness);
     return recorded ? std::optional{std::move(*recorded)} : std::nullopt;
   }
   if (!surgeon::is_ready_made(settings->master)) return std::nullopt;
@@ -205,8 +206,8 @@ judge::MetricsConfig config_of(const SiteData& surgeon) {
 
 /// A tissue in words is known everywhere: its curves where it was touched.
 void add_touched_places(const SiteData& patient, judge::TissueTable& table) {
-  if (!patient.tissue_words) return;
-  const auto phantom = patient::make_phantom(*patient.tissue_words);
+  if (!patient.texts.tissue_words) return;
+  const auto phantom = patient::make_phantom(*patient.texts.tissue_words);
   if (!phantom || !phantom->block) return;
   const auto field = patient::make_field(*phantom, 0);
   constexpr double kStep = 20e-6;  // [m], as in tissue.csv
@@ -224,8 +225,8 @@ void add_touched_places(const SiteData& patient, judge::TissueTable& table) {
 
 Result<std::optional<judge::TissueTable>> tissue_of(const SiteData& patient,
                                                     const std::string& path) {
-  if (!patient.tissue_csv) return std::optional<judge::TissueTable>{};
-  auto table = judge::TissueTable::parse(*patient.tissue_csv);
+  if (!patient.texts.tissue_csv) return std::optional<judge::TissueTable>{};
+  auto table = judge::TissueTable::parse(*patient.texts.tissue_csv);
   if (!table) return fail(path, table.error());
   add_touched_places(patient, *table);
   return std::optional{std::move(*table)};

@@ -61,8 +61,13 @@ class Collector {
   void operator()(const Transition& transition) { keep(data_.transitions, transition); }
   void operator()(const DepthEstimate& estimate) { keep(data_.estimates, estimate); }
   void operator()(const DepthArrived& arrived) { keep(data_.reports, arrived); }
-  void operator()(const MapEstimate& estimate) { data_.map = estimate.report; }
-  void operator()(const MapArrived& arrived) { data_.map = arrived.report; }
+  void operator()(const MapEstimate& estimate) { data_.map.report = estimate.report; }
+  void operator()(const MapCell& cell) {
+    if (!data_.map.cells.empty() && data_.map.cells.front().number != cell.number)
+      data_.map.cells.clear();
+    keep(data_.map.cells, cell);
+  }
+  void operator()(const MapArrived& arrived) { data_.map.report = arrived.report; }
   void operator()(const PlantTruth& truth) {
     if (!data_.run_began) data_.run_began = TimePoint{elapsed(TimePoint{truth.run_time}, truth.at)};
   }
@@ -149,13 +154,13 @@ Result<SiteData> load_site(const record::FileBytes& file,
   data.began_at = reader.began_at().value_or(TimePoint{});
   data.clock = reader.clock();
   data.metadata = reader.metadata("palp");
-  data.program_report = reader.metadata(record::kReportRecord, record::kReportKey);
+  data.texts.program_report = reader.metadata(record::kReportRecord, record::kReportKey);
   data.peer = reader.metadata("palp.peer");
   data.records_dropped = reader.metadata("palp.summary", "records_dropped");
-  data.settings = text_of(reader, "config.textproto");
-  data.script = text_of(reader, surgeon::kScriptAttachment);
-  data.tissue_csv = text_of(reader, "tissue.csv");
-  data.tissue_words = text_of(reader, "tissue.txt");
+  data.texts.settings = text_of(reader, "config.textproto");
+  data.texts.script = text_of(reader, surgeon::kScriptAttachment);
+  data.texts.tissue_csv = text_of(reader, "tissue.csv");
+  data.texts.tissue_words = text_of(reader, "tissue.txt");
   return data;
 }
 

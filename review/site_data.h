@@ -45,6 +45,21 @@ struct FileReport : record::McapReadReport {
   std::string lack;  ///< as lack_of() has it
 };
 
+/// Attachments and what else a file has once; nothing: it has none.
+struct SiteTexts {
+  std::optional<std::string> tissue_csv;      ///< attachment tissue.csv
+  std::optional<std::string> tissue_words;    ///< attachment tissue.txt
+  std::optional<std::string> settings;        ///< attachment config.textproto
+  std::optional<std::string> script;          ///< the surgeon's, where it came from a file
+  std::optional<std::string> program_report;  ///< of the program, as JSON, where it was closed
+};
+
+/// What the touches at all places say together: the last of a file.
+struct SiteMap {
+  MapReport report;            ///< number 0: none
+  std::vector<MapCell> cells;  ///< patient: the stiffness map of it
+};
+
 /// What one session file says besides its ticks, which TickSource reads one by one: a file of hours
 /// takes no more memory than one of minutes.
 struct SiteData {
@@ -62,17 +77,13 @@ struct SiteData {
   std::vector<Transition> transitions;
   std::vector<DepthEstimate> estimates;
   std::optional<LinkStatus> last_link;
-  std::vector<LinkPoint> links;                ///< all of them, or each second, fourth, ...
-  std::vector<DepthArrived> reports;           ///< surgeon: each estimate as it arrived
-  MapReport map;                               ///< the last; number 0: none
-  std::optional<TimePoint> run_began;          ///< surgeon: of a simulation of both sites
-  record::McapMap metadata;                    ///< of the record `palp`
-  record::McapMap peer;                        ///< of the record `palp.peer`
-  std::optional<std::string> tissue_csv;       ///< attachment tissue.csv
-  std::optional<std::string> tissue_words;     ///< attachment tissue.txt
-  std::optional<std::string> settings;         ///< attachment config.textproto
-  std::optional<std::string> script;           ///< the surgeon's, where it came from a file
-  std::optional<std::string> program_report;   ///< of the program, as JSON, where it was closed
+  std::vector<LinkPoint> links;       ///< all of them, or each second, fourth, ...
+  std::vector<DepthArrived> reports;  ///< surgeon: each estimate as it arrived
+  SiteMap map;
+  std::optional<TimePoint> run_began;  ///< surgeon: of a simulation of both sites
+  record::McapMap metadata;            ///< of the record `palp`
+  record::McapMap peer;                ///< of the record `palp.peer`
+  SiteTexts texts;
   std::uint64_t records{};                     ///< decoded
   std::optional<std::string> records_dropped;  ///< from the summary
   FileReport report;

@@ -21,6 +21,7 @@ struct ContactSample {
   Place place;
   Duration position_age{};  ///< of the tip's reading at `at`
   Duration force_age{};     ///< of the force's
+  std::uint64_t session{};  ///< id of the link's; with another one it may be another patient
 };
 
 /// The result of one stroke (contact to reversal).

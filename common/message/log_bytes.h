@@ -32,6 +32,7 @@ using LogMessages = MessageList<SurgeonFileTick,
                                 PlantTruth,
                                 MapEstimate,
                                 MapArrived,
+                                MapCell,
                                 SurgeonGiven,
                                 PatientGiven>;
 

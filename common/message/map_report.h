@@ -25,11 +25,11 @@ struct Located {
 /// The answer, in the patient's file and on its way to the surgeon. Lengths are 0 where nothing was
 /// found.
 struct MapReport {
-  std::uint32_t number{};                       ///< of the last stroke in it; 0: none yet
-  std::uint32_t places{};                       ///< that were touched
-  DepthVerdict verdict{DepthVerdict::Invalid};  ///< never Invalid once there is one
-  MapDoubts doubts{};                           ///< 0: its numbers may be trusted
-  Located x{};                                  ///< of its axis
+  std::uint32_t number{};  ///< of the last stroke in it; 0: none yet
+  std::uint32_t places{};  ///< that were touched
+  DepthVerdict verdict{};  ///< None or Found
+  MapDoubts doubts{};      ///< 0: its numbers may be trusted
+  Located x{};             ///< of its axis
   Located y{};
   Located depth{};        ///< of its top
   Located radius{};       ///< of a ball
@@ -41,6 +41,16 @@ struct MapReport {
 
   [[nodiscard]] bool trusted() const noexcept { return doubts == 0; }
   friend bool operator==(const MapReport&, const MapReport&) = default;
+};
+
+/// A cell of the stiffness map of such a report.
+struct MapCell {
+  TimePoint at{};
+  std::uint32_t number{};     ///< of the report
+  Place place{};              ///< its middle
+  double stiffness{};         ///< [-], over that of the tissue without an inclusion, 2.3 mm deep
+  double stiffness_stddev{};  ///< [-], of its logarithm
+  double inclusion{};         ///< [-], probability of one below
 };
 
 /// All that the estimator's thread has found so far.
@@ -79,6 +89,16 @@ inline constexpr auto fields<S> =
          field<20, &S::next, &Place::x>("next_x_m", wire<float>, limit(kLengthMax)),
          field<21, &S::next, &Place::y>("next_y_m", wire<float>, limit(kLengthMax)),
          field<22, &S::next_gain>("next_gain", wire<float>, limit(kForceMax)));
+
+template <std::same_as<MapCell> S>
+inline constexpr auto fields<S> = list({.log = "MapCell"},
+                                       aside<&S::at>("at_ns"),
+                                       field<1, &S::number>("number"),
+                                       field<2, &S::place, &Place::x>("x_m"),
+                                       field<3, &S::place, &Place::y>("y_m"),
+                                       field<4, &S::stiffness>("stiffness"),
+                                       field<5, &S::stiffness_stddev>("stiffness_stddev"),
+                                       field<6, &S::inclusion>("inclusion"));
 
 }  // namespace message
 }  // namespace palp

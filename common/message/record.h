@@ -98,7 +98,8 @@ using Record = std::variant<SiteTick,
                             DevicesTold,
                             PlantTruth,
                             MapEstimate,
-                            MapArrived>;
+                            MapArrived,
+                            MapCell>;
 static_assert(std::is_trivially_copyable_v<Record>, "crosses threads by copy");
 
 /// Their names in summaries and reports, in the same order.
@@ -117,7 +118,8 @@ inline constexpr std::array<const char*, std::variant_size_v<Record>> kRecordNam
                                                                                    "devices",
                                                                                    "truth",
                                                                                    "map_estimate",
-                                                                                   "map_arrived"};
+                                                                                   "map_arrived",
+                                                                                   "map_cell"};
 
 namespace message {
 

@@ -13,7 +13,8 @@ std::optional<TimePoint> tick_of(const Record& record) {
   return std::visit(
       [](const auto& one) -> std::optional<TimePoint> {
         using One = std::remove_cvref_t<decltype(one)>;
-        if constexpr (std::is_same_v<One, DepthEstimate> || std::is_same_v<One, MapEstimate>) {
+        if constexpr (std::is_same_v<One, DepthEstimate> || std::is_same_v<One, MapEstimate> ||
+                      std::is_same_v<One, MapCell>) {
           return std::nullopt;
         } else {
           return one.at;

@@ -29,9 +29,10 @@ enum class Topic : std::uint8_t {
   User,
   Devices,
   Truth,
-  Map
+  Map,
+  MapCell
 };
-inline constexpr std::size_t kTopicCount = 14;
+inline constexpr std::size_t kTopicCount = 15;
 
 struct TopicFormat {
   Topic topic{};

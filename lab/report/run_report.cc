@@ -13,10 +13,10 @@
 #include "common/message/map_text.h"
 #include "judge/depth_statement.h"
 #include "judge/depth_summary.h"
+#include "judge/map_json.h"
 #include "judge/metric_table.h"
 #include "judge/stroke_pairing.h"
 #include "lab/run/digest.h"
-#include "review/map_json.h"
 
 namespace palp::lab {
 namespace {
@@ -147,7 +147,7 @@ std::string run_report(const Scenario& scenario,
   json["depth"] =
       depth_json(judge::summarise_depths(estimates_at(scenario.phantom.axis, result.depths)),
                  scenario.estimator.kind);
-  json["map"] = review::map_json(result.map);
+  json["map"] = judge::map_json(result.map);
   // A file's name need not be UTF-8.
   return json.dump(2) + "\n";
 }

@@ -262,6 +262,13 @@ struct PatientEnd {
         estimator{depth::with_devices(scenario.estimator, patient_devices_of(scenario)),
                   {contact, found, recorder}} {}
 
+  /// `depths`: somebody wants to know them.
+  void listen(bool depths) {
+    if (!depths) return drop_all(contact);
+    estimator.drain();
+    estimator.judge_map();
+  }
+
   patient::SimulatedPhantom tissue;
   DirectRecorder file;
   DigestRecorder recorder;
@@ -314,12 +321,7 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   simulator.every({.period = period}, [&](TimePoint now) { surgeon.process.tick(now); });
   simulator.every({.period = period}, [&](TimePoint now) { patient.process.tick(now); });
   simulator.every({.period = period}, [&](TimePoint now) {
-    if (scenario.depths) {
-      patient.estimator.drain();
-      patient.estimator.judge_map();
-    } else {
-      drop_all(patient.contact);
-    }
+    patient.listen(scenario.depths);
     const surgeon::HandTruth hand = surgeon.hand.truth();
     dark.step(now, hand.script_time);
     const Probe::Moment moment{.now = now, .run_time = now - start, .dark = dark.shut()};

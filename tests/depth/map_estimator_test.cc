@@ -2,8 +2,11 @@
 // Method: taps of simulated blocks through sensor and tracker, as a site has them.
 #include "depth/map_estimator.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
+#include "depth/stiffness_map.h"
 #include "tests/depth/tapping.h"
 
 namespace palp::depth {
@@ -23,13 +26,15 @@ class Palpation {
                               config,
                               {.taps = 1, .indentation = indentation, .place = place},
                               now_ + std::chrono::seconds{1},
-                              [&](const ContactSample& sample) {
+                              [&](ContactSample sample) {
+                                sample.session = session_;
                                 if (estimator_.add(sample)) news_ = estimator_.map();
                               });
   }
   void raster(const patient::Phantom& phantom, double pitch) {
     for (int i = 0; i < 9; ++i) tap(phantom, {(i % 3 - 1) * pitch, (i / 3 - 1) * pitch});
   }
+  void begin_session(std::uint64_t id) { session_ = id; }
   /// After the last stroke.
   [[nodiscard]] const std::optional<MapReport>& news() const { return news_; }
   [[nodiscard]] DepthEstimator& estimator() { return estimator_; }
@@ -37,6 +42,7 @@ class Palpation {
  private:
   DepthEstimator estimator_;
   std::uint64_t seed_{};
+  std::uint64_t session_{1};
   TimePoint now_{};
   std::optional<MapReport> news_;
 };
@@ -62,6 +68,29 @@ TEST(MapEstimatorTest, NineTapsSayWhereHowDeepAndHowLarge) {
   EXPECT_FALSE(hand.estimator().map()) << "no stroke has come since";
 }
 
+TEST(MapEstimatorTest, TheMapIsStiffOverTheBallAndPlainFarFromIt) {
+  const auto phantom = make_phantom("ball depth=5 radius=12 ratio=300 at=2,-3");
+  Palpation hand;
+  EXPECT_TRUE(hand.estimator().map_cells().empty());
+  hand.raster(*phantom, 10e-3);
+  const auto cells = hand.estimator().map_cells();
+  ASSERT_EQ(cells.size(), kMapCellsMax * kMapCellsMax);
+  const auto cell_near = [&](const Place& place) {
+    return *std::min_element(cells.begin(), cells.end(), [&](const MapCell& a, const MapCell& b) {
+      return distance(a.place, place) < distance(b.place, place);
+    });
+  };
+  const MapCell over = cell_near({2e-3, -3e-3});
+  const MapCell beside = cell_near({-22e-3, 22e-3});
+  EXPECT_EQ(over.number, 9U);
+  EXPECT_GT(over.inclusion, 0.95);
+  EXPECT_LT(beside.inclusion, 0.05);
+  EXPECT_NEAR(over.stiffness, phantom->over.force(2.3e-3) / phantom->plain.force(2.3e-3), 0.1);
+  EXPECT_NEAR(beside.stiffness, 1, 0.05);
+  EXPECT_GT(over.stiffness_stddev, 0);
+  EXPECT_LT(over.stiffness_stddev, 0.1);
+}
+
 TEST(MapEstimatorTest, PlainTissueIsNoInclusionAndTellsNoLengths) {
   const auto phantom = make_phantom("block e_kpa=17 varies=0.03");
   ASSERT_TRUE(phantom);
@@ -82,6 +111,21 @@ TEST(MapEstimatorTest, TwoPlacesAreLeftToTheEstimatorOfTheSinglePlace) {
   EXPECT_FALSE(hand.news());
   hand.tap(*phantom, {10e-3, 10e-3});
   EXPECT_TRUE(hand.news());
+}
+
+TEST(MapEstimatorTest, AnotherSessionBeginsWithNothing) {
+  const auto phantom = make_phantom("ball depth=5 radius=12 ratio=300 at=0,0");
+  Palpation hand;
+  hand.tap(*phantom, {});
+  hand.tap(*phantom, {20e-3, 0});
+  hand.begin_session(2);
+  hand.tap(*phantom, {0, 10e-3});
+  hand.tap(*phantom, {10e-3, 10e-3});
+  EXPECT_FALSE(hand.news());
+  hand.tap(*phantom, {10e-3, 0});
+  ASSERT_TRUE(hand.news());
+  EXPECT_EQ(hand.news()->places, 3U);
+  EXPECT_EQ(hand.news()->number, 5U) << "strokes are counted on";
 }
 
 TEST(MapEstimatorTest, AShortStrokeIsNoTouch) {

@@ -13,6 +13,7 @@
 #include "depth/map_cells.h"
 #include "depth/map_verdict.h"
 #include "depth/next_touch.h"
+#include "depth/seen_balls.h"
 
 namespace palp::depth {
 namespace {
@@ -112,6 +113,21 @@ TEST_F(MapTest, ABallIsFoundWithItsPlaceDepthAndSize) {
   EXPECT_NEAR(found.radius.median, truth.ball.radius, 3 * found.radius.stddev);
   EXPECT_LT(found.depth.stddev, 1.5e-3);
   EXPECT_GT(found.balls_worth, 100);
+}
+
+TEST_F(MapTest, SomeBallsStandForThePosterior) {
+  const Truth truth;
+  const MapPosterior found = posterior(all_felt(truth, pattern(3, 3, 7.5e-3), 1));
+  const std::vector<SeenBall> balls = seen_balls(field(), found);
+  ASSERT_EQ(balls.size(), 200U);
+  double x = 0;
+  for (const SeenBall& one : balls) {
+    x += one.axis.x / static_cast<double>(balls.size());
+    const Place beside{one.axis.x + 6e-3, one.axis.y};
+    EXPECT_GT(one.log_ratio(one.axis), one.log_ratio(beside));
+    EXPECT_GT(one.log_ratio(beside), 0);
+  }
+  EXPECT_NEAR(x, found.x.median, found.x.stddev);
 }
 
 /// Ranks of the truth in the posteriors are even, whatever was found.

@@ -181,7 +181,7 @@ const std::vector<Arrow>& arrows() {
       {"patient_site/*",
        {"depth", "common/message", "common/coupling", "common/link", "common/record"}},
       // What is judged of a run, offline: no site sees it, and it sees none.
-      {"judge/*", {"common/message"}},
+      {"judge/*", {"common/message", "common/config/json.h"}},
       {"lab/run/*",
        {"surgeon_site",
         "patient_site",

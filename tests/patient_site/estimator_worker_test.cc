@@ -68,7 +68,11 @@ TEST(EstimatorWorkerTest, StrokesAtThreePlacesMakeAMapBesideTheDepths) {
     bench.worker.judge_map();
   }
   bench.worker.judge_map();
-  ASSERT_EQ(bench.recorder.records.size(), 4U);
+  const auto cells = bench.recorder.records.size() - 4;
+  EXPECT_GT(cells, 50U);
+  const auto& last = std::get<MapCell>(bench.recorder.records.back());
+  EXPECT_EQ(last.number, 3U);
+  EXPECT_EQ(last.at, std::get<DepthEstimate>(bench.recorder.records[2]).stroke_ended_at);
   const auto& map = std::get<MapEstimate>(bench.recorder.records[3]);
   EXPECT_EQ(map.report.number, 3U);
   EXPECT_EQ(map.at, std::get<DepthEstimate>(bench.recorder.records[2]).stroke_ended_at);

@@ -157,5 +157,20 @@ TEST(PatientControlTest, TheMapRidesOnOneTelegramOfTwenty) {
   EXPECT_EQ(bench.control.status().map, bench.in.found.map);
 }
 
+TEST(PatientControlTest, WhatAnEarlierSessionFoundIsNotSaidAgain) {
+  Bench bench;
+  bench.engaged_tick(0);
+  bench.in.found.depth.number = 4;
+  bench.in.found.map.number = 4;
+  bench.engaged_tick(0);
+  EXPECT_EQ(bench.control.status().depth.number, 4U);
+  EXPECT_EQ(bench.control.status().map.number, 4U);
+  bench.in.link.session_id = 2;
+  EXPECT_EQ(bench.tick().to_peer.site.depth.number, 0U);
+  EXPECT_EQ(bench.control.status().map.number, 0U);
+  bench.in.found.depth.number = 5;
+  EXPECT_EQ(bench.tick().to_peer.site.depth.number, 5U);
+}
+
 }  // namespace
 }  // namespace palp::patient

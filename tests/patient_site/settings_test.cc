@@ -83,6 +83,7 @@ std::string text_of(const Settings& settings) {
       .add("estimator.ratio_min", settings.estimator.bayes.prior.ratio_min)
       .add("estimator.ratio_max", settings.estimator.bayes.prior.ratio_max)
       .add("estimator.shape", std::string{to_string(settings.estimator.bayes.prior.shape)})
+      .add("estimator.place_spread", settings.estimator.map.place_spread)
       .add("estimator.scale", settings.estimator.bayes.stiffness.scale)
       .add("estimator.scale_stddev", settings.estimator.bayes.stiffness.scale_stddev);
   add(list, settings.simulation);

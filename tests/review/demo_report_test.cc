@@ -16,7 +16,7 @@ SessionPair sample_pair() {
 
 nlohmann::json report(const ProgramReports& reports = {}, const Asked& asked = {}) {
   const SessionPair session = sample_pair();
-  const auto tissue = judge::TissueTable::parse(*session.patient.tissue_csv);
+  const auto tissue = judge::TissueTable::parse(*session.patient.texts.tissue_csv);
   const auto taps =
       match_taps(session.surgeon,
                  session.patient,
@@ -112,7 +112,7 @@ TEST(DemoReportTest, TakesWhatTheProgramsDidNotSayFromTheSessionFiles) {
 
 TEST(DemoReportTest, AReportOfAnotherSessionIsRefused) {
   SessionPair session = sample_pair();
-  session.surgeon.program_report = R"({"site":"surgeon","ticks":6000,"lateness_max_us":8477.513})";
+  session.surgeon.texts.program_report = R"({"site":"surgeon","ticks":6000,"lateness_max_us":8477.513})";
   const auto refused = [&](const ProgramReports& reports) {
     const auto checked = check_reports(session, reports);
     return checked ? std::string{} : checked.error().text;

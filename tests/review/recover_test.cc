@@ -55,7 +55,8 @@ TEST(RecoverTest, SoundFileLosesNothing) {
   const auto recovery = recover(file, out);
   ASSERT_TRUE(recovery);
   EXPECT_EQ(checked(out.bytes()).fault, std::nullopt);
-  EXPECT_EQ(load_site(out.bytes(), "saved", link::Role::Patient)->tissue_csv, test::kTissueCsv);
+  EXPECT_EQ(load_site(out.bytes(), "saved", link::Role::Patient)->texts.tissue_csv,
+            test::kTissueCsv);
 }
 
 /// Where each chunk of a file ends.

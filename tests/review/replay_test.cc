@@ -177,7 +177,7 @@ TEST(ReplayTest, MapsComeAgainTooAndReachTheSurgeon) {
   EXPECT_NEAR(arrived.back().report.x.median, 17e-3, 1e-3);
   EXPECT_NEAR(arrived.back().report.y.median, 4e-3, 1e-3);
   EXPECT_NEAR(arrived.back().report.depth.median, 5e-3, 1e-3);
-  EXPECT_FLOAT_EQ(arrived.back().report.radius.high, maps.back().report.radius.high);
+  EXPECT_NEAR(arrived.back().report.radius.high, maps.back().report.radius.high, 1e-8);
 }
 
 /// The file once more, each record as `change` wants it.

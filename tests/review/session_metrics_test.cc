@@ -28,7 +28,7 @@ Judged judged(const lab::Scenario& scenario, bool logged) {
   auto surgeon = load_site(files.surgeon.bytes(), "s", link::Role::Surgeon).value();
   if (logged) surgeon.run_began.reset();
   auto patient = load_site(files.patient.bytes(), "p", link::Role::Patient).value();
-  const auto tissue = judge::TissueTable::parse(patient.tissue_csv.value()).value();
+  const auto tissue = judge::TissueTable::parse(patient.texts.tissue_csv.value()).value();
   const SessionPair pair = pair_of(std::move(surgeon), std::move(patient)).value();
   made.session = judge_session(pair, &tissue);
   made.review = made.session.metrics;

@@ -12,7 +12,7 @@ using test::sample_session;
 
 std::vector<Tap> taps_of(const test::SampleFiles& files) {
   const auto session = load(files);
-  const auto tissue = judge::TissueTable::parse(*session.patient.tissue_csv);
+  const auto tissue = judge::TissueTable::parse(*session.patient.texts.tissue_csv);
   const auto hand = test::hand_motion(static_cast<int>(session.surgeon.ticks / 2000));
   return match_taps(
       session.surgeon, session.patient, {}, test::find_excursions(hand, test::kSurface, &*tissue));

@@ -25,10 +25,11 @@ def _everything(site: Site, which: int) -> dict:
     """A telegram with each field of the schema."""
     ones = {
         name: {e.name: 1 if e.kind in ("enum", "uint32") else 1e-3 for e in MESSAGES[name]}
-        for name in ("Wave", "Tdpa", "Model", "Depth")
+        for name in ("Wave", "Tdpa", "Model", "Depth", "Map")
     }
     told = site.telegram()
     told["site"]["depth"] = ones["Depth"]
+    told["site"]["map"] = ones["Map"]
     told["site"]["x_m"] = told["site"]["y_m"] = 1e-3
     motion = {"position_m": -0.01, "velocity_m_per_s": 1e-3, "force_n": 1e-3}
     payload = PAYLOADS[which % len(PAYLOADS)]

@@ -103,7 +103,9 @@ class SchemaDraw {
     constexpr unsigned kFixed32 = 5;
     const auto tag = [&](unsigned type) {
       const unsigned shown = defect() ? static_cast<unsigned>(draw_.below(8)) : type;
-      out.push_back(static_cast<std::byte>(static_cast<unsigned>(field.number()) << 3U | shown));
+      const unsigned whole = static_cast<unsigned>(field.number()) << 3U | shown;
+      if (whole >= 0x80) out.push_back(static_cast<std::byte>(whole | 0x80U));
+      out.push_back(static_cast<std::byte>(whole >= 0x80 ? whole >> 7U : whole));
     };
     switch (field.cpp_type()) {
       case FieldDescriptor::CPPTYPE_FLOAT:

@@ -45,6 +45,7 @@ void each_struct(auto&& visit) {
             PlantTruth,
             MapEstimate,
             MapArrived,
+            MapCell,
             SurgeonGiven,
             PatientGiven,
             SurgeonFileTick,

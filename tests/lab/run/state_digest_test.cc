@@ -76,6 +76,7 @@ TEST(StateDigestTest, EachNumberOfEachRecordCounts) {
     expect_each_member_counts<DepthArrived>(seed);
     expect_each_member_counts<MapEstimate>(seed);
     expect_each_member_counts<MapArrived>(seed);
+    expect_each_member_counts<MapCell>(seed);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "review/map_json.h"
+#include "judge/map_json.h"
 
 #include <string>
 #include <utility>
@@ -6,7 +6,7 @@
 #include "common/core/conventions.h"
 #include "common/message/map_text.h"
 
-namespace palp::review {
+namespace palp::judge {
 namespace {
 
 using config::Json;
@@ -28,7 +28,7 @@ Json doubts_json(MapDoubts doubts) {
 
 }  // namespace
 
-Json map_json(const MapReport& map) {
+Json map_json(const MapReport& map, const std::vector<MapCell>& cells) {
   if (map.number == 0) return nullptr;
   Json json;
   json["verdict"] = verdict_of(map);
@@ -53,7 +53,15 @@ Json map_json(const MapReport& map) {
                   {"gain_nat", map.next_gain}};
   json["enough"] = map.stop != MapStop::GoOn;
   json["says"] = map_sentence(map);
+  json["cells"] = Json::array();
+  for (const MapCell& cell : cells) {
+    json["cells"].push_back({{"x_mm", cell.place.x / kMillimetre},
+                             {"y_mm", cell.place.y / kMillimetre},
+                             {"stiffness", cell.stiffness},
+                             {"stiffness_stddev", cell.stiffness_stddev},
+                             {"inclusion", cell.inclusion}});
+  }
   return json;
 }
 
-}  // namespace palp::review
+}  // namespace palp::judge

@@ -1,9 +1,9 @@
-#include "review/map_json.h"
+#include "judge/map_json.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace palp::review {
+namespace palp::judge {
 namespace {
 
 using testing::HasSubstr;
@@ -32,4 +32,4 @@ TEST(MapJsonTest, WhereNothingWasFoundThereAreNoLengths) {
 }
 
 }  // namespace
-}  // namespace palp::review
+}  // namespace palp::judge

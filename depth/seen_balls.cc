@@ -1,0 +1,34 @@
+#include "depth/seen_balls.h"
+
+#include <cmath>
+
+namespace palp::depth {
+namespace {
+
+constexpr std::size_t kBalls = 200;
+constexpr std::size_t kMiddle = 3;  // a node of the curve
+
+}  // namespace
+
+double SeenBall::log_ratio(const Place& place) const noexcept {
+  return std::log(ball.ratio(distance(axis, place))[kMiddle]);
+}
+
+std::vector<SeenBall> seen_balls(const BallField& field, const MapPosterior& posterior) {
+  std::vector<SeenBall> out;
+  double sum = 0;
+  double next = 0.5 / kBalls;
+  for (const LikelyBall& one : posterior.balls) {
+    sum += one.share;
+    for (; next < sum && out.size() < kBalls; next += 1.0 / kBalls) {
+      const MapBall& ball = one.ball;
+      out.push_back(
+          {.ball = field.at(ball.log_depth, ball.radius, effect_of(std::exp(ball.log_ratio))),
+           .axis = ball.place,
+           .radius = ball.radius});
+    }
+  }
+  return out;
+}
+
+}  // namespace palp::depth
