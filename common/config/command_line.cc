@@ -19,8 +19,6 @@ namespace {
 
 using Values = std::vector<std::string>;
 
-constexpr const char* kReportFlag = "--report";
-
 ExitStatus bad_input(std::string text) { return {ExitCode::BadInput, std::move(text)}; }
 
 /// The last step of reading a value.
@@ -38,6 +36,12 @@ struct Declared {
   bool required{};
 };
 
+struct DeclaredOutput {
+  std::string flag;
+  const CLI::Option* option{};
+  std::string schema;  ///< of a report, else empty
+};
+
 }  // namespace
 
 struct CommandLine::Parts {
@@ -49,8 +53,8 @@ struct CommandLine::Parts {
   bool verb_needed{true};
   Values words;  ///< as given to the program
 
-  Values outputs;             ///< their flags
-  std::string report_schema;  ///< empty: there is none
+  std::vector<DeclaredOutput> own_outputs;
+  std::vector<DeclaredOutput>* outputs{&own_outputs};  ///< of the program, verbs' included
 
   SettingsFlags settings;
 
@@ -66,14 +70,13 @@ struct CommandLine::Parts {
   void declare_number(const std::string& flag,
                       Variable& value,
                       const Range& range,
-                      const std::string& said);
+                      const std::string& meaning,
+                      const std::string& preset = {});
   [[nodiscard]] std::optional<ExitStatus> take_values();
   [[nodiscard]] std::optional<ExitStatus> take_all();
   [[nodiscard]] std::optional<ExitStatus> unexpected_word() const;
-  [[nodiscard]] std::vector<Output> given_outputs() const;
-  // Of the program:
-  [[nodiscard]] std::vector<const Parts*> with_verbs() const;
-  [[nodiscard]] std::optional<std::string> clash_of(const Output& output) const;
+  /// Of the program.
+  [[nodiscard]] std::optional<std::string> clash_of(const DeclaredOutput& output) const;
 };
 
 void CommandLine::Parts::declare(const std::string& name,
@@ -99,11 +102,7 @@ void CommandLine::Parts::declare_switch(const std::string& name,
                                         const std::string& meaning,
                                         std::function<void()> take) {
   const auto take_one = [name, take = std::move(take)](const Values& given) -> Result<void> {
-    if (given.front() != "true") {  // which the parser puts there for a bare "--flag"
-      return fail(name + " takes no value");
-    }
-    take();
-    return {};
+    return read_switch(name, given.front()).map(take);
   };
   declared.push_back({.name = name, .option = app->add_flag(name, meaning), .take = take_one});
 }
@@ -112,8 +111,10 @@ template <class Variable, class Range>
 void CommandLine::Parts::declare_number(const std::string& flag,
                                         Variable& value,
                                         const Range& range,
-                                        const std::string& said) {
+                                        const std::string& meaning,
+                                        const std::string& preset) {
   constexpr bool kWhole = std::is_same_v<Range, WholeRange>;
+  const std::string said = describe(meaning, range) + preset;
   declare(flag, kWhole ? "N" : "X", said, true, [flag, &value, range](const Values& given) {
     if constexpr (kWhole) {
       return read_whole(flag, given.front(), range).map(store_in(value));
@@ -127,9 +128,7 @@ std::optional<ExitStatus> CommandLine::Parts::take_values() {
   for (const Declared& one : declared) {
     const Values& values = one.option->results();
     if (values.empty()) {
-      if (one.required) {
-        return bad_input(one.name + " is missing; see --help");
-      }
+      if (one.required) return bad_input(one.name + " is missing; see --help");
       continue;
     }
     if (one.once && values.size() > 1) {
@@ -141,25 +140,19 @@ std::optional<ExitStatus> CommandLine::Parts::take_values() {
         return bad_input(one.name + " needs a value, not " + printable(value));
       }
     }
-    if (const auto taken = one.take(values); !taken) {
-      return bad_input(taken.error().text);
-    }
+    if (const auto taken = one.take(values); !taken) return bad_input(taken.error().text);
   }
   return std::nullopt;
 }
 
 std::optional<ExitStatus> CommandLine::Parts::take_all() {
-  if (auto exit_status = take_values()) {
-    return exit_status;
-  }
+  if (auto exit_status = take_values()) return exit_status;
   return settings.fill();
 }
 
 std::optional<ExitStatus> CommandLine::Parts::unexpected_word() const {
   Values names;
-  for (const auto& verb : verbs) {
-    names.push_back(verb->parts_->app->get_name());
-  }
+  for (const auto& verb : verbs) names.push_back(verb->parts_->app->get_name());
   const bool chosen = !app->get_subcommands().empty();
   const auto left = app->remaining(true);
   if (!left.empty()) {
@@ -193,6 +186,7 @@ CommandLine::~CommandLine() = default;
 CommandLine& CommandLine::verb(const std::string& name, const std::string& description) {
   auto parts = std::make_unique<Parts>();
   parts->program = parts_->program + ' ' + name;
+  parts->outputs = parts_->outputs;
   parts->app = parts_->app->add_subcommand(name, description);
   parts->app->allow_extras();
   parts->app->fallthrough();  // the program's own flags may stand behind the verb too
@@ -209,11 +203,7 @@ void CommandLine::text(const std::string& flag,
                        const std::string& placeholder,
                        const std::string& meaning) {
   parts_->declare(flag, placeholder, meaning, true, [flag, &value](const Values& given) {
-    if (given.front().empty() || given.front().find('\0') != std::string::npos) {
-      return Result<void>{fail(flag + " is empty")};
-    }
-    value = given.front();
-    return Result<void>{};
+    return read_text(flag, given.front()).map(store_in(value));
   });
 }
 
@@ -232,30 +222,28 @@ void CommandLine::number(const std::string& flag,
                          double& value,
                          const NumberRange& range,
                          const std::string& meaning) {
-  const std::string said = describe(meaning, range) + ", default " + number_text(value);
-  parts_->declare_number(flag, value, range, said);
+  parts_->declare_number(flag, value, range, meaning, ", default " + number_text(value));
 }
 
 void CommandLine::number(const std::string& flag,
                          std::optional<double>& value,
                          const NumberRange& range,
                          const std::string& meaning) {
-  parts_->declare_number(flag, value, range, describe(meaning, range));
+  parts_->declare_number(flag, value, range, meaning);
 }
 
 void CommandLine::whole(const std::string& flag,
                         std::uint64_t& value,
                         const WholeRange& range,
                         const std::string& meaning) {
-  const std::string said = describe(meaning, range) + ", default " + std::to_string(value);
-  parts_->declare_number(flag, value, range, said);
+  parts_->declare_number(flag, value, range, meaning, ", default " + std::to_string(value));
 }
 
 void CommandLine::whole(const std::string& flag,
                         std::optional<std::uint64_t>& value,
                         const WholeRange& range,
                         const std::string& meaning) {
-  parts_->declare_number(flag, value, range, describe(meaning, range));
+  parts_->declare_number(flag, value, range, meaning);
 }
 
 void CommandLine::address(const std::string& flag,
@@ -263,9 +251,7 @@ void CommandLine::address(const std::string& flag,
                           std::uint16_t port_min,
                           const std::string& meaning) {
   parts_->declare(flag, "HOST:PORT", meaning, true, [flag, &value, port_min](const Values& given) {
-    return parse_host_and_port(given.front(), port_min)
-        .map(store_in(value))
-        .map_error([&flag](const Error& error) { return Error{flag + ": " + error.text}; });
+    return read_address(flag, given.front(), port_min).map(store_in(value));
   });
 }
 
@@ -318,12 +304,12 @@ void CommandLine::knob(const std::string& flag, const std::string& path) {
 
 void CommandLine::output(const std::string& flag, std::string& file, const std::string& meaning) {
   text(flag, file, "FILE", meaning);
-  parts_->outputs.push_back(flag);
+  parts_->outputs->push_back({flag, parts_->declared.back().option, {}});
 }
 
 void CommandLine::report(std::string& file, const std::string& schema) {
-  output(kReportFlag, file, "JSON report, written also when the run fails");
-  parts_->report_schema = schema;
+  output("--report", file, "JSON report, written also when the run fails");
+  parts_->outputs->back().schema = schema;
 }
 
 void CommandLine::footer(const std::string& text) { parts_->app->footer(text); }
@@ -369,54 +355,32 @@ std::optional<ExitStatus> CommandLine::parse(int argc, const char* const* argv) 
 
 bool CommandLine::given(std::string_view flag) const {
   for (const Declared& one : parts_->declared) {
-    if (one.name == flag) {
-      return !one.option->empty();
-    }
+    if (one.name == flag) return !one.option->empty();
   }
   PALP_CHECK(false, "given() asks for a flag that was declared");
   return false;
 }
 
-std::vector<Output> CommandLine::Parts::given_outputs() const {
-  std::vector<Output> given;
-  for (const Declared& one : declared) {
-    if (std::ranges::find(outputs, one.name) == outputs.end() || one.option->empty()) continue;
-    given.push_back({one.name, one.option->results().front()});
-  }
-  return given;
-}
-
-std::optional<std::string> CommandLine::Parts::clash_of(const Output& output) const {
-  if (words.empty() || output.file.empty()) return std::nullopt;
+std::optional<std::string> CommandLine::Parts::clash_of(const DeclaredOutput& output) const {
+  if (words.empty() || output.option->empty()) return std::nullopt;
   const auto chosen = app->get_subcommands();
-  return output_clash(output,
+  return output_clash({output.flag, output.option->results().front()},
                       words,
                       chosen.empty() ? "" : chosen.front()->get_name(),
                       settings.document != nullptr ? settings.document->text() : "");
 }
 
-std::vector<const CommandLine::Parts*> CommandLine::Parts::with_verbs() const {
-  std::vector<const Parts*> all{this};
-  for (const auto& verb : verbs) all.push_back(verb->parts_.get());
-  return all;
-}
-
 CommandLine::AskedReport CommandLine::asked_report() const {
-  AskedReport asked;
-  for (const Parts* const part : parts_->with_verbs()) {
-    for (const Output& output : part->given_outputs()) {
-      if (output.flag != kReportFlag || !asked.file.empty()) continue;
-      asked = {output.file, part->report_schema, parts_->clash_of(output)};
-    }
+  for (const DeclaredOutput& one : *parts_->outputs) {
+    if (one.schema.empty() || one.option->empty()) continue;
+    return {one.option->results().front(), one.schema, parts_->clash_of(one)};
   }
-  return asked;
+  return {};
 }
 
 std::optional<std::string> CommandLine::clash() const {
-  for (const Parts* const part : parts_->with_verbs()) {
-    for (const Output& output : part->given_outputs()) {
-      if (auto clash = parts_->clash_of(output)) return clash;
-    }
+  for (const DeclaredOutput& one : *parts_->outputs) {
+    if (auto clash = parts_->clash_of(one)) return clash;
   }
   return std::nullopt;
 }
@@ -425,9 +389,7 @@ const std::string& CommandLine::program() const { return parts_->program; }
 
 std::string CommandLine::chosen_verb() const {
   for (const auto& verb : parts_->verbs) {
-    if (verb->parts_->app->parsed()) {
-      return verb->parts_->app->get_name();
-    }
+    if (verb->parts_->app->parsed()) return verb->parts_->app->get_name();
   }
   return {};
 }

@@ -56,6 +56,23 @@ Result<std::string> read_choice(const std::string& flag,
   return text;
 }
 
+Result<std::string> read_text(const std::string& flag, const std::string& text) {
+  if (text.empty() || text.find('\0') != std::string::npos) return fail(flag + " is empty");
+  return text;
+}
+
+Result<HostAndPort> read_address(const std::string& flag,
+                                 const std::string& text,
+                                 std::uint16_t port_min) {
+  return parse_host_and_port(text, port_min).map_error([&flag](const Error& error) {
+    return Error{flag + ": " + error.text};
+  });
+}
+
+Result<void> read_switch(const std::string& flag, const std::string& text) {
+  return text == "true" ? Result<void>{} : fail(flag + " takes no value");
+}
+
 std::string describe(const std::string& meaning, const NumberRange& range) {
   return describe(meaning, range.unit, range_text(range.min, range.max, ""));
 }

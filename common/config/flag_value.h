@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/host_and_port.h"
 #include "common/core/result.h"
 
 /// What the value of a flag may be, and its reading. The sentences name flag, value and limit.
@@ -34,6 +35,17 @@ struct WholeRange {
 [[nodiscard]] Result<std::string> read_choice(const std::string& flag,
                                               const std::string& text,
                                               const std::vector<std::string>& choices);
+
+/// Not empty.
+[[nodiscard]] Result<std::string> read_text(const std::string& flag, const std::string& text);
+
+/// HOST:PORT.
+[[nodiscard]] Result<HostAndPort> read_address(const std::string& flag,
+                                               const std::string& text,
+                                               std::uint16_t port_min);
+
+/// Of a switch, which takes no value: "true" is what the parser puts there.
+[[nodiscard]] Result<void> read_switch(const std::string& flag, const std::string& text);
 
 /// "MEANING [N], 0 to 3": what --help says.
 [[nodiscard]] std::string describe(const std::string& meaning, const NumberRange& range);

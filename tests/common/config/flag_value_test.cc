@@ -30,6 +30,19 @@ TEST(FlagValueTest, DescribesUnitAndRange) {
   EXPECT_EQ(describe("how many", WholeRange{.min = 1, .max = 3}), "how many, 1 to 3");
 }
 
+TEST(FlagValueTest, ATextIsNotEmptyAndASwitchTakesNone) {
+  EXPECT_EQ(read_text("--out", "a b").value(), "a b");
+  EXPECT_EQ(read_text("--out", "").error().text, "--out is empty");
+  EXPECT_FALSE(read_text("--out", std::string{"a\0b", 3}));
+  EXPECT_TRUE(read_switch("--json", "true"));
+  EXPECT_EQ(read_switch("--json", "yes").error().text, "--json takes no value");
+}
+
+TEST(FlagValueTest, AnAddressIsNamedWithItsFlag) {
+  EXPECT_EQ(read_address("--peer", "here:9", 1).value().port, 9);
+  EXPECT_EQ(read_address("--peer", "here:0", 1).error().text.find("--peer: "), 0U);
+}
+
 TEST(FlagValueTest, TakesOnlyTheChoicesThereAre) {
   EXPECT_EQ(read_choice("--x", "b", {"a", "b"}), "b");
   EXPECT_EQ(read_choice("--x", "B", {"a", "b"}).error().text, "--x = B is not one of: a, b");
