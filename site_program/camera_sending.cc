@@ -16,7 +16,7 @@ namespace {
 using std::chrono::milliseconds;
 using video::VideoState;
 
-constexpr Duration kRest = milliseconds{5};
+constexpr Duration kSendingRest = milliseconds{5};
 constexpr Duration kWordEvery = milliseconds{500};
 /// Of io, which may have been refused a socket.
 constexpr Duration kAskAgain = std::chrono::seconds{1};
@@ -187,7 +187,7 @@ void CameraSending::Io::say_why_not(TimePoint now) {
 }
 
 TimePoint CameraSending::Io::next_at(TimePoint now) const {
-  TimePoint next = now + kRest;
+  TimePoint next = now + kSendingRest;
   if (!session_ || !session_->sender || !way_) return next;
   next = std::min(next, session_->shot_at + video::RateControl::kFramePeriod);
   if (const auto fragment = session_->sender->next_at()) next = std::min(next, *fragment);

@@ -13,16 +13,15 @@ namespace palp::site_program {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
-constexpr Duration kRest = milliseconds{5};
+constexpr Duration kWatchingRest = milliseconds{5};
 /// While nothing answers.
 constexpr Duration kKnockEvery = milliseconds{500};
-constexpr Duration kSilent = seconds{3};
+constexpr Duration kSilent = std::chrono::seconds{3};
 /// A machine whose own address has changed has a socket that leads nowhere.
-constexpr Duration kAnotherSocketEvery = seconds{5};
+constexpr Duration kAnotherSocketEvery = std::chrono::seconds{5};
 constexpr Duration kTellEvery = milliseconds{250};
-constexpr Duration kRateSpan = seconds{1};
+constexpr Duration kRateSpan = std::chrono::seconds{1};
 
 }  // namespace
 
@@ -90,7 +89,7 @@ void CameraWatching::Io::work(TimePoint now) {
     report(now);
   }
   tell(now);
-  io::wait_for_datagram(session_ ? socket_->descriptor() : -1, kRest);
+  io::wait_for_datagram(session_ ? socket_->descriptor() : -1, kWatchingRest);
 }
 
 void CameraWatching::Io::open_door(TimePoint now) {
@@ -182,7 +181,7 @@ void CameraWatching::Io::tell(TimePoint now) {
     shown_.repaired = counts.repaired;
     shown_.not_shown = counts.undecodable + counts.incomplete;
     if (now - rate_from_ >= kRateSpan) {
-      const double span = palp::seconds(now - std::exchange(rate_from_, now));
+      const double span = seconds(now - std::exchange(rate_from_, now));
       const auto bytes = counts.bytes - std::exchange(bytes_before_, counts.bytes);
       const auto frames = counts.delivered - std::exchange(frames_before_, counts.delivered);
       shown_.kbps = 8e-3 * static_cast<double>(bytes) / span;
