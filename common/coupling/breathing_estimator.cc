@@ -195,6 +195,17 @@ std::array<double, BreathingEstimator::kUnknowns> BreathingEstimator::solved(
   return solve(damped, open).x;
 }
 
+/// Pace and phase part best where the phase counts from the middle of the samples: `origin` [s].
+void BreathingEstimator::count_from(double origin, Guess& guess) noexcept {
+  const double turned = guess.rate * (origin - guess.origin);
+  const double c = std::cos(turned);
+  const double s = std::sin(turned);
+  const double cosine = guess.cosine * c + guess.sine * s;
+  guess.sine = guess.sine * c - guess.cosine * s;
+  guess.cosine = cosine;
+  guess.origin = origin;
+}
+
 void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
   Equations& e = equations_;
   if (e.count < 1) return;
@@ -250,15 +261,7 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
   guess.rate = std::clamp(guess.rate + share * by[kRate],
                           rate_of(static_cast<double>(pace) - 1),
                           rate_of(static_cast<double>(pace)));
-  // Pace and phase part best where the phase counts from the middle of the samples.
-  const double origin = e.time / e.count;
-  const double turned = guess.rate * (origin - guess.origin);
-  const double c = std::cos(turned);
-  const double s = std::sin(turned);
-  const double cosine = guess.cosine * c + guess.sine * s;
-  guess.sine = guess.sine * c - guess.cosine * s;
-  guess.cosine = cosine;
-  guess.origin = origin;
+  count_from(e.time / e.count, guess);
 }
 
 void BreathingEstimator::judge() noexcept {

@@ -97,6 +97,7 @@ class BreathingEstimator {
   void add(const Guess& guess, const Sample& sample) noexcept;
   [[nodiscard]] std::array<double, kUnknowns> solved(
       const std::array<bool, kUnknowns>& open) const noexcept;
+  static void count_from(double origin, Guess& guess) noexcept;
   void improve(Guess& guess, std::size_t pace) noexcept;
   void judge() noexcept;
 

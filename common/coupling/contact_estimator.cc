@@ -52,7 +52,7 @@ void ContactEstimator::place_grid(double centre) noexcept {
   for (Lane& lane : box_.terms) lane.fill(0);
   for (Lane& lane : normal_) lane.fill(0);
   spline_.begin(centre - kSplineAbove, sensed_.tip.value());
-  square_ = weight_ = 0;
+  sums_.square = sums_.weight = 0;
   box_.force = 0;
   box_.count = 0;
   box_.tip = sensed_.tip.value();
@@ -197,8 +197,8 @@ void ContactEstimator::absorb() noexcept {
     met[1 + k] = box_.terms[kModelTerms + k][best_];
   }
   spline_.add(met, weight, keep);
-  square_ = keep * square_ + weight * force * force;
-  weight_ = keep * weight_ + weight;
+  sums_.square = keep * sums_.square + weight * force * force;
+  sums_.weight = keep * sums_.weight + weight;
   std::size_t at = 0;
   for (std::size_t row = 0; row < kTerms; ++row) {
     for (std::size_t column = row; column < kTerms; ++column, ++at) {

@@ -126,6 +126,11 @@ class ContactEstimator {
     std::uint32_t count{};
     double tip{};  ///< [m], where the last box ended
   };
+  /// Of all equations, as far as they are remembered.
+  struct Sums {
+    double square{};  ///< [N^2], of the force
+    double weight{};  ///< [-]
+  };
   /// What comes beside the shapes.
   struct Beside {
     std::array<double, kModelTimes.size()> past{};  ///< [N], elastic force, averaged
@@ -156,8 +161,7 @@ class ContactEstimator {
   Box box_;
   alignas(64) std::array<Lane, kPairs> normal_{};  ///< [-]
   alignas(64) std::array<Lane, kTerms> right_{};   ///< [N]
-  double square_{};                                ///< [N^2]
-  double weight_{};                                ///< [-], of all equations
+  Sums sums_;
   Beside beside_;
   SplineEstimator spline_;
 

@@ -53,7 +53,7 @@ ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate, bool r
 
   Terms& c = found_[candidate];
   Nonnegative{system, kSpread}.improve(c);
-  double cost = square_;
+  double cost = sums_.square;
   for (std::size_t row = 0; row < kTerms; ++row) {
     double product = 0;
     for (std::size_t column = 0; column < kTerms; ++column) product += a[row][column] * c[column];
@@ -67,7 +67,7 @@ ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate, bool r
 /// Whether `left` [N^2], of the sum of squares, is no more than noise and a share of the force.
 bool ContactEstimator::explains(double left) const noexcept {
   const double noise = kRestNoise * kRestNoise * equation_noise();
-  return left <= weight_ * noise + kRestShare * kRestShare * square_;
+  return left <= sums_.weight * noise + kRestShare * kRestShare * sums_.square;
 }
 
 /// @returns what the spline leaves unexplained beside the smooth shapes of `solution` [N^2].
@@ -94,7 +94,7 @@ void ContactEstimator::fit_spline(const Solution& told) noexcept {
   }
   const double left = fit_spline_beside(rest);
   const bool explained = explains(left);
-  if (weight_ >= kRestWeight) swing_.rest(left / weight_, explained);
+  if (sums_.weight >= kRestWeight) swing_.rest(left / sums_.weight, explained);
   if (!swing_.settled()) return spline_.drop();
   if (!explained && !swing_.still()) fit_spline_beside(told);
 }

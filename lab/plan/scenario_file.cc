@@ -113,8 +113,8 @@ Result<Scenario> make_scenario(const std::string& name, const config::Document& 
   }
   return Scenario{.name = name,
                   .text = document.text(),
-                  .surgeon_text = config::settings_text(message.surgeon()),
-                  .patient_text = config::settings_text(message.patient()),
+                  .site_texts = {.surgeon = config::settings_text(message.surgeon()),
+                                 .patient = config::settings_text(message.patient())},
                   .seed = message.seed(),
                   .coupling = surgeon->coupling,
                   .link = surgeon->link,

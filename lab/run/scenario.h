@@ -20,6 +20,12 @@
 
 namespace palp::lab {
 
+/// The sites' settings, as each would have them of the document.
+struct SiteTexts {
+  std::string surgeon;
+  std::string patient;
+};
+
 /// What a hand does at the tissue with its own finger (direct_touch.h); NaN, 0: nobody asked.
 struct OwnFinger {
   double force{judge::kUndefined};  ///< [N], most that it presses
@@ -29,9 +35,8 @@ struct OwnFinger {
 /// Everything that decides a run: two runs of equal scenarios give equal bits.
 struct Scenario {
   std::string name;
-  std::string text{};          ///< the document it was made of
-  std::string surgeon_text{};  ///< of that, the site's settings, as the site itself would have them
-  std::string patient_text{};
+  std::string text{};  ///< the document it was made of
+  SiteTexts site_texts{};
   std::uint64_t seed{1};
   coupling::CouplingConfig coupling;
   link::LinkConfig link;

@@ -25,9 +25,10 @@ record::SessionInfo info_of(const Scenario& scenario, link::Role site, TimePoint
                    {"seed", std::to_string(scenario.seed)},
                    {"time", "virtual"},
                    {"coupling", scenario.coupling.name}};
-  info.attachments = {
-      {"config.textproto", "text/plain", surgeon ? scenario.surgeon_text : scenario.patient_text},
-      {"scenario.textproto", "text/plain", scenario.text}};
+  info.attachments = {{"config.textproto",
+                       "text/plain",
+                       surgeon ? scenario.site_texts.surgeon : scenario.site_texts.patient},
+                      {"scenario.textproto", "text/plain", scenario.text}};
   info.opened_at = clock_of(scenario, site).local(now);
   info.clock.ahead = kVirtualEpoch - info.opened_at.time_since_epoch();
   info.clock.source = "virtual";
