@@ -23,7 +23,7 @@ bool of_no_tick(const Record& record) {
 constexpr std::size_t kTickRecordsMax = 4096;
 
 std::uint64_t torn_in(const record::SessionReader& reader) {
-  return reader.report().chunks_damaged + reader.missing();
+  return reader.report().chunks_damaged + reader.missing() + reader.disordered();
 }
 
 }  // namespace

@@ -75,7 +75,8 @@ class LoggedTicks {
   explicit LoggedTicks(const RunBytes& files) : files_{files} {}
   /// Without what the estimator's thread and the lab said; nullopt: the end.
   std::optional<LoggedTick> next();
-  /// Chunks that could not be read and messages that are missing, so far.
+  /// Chunks that could not be read and messages that are missing, twice there or out of order, so
+  /// far.
   [[nodiscard]] std::uint64_t damaged() const;
   /// Records that never came into the file, as its statuses tell up to the next one, which is read
   /// for it: next() must not follow. 0: none.

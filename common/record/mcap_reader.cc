@@ -98,8 +98,8 @@ std::optional<McapItem> McapReader::next_in_chunk() {
 
 /// Who looks for a span of time would pass over such a chunk.
 void McapReader::check_time(std::uint64_t log_time) {
-  if (chunk_time_wrong_ || (log_time >= chunk_begin_ && log_time <= chunk_end_)) return;
-  chunk_time_wrong_ = true;
+  if (chunk_time_.wrong || (log_time >= chunk_time_.begin && log_time <= chunk_time_.end)) return;
+  chunk_time_.wrong = true;
   fault(chunk_at_, "a message of this chunk lies outside of the time that the chunk states");
 }
 
@@ -171,15 +171,15 @@ void McapReader::open_chunk(const RawRecord& record) {
   chunk_ = {};
   chunk_offset_ = 0;
   chunk_at_ = record.offset;
-  chunk_time_wrong_ = false;
+  chunk_time_.wrong = false;
   chunk_messages_.clear();
   if (chunk_places_.size() < limits_.chunk_places_max) {
     chunk_places_.push_back({record.offset, kMcapPrefixSize + record.content.size()});
   }
   ++report_.chunks;
   ByteCursor cursor{record.content};
-  chunk_begin_ = cursor.read<std::uint64_t>();
-  chunk_end_ = cursor.read<std::uint64_t>();
+  chunk_time_.begin = cursor.read<std::uint64_t>();
+  chunk_time_.end = cursor.read<std::uint64_t>();
   const auto size = cursor.read<std::uint64_t>();
   const auto crc = cursor.read<std::uint32_t>();
   const auto compression = cursor.text();
@@ -189,7 +189,7 @@ void McapReader::open_chunk(const RawRecord& record) {
     fault(record.offset, "a field of this chunk reaches beyond its end");
     return;
   }
-  if (passes_over(chunk_begin_, chunk_end_) || !admit_unpacked(record, size)) return;
+  if (passes_over(chunk_time_.begin, chunk_time_.end) || !admit_unpacked(record, size)) return;
   const auto answer = decompressor_.decompress(compression, bytes, size);
   const bool crc_wrong = answer.error.empty() && crc != 0 && crc32(answer.records) != crc;
   if (!answer.error.empty() || crc_wrong) {

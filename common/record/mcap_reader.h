@@ -177,9 +177,12 @@ class McapReader {
   std::span<const std::byte> chunk_;  ///< records of the open chunk
   std::size_t chunk_offset_{};        ///< within them
   std::uint64_t chunk_at_{};          ///< in the file
-  std::uint64_t chunk_begin_{};       ///< [ns], as it states
-  std::uint64_t chunk_end_{};         ///< [ns], as it states
-  bool chunk_time_wrong_{};           ///< and told
+  struct StatedTime {
+    std::uint64_t begin{};  ///< [ns]
+    std::uint64_t end{};    ///< [ns]
+    bool wrong{};           ///< and told
+  };
+  StatedTime chunk_time_;  ///< of the open chunk
   bool data_ended_{};
   std::map<std::uint16_t, std::uint64_t> chunk_messages_;  ///< per channel
   std::vector<ChunkPlace> chunk_places_;                   ///< of the first ones

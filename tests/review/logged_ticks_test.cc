@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/record/session_writer.h"
+#include "review/copied_channels.h"
 #include "tests/review/lab_files.h"
 
 namespace palp::review {
@@ -47,6 +48,36 @@ TEST(LoggedTicksTest, ATickOfMoreRecordsThanAnySiteMakesIsDamage) {
   };
   EXPECT_FALSE(torn(4000));
   EXPECT_TRUE(torn(5000));
+}
+
+TEST(LoggedTicksTest, AMessageThatIsThereTwiceIsDamage) {
+  record::MemorySink once;
+  {
+    record::SessionWriter writer{once, {.site = link::Role::Surgeon}};
+    writer.write(LinkHeard{});
+  }
+  const auto damaged = [&](int times) {
+    record::MemorySink copy;
+    record::McapWriter writer{copy, {}};
+    CopiedChannels channels{writer};
+    record::McapReader reader{once.bytes()};
+    while (const auto item = reader.next()) {
+      if (const auto* schema = std::get_if<record::McapSchema>(&*item)) channels.add(*schema);
+      if (const auto* channel = std::get_if<record::McapChannel>(&*item)) channels.add(*channel);
+      const auto* message = std::get_if<record::McapMessage>(&*item);
+      for (int k = 0; message != nullptr && k < times; ++k) {
+        channels.add(*message, message->log_time, message->publish_time);
+      }
+    }
+    writer.close();
+    const RunBytes bytes{copy.bytes()};
+    LoggedTicks ticks{bytes};
+    while (ticks.next()) {
+    }
+    return ticks.damaged();
+  };
+  EXPECT_EQ(damaged(1), 0U);
+  EXPECT_GT(damaged(2), 0U);
 }
 
 }  // namespace
