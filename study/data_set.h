@@ -12,7 +12,7 @@
 ///
 ///     dataset_description.json README participants.tsv participants.json task-TASK_beh.json
 ///     sub-01/ses-01/beh/sub-01_ses-01_task-TASK_run-01_beh.tsv     a line for each trial
-///     code/study.textproto schedule.json plan.json preregistration.md key.json
+///     code/study.textproto schedule.json plan.json PREREGISTRATION.md key.json
 ///     derivatives/palp-study/                                      what fit, compare, report say
 namespace palp::study {
 

@@ -51,12 +51,8 @@ ExitStatus run(const RunFlags& flags) {
       });
 }
 
-}  // namespace
-}  // namespace palp::study
-
-int main(int argc, char** argv) {
-  using namespace palp::study;  // NOLINT(google-build-using-namespace)
-  palp::config::CommandLine line{
+int run_program(int argc, char** argv) {
+  config::CommandLine line{
       "palp-study", "Just noticeable differences: studies planned, simulated, fitted, reported."};
   PlanFlags plan;
   declare_plan(line.verb("plan", "schedule and pre-registration of a study"), plan);
@@ -81,9 +77,9 @@ int main(int argc, char** argv) {
   declare_withdraw(line.verb("withdraw", "deletes a participant"), withdrawn);
   PowerFlags power;
   declare_power(line.verb("power", "how many participants a comparison needs"), power);
-  const std::string made_by = std::string{palp::site_program::version()} + ", commit " +
-                              std::string{palp::site_program::git_commit()};
-  return palp::config::run_program(line, argc, argv, [&]() -> palp::config::ExitStatus {
+  const std::string made_by =
+      std::string{site_program::version()} + ", commit " + std::string{site_program::git_commit()};
+  return config::run_program(line, argc, argv, [&]() -> config::ExitStatus {
     const std::string verb = line.chosen_verb();
     if (verb == "plan") return run_plan(plan, made_by);
     if (verb == "run") return run(run_flags);
@@ -98,3 +94,8 @@ int main(int argc, char** argv) {
     return run_simulate(simulate, for_each_index);
   });
 }
+
+}  // namespace
+}  // namespace palp::study
+
+int main(int argc, char** argv) { return palp::study::run_program(argc, argv); }

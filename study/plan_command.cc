@@ -62,7 +62,7 @@ std::string readme(const Study& study) {
   return "# " + study.name + "\n\n" + study.question +
          "\n\nMade and run by palp-study. Participants have numbers only; conditions have letters, "
          "whose key is\ncode/key.json. What was registered beforehand: "
-         "code/preregistration.md. A participant may stop\nat any time without a reason, and have "
+         "code/PREREGISTRATION.md. A participant may stop\nat any time without a reason, and have "
          "everything deleted: palp-study withdraw.\n";
 }
 
@@ -172,14 +172,14 @@ ExitStatus run_plan(const PlanFlags& flags, const std::string& made_by) {
        {"code/schedule.json", schedule},
        {"code/plan.json", plan.dump(2) + "\n"},
        {"code/key.json", key(*study)},
-       {"code/preregistration.md",
+       {"code/PREREGISTRATION.md",
         preregistration(*study, fingerprint(*text), fingerprint(schedule), made_by)}});
   if (!written) return {ExitCode::CannotOpen, "palp-study: " + written.error().text};
   return {ExitCode::Done,
           std::to_string(study->participants) + " participants, " +
               std::to_string(study->conditions.size()) + " conditions, " +
               std::to_string(study->trials) + " trials each; registered in " + flags.folder +
-              "/code/preregistration.md\n"};
+              "/code/PREREGISTRATION.md\n"};
 }
 
 }  // namespace palp::study

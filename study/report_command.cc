@@ -74,7 +74,7 @@ ExitStatus run_report(const StudyReportFlags& flags) {
   ReportParts parts{
       .standing = standing(*planned, fit),
       .preregistration =
-          read_whole_file(planned->data.code("preregistration.md")).value_or("missing"),
+          read_whole_file(planned->data.code("PREREGISTRATION.md")).value_or("missing"),
       .names = condition_codes(study),
       .kind = kind_of(*rows)};
   if (flags.unblind) {

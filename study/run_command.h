@@ -14,7 +14,7 @@ namespace palp::study {
 /// `palp-study run`, as given on the command line.
 struct RunFlags {
   std::string folder{};
-  std::optional<std::uint64_t> participant;  ///< from 1; nothing: all
+  std::optional<std::uint64_t> participant{};  ///< from 1; nothing: all
   std::string observer{"formula"};
   PeopleTraits people{};
   bool each{};

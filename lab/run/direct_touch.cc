@@ -44,7 +44,7 @@ OwnFinger own_finger(const Scenario& scenario) {
   review::PhaseFinder phases{scenario.script};
   for (const TouchTick& tick : direct_touch(scenario)) {
     finger.force = std::max(finger.force, tick.force);
-    if (phases.at(tick.at).kind == judge::PhaseKind::FreeAir) swing.restart();
+    if (phases.at(tick.at, tick.place).kind == judge::PhaseKind::FreeAir) swing.restart();
     swing.look(seconds(tick.at), tick.position);
   }
   finger.swing = swing.largest();

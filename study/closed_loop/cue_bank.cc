@@ -102,6 +102,7 @@ FeltLine line_of(const CueBank& bank) {
   double y = 0;
   double xx = 0;
   double xy = 0;
+  double yy = 0;
   for (std::size_t i = 0; i < bank.levels.size(); ++i) {
     const double level = bank.levels[i];
     if (std::abs(level) > kLineReach) continue;
@@ -112,12 +113,16 @@ FeltLine line_of(const CueBank& bank) {
       y += one;
       xx += level * level;
       xy += level * one;
+      yy += one * one;
     }
   }
   const double spread = count * xx - x * x;
   if (spread <= 1e-9 * count * count) return {};
   const double gain = (count * xy - x * y) / spread;
-  return {.gain = gain, .offset = (y - gain * x) / count};
+  const double left = (yy - y * y / count) - gain * (xy - x * y / count);
+  return {.gain = gain,
+          .offset = (y - gain * x) / count,
+          .scatter = std::sqrt(std::max(0.0, left) / std::max(1.0, count - 2))};
 }
 
 Foretold closed_form(const FeltLine& line, const Judgement& judgement, int taps) noexcept {
@@ -125,7 +130,7 @@ Foretold closed_form(const FeltLine& line, const Judgement& judgement, int taps)
     return {.jnd = std::numeric_limits<double>::infinity(),
             .pse = std::numeric_limits<double>::quiet_NaN()};
   }
-  return {.jnd = judgement.jnd(taps, line.gain), .pse = -line.offset / line.gain};
+  return {.jnd = judgement.jnd(taps, line.gain, line.scatter), .pse = -line.offset / line.gain};
 }
 
 CueBank resampled(const CueBank& bank, std::uint64_t seed, std::uint64_t stream) {

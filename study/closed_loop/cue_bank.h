@@ -43,11 +43,12 @@ struct Foretold {
 /// How what is felt follows what is there: felt difference = offset + gain * level, by least
 /// squares over levels up to 0.6. No difference was felt, or at one level only: 0.
 struct FeltLine {
-  double gain{};    ///< [-]; own finger: 1
-  double offset{};  ///< [-]
+  double gain{};     ///< [-]; own finger: 1
+  double offset{};   ///< [-]
+  double scatter{};  ///< [-], standard deviation about the line, from session to session
 };
 [[nodiscard]] FeltLine line_of(const CueBank& bank);
-/// JND_0 / gain and -offset / gain.
+/// JND of judgement and scatter together, over gain; -offset / gain.
 [[nodiscard]] Foretold closed_form(const FeltLine& line,
                                    const Judgement& judgement,
                                    int taps) noexcept;

@@ -33,8 +33,8 @@ double Judgement::difference_sd(int taps) const noexcept {
   return std::sqrt(2 * (tap_sd * tap_sd / taps + judgement_sd * judgement_sd));
 }
 
-double Judgement::jnd(int taps, double gain) const noexcept {
-  return kQuartile * difference_sd(taps) / gain;
+double Judgement::jnd(int taps, double gain, double scatter) const noexcept {
+  return kQuartile * std::hypot(difference_sd(taps), scatter) / gain;
 }
 
 Judgement judgement_of(double weber, double lapse, double own_gain) noexcept {

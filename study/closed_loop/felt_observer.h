@@ -28,7 +28,8 @@ struct Judgement {
   /// [-], of the difference of two intervals with so many taps each.
   [[nodiscard]] double difference_sd(int taps) const noexcept;
   /// [-], JND where what is felt shows `gain` > 0 of the difference there is; own finger: 1.
-  [[nodiscard]] double jnd(int taps, double gain) const noexcept;
+  /// `scatter` [-]: standard deviation of that from session to session.
+  [[nodiscard]] double jnd(int taps, double gain, double scatter = 0) const noexcept;
 };
 
 /// 0.05 <= weber.

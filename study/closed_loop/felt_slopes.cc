@@ -10,6 +10,7 @@ namespace palp::study {
 void FeltSlopes::turn() {
   LineFit line;
   double most = 0;
+  way_in_.resize(deepest_at_);  // what came after is the way out
   for (const Tick& tick : way_in_) {
     const double before = deepest_ - tick.position;
     most = std::max(most, tick.force);
@@ -28,7 +29,10 @@ void FeltSlopes::feel(double position, double force) {
   }
   if (going_in_) {
     way_in_.push_back({position, force});
-    deepest_ = std::max(deepest_, position);
+    if (position >= deepest_) {
+      deepest_ = position;
+      deepest_at_ = way_in_.size();
+    }
     if (position < deepest_ - kTurned) {
       turn();
       going_in_ = false;
@@ -41,6 +45,7 @@ void FeltSlopes::feel(double position, double force) {
     going_in_ = true;
     deepest_ = position;
     way_in_.assign(1, {position, force});
+    deepest_at_ = 1;
   }
 }
 

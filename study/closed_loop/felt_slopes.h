@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace palp::study {
@@ -29,8 +30,9 @@ class FeltSlopes {
   void turn();
 
   std::vector<Tick> way_in_;
-  double deepest_{};  ///< [m]
-  double highest_{};  ///< [m], since the last turn
+  std::size_t deepest_at_{};  ///< of them, one past the deepest
+  double deepest_{};          ///< [m]
+  double highest_{};          ///< [m], since the last turn
   bool going_in_{};
   bool begun_{};
   std::vector<double> ln_slopes_;  ///< [ln N/m]

@@ -183,6 +183,7 @@ Json row_json(const ForetoldRow& row, bool two_sided) {
   Json out{{"condition", row.condition},
            {"gain", row.line.gain},
            {"offset", row.line.offset},
+           {"scatter", row.line.scatter},
            {"closed_jnd_ln", estimate_json(row.closed_jnd)},
            {"banked_jnd_ln", estimate_json(row.banked_jnd)}};
   if (two_sided) {

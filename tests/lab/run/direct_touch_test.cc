@@ -18,11 +18,25 @@ double touched(const std::vector<std::string>& settings) {
   return own_finger(make_scenario("touch", document).value()).force;
 }
 
+constexpr Duration kMillisecond = std::chrono::milliseconds{1};
 const std::string kPlain = "patient.simulated_phantom.phantom=closed-form:100";
 
 TEST(DirectTouchTest, AHandReachesTheDepthItAimsAtInPlainTissue) {
   const double aimed = 0.480;  // [N], 1897 N/m^1.5, 4 mm deep
   EXPECT_NEAR(touched({kPlain}), aimed, 0.12 * aimed) << "deepest in a tap, with its momentum";
+}
+
+TEST(DirectTouchTest, EveryMillisecondOfTheScriptIsThere) {
+  const Scenario scenario = make_scenario("touch", load_scenario("standard").value()).value();
+  const std::vector<TouchTick> ticks = direct_touch(scenario);
+  ASSERT_EQ(ticks.size(), static_cast<std::size_t>(scenario.script.length() / kMillisecond));
+  for (const TouchTick& tick : ticks) {
+    if (tick.position < 0) {
+      EXPECT_EQ(tick.force, 0);
+    }
+  }
+  EXPECT_EQ(ticks.front().at, kMillisecond);
+  EXPECT_EQ(ticks.back().place, kSiteB);
 }
 
 TEST(DirectTouchTest, AStifferGripPressesStifferTissueHarder) {

@@ -1,0 +1,42 @@
+#include "study/compare_command.h"
+
+#include <gtest/gtest.h>
+
+#include "common/config/json.h"
+#include "tests/study/study_fixture.h"
+
+namespace palp::study {
+namespace {
+
+using config::Json;
+
+TEST(CompareCommandTest, WritesWhatFitAndCompareSay) {
+  const test::PlannedFolder folder;
+  EXPECT_EQ(run_compare(folder.folder()).code, config::ExitCode::BadInput);  // nobody answered
+  (void)folder.run();
+  const std::string report = folder.beside("fit.json");
+  EXPECT_EQ(run_fit_study(folder.folder(), report).code, config::ExitCode::Done);
+  const Json fit = Json::parse(test::content_of(report));
+  EXPECT_EQ(fit["conditions"].parts().size(), 3U);
+  EXPECT_NE(test::content_of(folder.folder() + "/derivatives/palp-study/fit.tsv").find("sub-03"),
+            std::string::npos);
+  const auto compared = run_compare(folder.folder());
+  EXPECT_EQ(compared.code, config::ExitCode::Done) << compared.text;
+  const Json json =
+      Json::parse(test::content_of(folder.folder() + "/derivatives/palp-study/compare.json"));
+  EXPECT_EQ(json["jnd"].parts().size(), 3U);  // pairs of three
+  EXPECT_FALSE(json.contains("pse"));
+}
+
+TEST(CompareCommandTest, ConfirmatoryOnlyAsRegisteredAndWithEverybody) {
+  const test::PlannedFolder folder;
+  (void)folder.run(test::PlannedFolder::formula(), 1);
+  EXPECT_EQ(run_compare(folder.folder()).text.find("exploratory: 1 of 3"), 0U);
+  (void)folder.run();
+  EXPECT_EQ(run_compare(folder.folder()).text.find("confirmatory"), 0U);
+  std::ofstream{folder.folder() + "/code/study.textproto", std::ios::app} << "\n";
+  EXPECT_EQ(run_compare(folder.folder()).text.find("exploratory"), 0U);
+}
+
+}  // namespace
+}  // namespace palp::study

@@ -1,0 +1,118 @@
+#include "study/data_fit.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "common/core/random.h"
+#include "study/block.h"
+#include "tests/study/study_fixture.h"
+
+namespace palp::study {
+namespace {
+
+/// Rows of a study whose participants have a JND of their own in each condition.
+std::vector<ParticipantRows> answered(const Study& study,
+                                      const std::vector<double>& jnd,
+                                      double lapse = 0) {
+  const AnswerTable table = table_of(study);
+  std::vector<ParticipantRows> out;
+  for (std::size_t p = 0; p < study.participants; ++p) {
+    ParticipantRows of{participant_id(p), {}};
+    std::size_t number = 0;
+    for (const BlockPlan& plan : participant_plan(study, p)) {
+      ++number;
+      Block block{study, table, plan};
+      while (!block.done()) {
+        const TrialAsk ask = block.next();
+        const ObserverTraits traits{.jnd = jnd[plan.condition], .pse = 0, .lapse = lapse};
+        const bool yes = random_uniform(9, plan.stream, ask.number) <
+                         answer_share(study.task, traits, ask.level);
+        TrialRow row{.ask = ask,
+                     .condition = condition_code(study, plan.condition),
+                     .block = number,
+                     .two_sided = study.task.two_sided};
+        row.outcome.second = study.task.two_sided ? yes : yes == ask.second;
+        block.told(row.yes());
+        of.rows.push_back(row);
+      }
+    }
+    out.push_back(of);
+  }
+  return out;
+}
+
+Study two_conditions() {
+  return *parse_study("participants: 16 condition { name: \"near\" } condition { name: \"far\" }",
+                      "study");
+}
+
+TEST(DataFitTest, FindsWhatTheConditionsDiffer) {
+  const Study study = two_conditions();
+  const StudyFit fit = fit_study(study, answered(study, {0.10, 0.20}));
+  EXPECT_TRUE(fit.excluded.empty());
+  const auto pairs = compare_study(study, fit, false);
+  ASSERT_EQ(pairs.size(), 1U);
+  EXPECT_EQ(pairs[0].participants, 16U);
+  EXPECT_LT(pairs[0].test.low, std::log(2.0));
+  EXPECT_GT(pairs[0].test.high, std::log(2.0));
+  EXPECT_LT(pairs[0].p_holm, 1e-3);
+  EXPECT_GT(pairs[0].test.equivalent, 0.5);
+}
+
+TEST(DataFitTest, EqualConditionsAreNotTold) {
+  const Study study = two_conditions();
+  const auto pairs = compare_study(study, fit_study(study, answered(study, {0.15, 0.15})), false);
+  EXPECT_GT(pairs.at(0).test.p, 0.05);
+}
+
+TEST(DataFitTest, WhoDoesNotAttendIsLeftOut) {
+  Study study = two_conditions();
+  study.participants = 4;
+  study.practice.right = 0;
+  auto rows = answered(study, {0.15, 0.15});
+  for (TrialRow& row : rows[2].rows) {
+    if (row.ask.kind == TrialKind::Catch) row.outcome.second = !row.ask.second;
+  }
+  const StudyFit fit = fit_study(study, rows);
+  ASSERT_EQ(fit.excluded.size(), 1U);
+  EXPECT_EQ(fit.excluded[0].id, "sub-03");
+  EXPECT_EQ(counted(fit, 0).size(), 3U);
+  EXPECT_EQ(compare_study(study, fit, false).at(0).participants, 3U);
+}
+
+TEST(DataFitTest, WhoCannotPractiseIsLeftOutAndAnUnfinishedBlockDoesNotCount) {
+  Study study = two_conditions();
+  study.participants = 3;
+  auto rows = answered(study, {0.15, 0.15});
+  rows[1].rows.resize(rows[1].rows.size() - 1);
+  const AnswerTable table = table_of(study);
+  const auto plans = participant_plan(study, 2);
+  rows[2].rows.clear();
+  for (Block block{study, table, plans[0]}; !block.done();) {
+    TrialRow row{.ask = block.next(), .condition = condition_code(study, plans[0].condition)};
+    row.block = 1;
+    row.outcome.second = !row.ask.second;
+    block.told(row.yes());
+    rows[2].rows.push_back(row);
+  }
+  const StudyFit fit = fit_study(study, rows);
+  ASSERT_EQ(fit.excluded.size(), 1U);
+  EXPECT_EQ(fit.excluded[0].id, "sub-03");
+  EXPECT_EQ(counted(fit, 0).size() + counted(fit, 1).size(), 3U);
+  EXPECT_TRUE(compare_study(study, fit, false).empty());  // one is no group
+}
+
+TEST(DataFitTest, TheTableHasALineForEachParticipantAndCondition) {
+  Study study = two_conditions();
+  study.participants = 2;
+  study.trials = 4;
+  const StudyFit fit = fit_study(study, answered(study, {0.1, 0.1}));
+  const std::string text = fit_table(study, fit, condition_codes(study));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5);
+  EXPECT_EQ(text.find("near"), std::string::npos);
+  EXPECT_NE(text.find("sub-02\tA\t"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace palp::study

@@ -1,0 +1,58 @@
+#include "study/data_set.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/study/study_fixture.h"
+
+namespace palp::study {
+namespace {
+
+TEST(DataSetTest, NamesAreThoseOfBids) {
+  EXPECT_EQ(participant_id(0), "sub-01");
+  EXPECT_EQ(participant_id(98), "sub-99");
+  EXPECT_EQ(participant_id(99), "sub-100");
+  EXPECT_EQ(DataSet{"d"}.trials("sub-01", "bias", 2),
+            "d/sub-01/ses-01/beh/sub-01_ses-01_task-bias_run-02_beh.tsv");
+}
+
+// FIPS 180-4, example "abc".
+TEST(FingerprintTest, IsSha256) {
+  EXPECT_EQ(fingerprint("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(DataSetTest, AStudyIsRegisteredUntilSomethingIsChanged) {
+  const test::PlannedFolder folder;
+  EXPECT_TRUE(open_study(folder.folder())->registered);
+  const std::string study = folder.folder() + "/code/study.textproto";
+  const std::string schedule = folder.folder() + "/code/schedule.json";
+  const std::string text = test::content_of(study);
+  std::ofstream{study} << text << "# later\n";
+  EXPECT_FALSE(open_study(folder.folder())->registered);
+  std::ofstream{study} << text;
+  EXPECT_TRUE(open_study(folder.folder())->registered);
+  std::ofstream{schedule, std::ios::app} << " ";
+  const auto changed = open_study(folder.folder());
+  EXPECT_FALSE(changed->registered);
+  EXPECT_NE(changed->why_not.find("schedule"), std::string::npos);
+}
+
+TEST(DataSetTest, ListsWhoIsThere) {
+  const test::PlannedFolder folder;
+  (void)folder.run(test::PlannedFolder::formula(), 2);
+  EXPECT_EQ(test::content_of(folder.folder() + "/participants.tsv"),
+            "participant_id\tkind\nsub-02\tsimulated\n");
+  const auto rows = read_rows(*open_study(folder.folder()));
+  ASSERT_TRUE(rows);
+  ASSERT_EQ(rows->size(), 1U);
+  EXPECT_EQ((*rows)[0].id, "sub-02");
+  EXPECT_GE((*rows)[0].rows.size(), 24U);
+}
+
+TEST(DataSetTest, AFolderWithoutAStudyIsNone) {
+  const auto planned = open_study("/nowhere");
+  ASSERT_FALSE(planned);
+  EXPECT_NE(planned.error().text.find("palp-study plan"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace palp::study

@@ -1,0 +1,47 @@
+#include "study/formula_participant.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/study/study_fixture.h"
+
+namespace palp::study {
+namespace {
+
+TEST(FormulaParticipantTest, AnswersByTheFunctionOnBothSidesAlike) {
+  const Study study = test::small_study();
+  const PeopleTraits people{.weber = 0.15, .spread = 0, .lapse = 0};
+  const Observer observer = formula_participants(study, people);
+  std::array<int, 2> right{};
+  constexpr std::size_t kTrials = 1000;
+  for (std::size_t i = 0; i < 2 * kTrials; ++i) {
+    const TrialAsk ask{.number = i, .level = std::log1p(0.15), .second = i % 2 == 1};
+    right[i % 2] += observer({0, 0}, ask).second == ask.second ? 1 : 0;
+  }
+  for (const int count : right) EXPECT_NEAR(count / double{kTrials}, 0.75, 0.055);
+}
+
+TEST(FormulaParticipantTest, DoesAllTapsOfItsConditionAndPractisesWithTheAnswerTold) {
+  const Study study = test::small_study();
+  const Observer observer = formula_participants(study, PeopleTraits{});
+  const TrialOutcome three = observer({0, 0}, {.level = 0.2});
+  EXPECT_EQ(three.taps, 6);
+  EXPECT_EQ(observer({0, 1}, {.level = 0.2}).taps, 2);
+  const TrialOutcome told = observer({0, 0}, {.kind = TrialKind::Practice, .level = 0.2});
+  EXPECT_NEAR(told.duration - three.duration, 1, 0.01);
+  EXPECT_GT(three.response_time, 0.1);
+}
+
+TEST(FormulaParticipantTest, PeopleDiffer) {
+  const PeopleTraits people;
+  double squares = 0;
+  for (std::size_t i = 0; i < 400; ++i) {
+    const double ln = drawn_ln_jnd(people, 1, i) - std::log(std::log1p(people.weber));
+    squares += ln * ln / 400;
+  }
+  EXPECT_NEAR(std::sqrt(squares), people.spread, 0.04);
+}
+
+}  // namespace
+}  // namespace palp::study

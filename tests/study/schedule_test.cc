@@ -1,0 +1,93 @@
+#include "study/schedule.h"
+
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "tests/study/study_fixture.h"
+
+namespace palp::study {
+namespace {
+
+RC_GTEST_PROP(BalancedDrawTest, IsEvenAndNeverFiveOnEnd, ()) {
+  const auto count = *rc::gen::inRange<std::size_t>(0, 200);
+  const auto sides = balanced_draw(count, *rc::gen::arbitrary<std::uint64_t>(), 3);
+  RC_ASSERT(sides.size() == count);
+  const auto seconds = static_cast<std::size_t>(std::ranges::count(sides, true));
+  RC_ASSERT(seconds == count / 2 || seconds == (count + 1) / 2);
+  std::size_t run = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    run = i > 0 && sides[i] == sides[i - 1] ? run + 1 : 1;
+    RC_ASSERT(run <= 4U);
+  }
+}
+
+TEST(ScheduleTest, EachConditionFollowsEachOtherEquallyOften) {
+  const Study study = test::small_study();  // three conditions: six rows
+  std::array<std::array<int, 3>, 3> follows{};
+  for (std::size_t participant = 0; participant < 6; ++participant) {
+    const auto blocks = participant_plan(study, participant);
+    ASSERT_EQ(blocks.size(), 3U);
+    for (std::size_t i = 1; i < 3; ++i) ++follows[blocks[i - 1].condition][blocks[i].condition];
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b < 3; ++b) EXPECT_EQ(follows[a][b], a == b ? 0 : 2);
+  }
+}
+
+TEST(ScheduleTest, CatchTrialsAreSpreadAndTracksTakeTurns) {
+  Study study = test::small_study();
+  study.trials = 60;
+  study.catch_share = 1.0 / 15;
+  const BlockPlan block = participant_plan(study, 0).front();
+  ASSERT_EQ(block.trials.size(), 64U);
+  std::array<int, 2> tracks{};
+  for (std::size_t quarter = 0; quarter < 4; ++quarter) {
+    const auto from = block.trials.begin() + static_cast<std::ptrdiff_t>(16 * quarter);
+    EXPECT_EQ(std::count_if(
+                  from, from + 16, [](const Slot& slot) { return slot.kind == TrialKind::Catch; }),
+              1);
+  }
+  for (const Slot& slot : block.trials) {
+    if (slot.kind == TrialKind::Trial) ++tracks[slot.track];
+  }
+  EXPECT_EQ(tracks[0], 30);
+  EXPECT_EQ(tracks[1], 30);
+  EXPECT_EQ(block.practice.size(), study.practice.trials_max);
+}
+
+TEST(ScheduleTest, BlocksHaveRandomNumbersOfTheirOwn) {
+  const Study study = test::small_study();
+  std::set<std::uint64_t> streams;
+  for (std::size_t participant = 0; participant < 3; ++participant) {
+    for (const BlockPlan& block : participant_plan(study, participant)) {
+      EXPECT_TRUE(streams.insert(block.stream).second);
+    }
+  }
+}
+
+// Blind: the schedule tells no condition's name, and letters are dealt out by the seed.
+TEST(ScheduleTest, TellsLettersOnly) {
+  Study study = test::small_study();
+  const std::string text = schedule_text(study);
+  for (const Condition& one : study.conditions) EXPECT_EQ(text.find(one.name), std::string::npos);
+  std::set<std::string> codes;
+  std::set<std::string> of_the_first;
+  for (std::size_t i = 0; i < 3; ++i) codes.insert(condition_code(study, i));
+  EXPECT_EQ(codes, (std::set<std::string>{"A", "B", "C"}));
+  for (study.seed = 1; study.seed < 30; ++study.seed) of_the_first.insert(condition_code(study, 0));
+  EXPECT_EQ(of_the_first, codes);
+}
+
+TEST(ScheduleTest, SameSeedSameSchedule) {
+  Study study = test::small_study();
+  const std::string text = schedule_text(study);
+  EXPECT_EQ(schedule_text(study), text);
+  ++study.seed;
+  EXPECT_NE(schedule_text(study), text);
+}
+
+}  // namespace
+}  // namespace palp::study
