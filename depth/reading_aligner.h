@@ -14,7 +14,7 @@ struct ReadingAlignerConfig {
   double stage_rate{1000};     ///< [Hz], of the tip's readings
   double sensor_rate{1000};    ///< [Hz], of the force's
   double gap_max{20e-3};       ///< [s], between two readings, or ...
-  double readings_missing{3};  ///< ... so many of their periods; what lies in between is not known
+  double readings_missing{3};  ///< [-], ... so many of their periods: in between nothing is known
 };
 
 /// A sample whose tip and force are of one instant.

@@ -194,9 +194,11 @@ class LoggedJudge {
   judge::RunJudge judge_{judge::MetricsConfig{}};
 };
 
-/// Of a session of the lab.
 judge::MetricsConfig config_of(const SiteData& surgeon) {
   judge::MetricsConfig config;
+  // That of the lab's path is known; that of a network is measured.
+  const double measured = surgeon.last_link ? seconds(surgeon.last_link->health.round_trip) : 0;
+  config.round_trip = surgeon.number("script_round_trip_s").value_or(measured);
   if (const auto settings = settings_of(surgeon)) {
     config.force_cap = settings->hand.force_max;
     config.period = seconds(settings->link.period);

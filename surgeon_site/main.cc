@@ -66,21 +66,19 @@ void declare_flags(config::CommandLine& line, config::Document& document, std::s
 std::optional<ExitStatus> end_of_script(const SurgeonStatus& status) {
   if (!status.script.finished) return std::nullopt;
   const std::string outcome{to_string(status.script.outcome)};
+  const auto cut_short = [&](const std::string& why, record::NoteCode code) {
+    return ExitStatus{ExitCode::CutShort, outcome, why + std::string{record::to_string(code)}};
+  };
   switch (status.script.outcome) {
     case ScriptOutcome::None:
     case ScriptOutcome::Completed:
       return ExitStatus{ExitCode::Done, outcome, ""};
     case ScriptOutcome::Interrupted:
-      return ExitStatus{ExitCode::CutShort, outcome, "the link was lost and the script ends there"};
+      return cut_short("the link was lost and the script ends there", record::NoteCode::None);
     case ScriptOutcome::Refused:
-      return ExitStatus{
-          ExitCode::CutShort,
-          outcome,
-          "the site would not engage: " + std::string{record::to_string(status.refused)}};
+      return cut_short("the site would not engage: ", status.refused);
     case ScriptOutcome::Stopped:
-      return ExitStatus{ExitCode::CutShort,
-                        outcome,
-                        "the site was stopped: " + std::string{record::to_string(status.reason)}};
+      return cut_short("the site was stopped: ", status.reason);
   }
   return std::nullopt;
 }

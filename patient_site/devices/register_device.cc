@@ -34,8 +34,8 @@ RegisterDevice::RegisterDevice(DeviceProfile profile,
       words_{profile_.read_address, profile_.read_count},
       state_{profile_.state_address, profile_.state_count},
       load_{installation},
-      seen_{.jumps = JumpAllowance{kJumpSpeed * installation.speed_max}},
-      servo_{installation.servo} {
+      seen_{.jumps = JumpAllowance{kJumpSpeed * installation.speed_max},
+            .servo = ServoWatch{installation.servo}} {
   if (profile_.position && installation_.position_unit > 0) {
     profile_.position->unit = installation_.position_unit;
   }
@@ -235,7 +235,7 @@ void RegisterDevice::judge(TimePoint now) {
 /// Whatever state the site is in: also while it holds, or has stopped, and the axis does not.
 void RegisterDevice::watch_motion() noexcept {
   if (now_.state != DeviceState::Ready || !profile_.position || profile_.move.empty()) return;
-  if (servo_.judge(now_.position, delivered_.command, profile_.period)) {
+  if (seen_.servo.judge(now_.position, delivered_.command, profile_.period)) {
     fail(DeviceReason::NotWhereSent, 0);
   }
 }
@@ -288,7 +288,7 @@ void RegisterDevice::proceed(TimePoint now) {
 
 void RegisterDevice::begin_motion(TimePoint now) noexcept {
   motion_ = delivered_ = {.command = now_.position, .velocity = 0};
-  servo_.reset();
+  seen_.servo.reset();
   steered_at_ = now;
 }
 

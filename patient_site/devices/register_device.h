@@ -48,7 +48,8 @@ class RegisterDevice {
   /// Of its place.
   struct Seen {
     JumpAllowance jumps;
-    bool known{};  ///< since the start
+    ServoWatch servo;  ///< to what was delivered
+    bool known{};      ///< since the start
   };
   void reach(TimePoint now);
   void enter_start(TimePoint now) noexcept;
@@ -93,7 +94,6 @@ class RegisterDevice {
   Seen seen_;
   AxisMotion motion_;     ///< commanded
   AxisMotion delivered_;  ///< the last of them that arrived
-  ServoWatch servo_;      ///< of the axis, to what was delivered
   TimePoint steered_at_{};
   std::array<std::uint16_t, 2> sent_{};  ///< last target, in words
   bool anything_sent_{};

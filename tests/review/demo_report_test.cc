@@ -112,7 +112,8 @@ TEST(DemoReportTest, TakesWhatTheProgramsDidNotSayFromTheSessionFiles) {
 
 TEST(DemoReportTest, AReportOfAnotherSessionIsRefused) {
   SessionPair session = sample_pair();
-  session.surgeon.texts.program_report = R"({"site":"surgeon","ticks":6000,"lateness_max_us":8477.513})";
+  session.surgeon.texts.program_report =
+      R"({"site":"surgeon","ticks":6000,"lateness_max_us":8477.513})";
   const auto refused = [&](const ProgramReports& reports) {
     const auto checked = check_reports(session, reports);
     return checked ? std::string{} : checked.error().text;

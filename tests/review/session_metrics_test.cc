@@ -54,22 +54,20 @@ TEST(SessionMetricsTest, AScriptOfAFileIsTheOneThatWasPlayed) {
   const std::filesystem::path file = std::filesystem::path{testing::TempDir()} / "played.txt";
   const auto write = [&](const char* text) { std::ofstream{file} << text; };
   write("move -2 0.5\ntaps 3 4 1 0.5\nlift 1 0.5\n");
-  lab::Scenario scenario =
-      test::lab_scenario(12s, {"surgeon.hand.master=script:" + file.string()});
+  lab::Scenario scenario = test::lab_scenario(12s, {"surgeon.hand.master=script:" + file.string()});
   const test::LabFiles files = test::lab_files(scenario);
   const auto looked = [&] {
     auto surgeon = load_site(files.surgeon.bytes(), "s", link::Role::Surgeon).value();
     auto patient = load_site(files.patient.bytes(), "p", link::Role::Patient).value();
-    return metrics_json(judge_session(pair_of(std::move(surgeon), std::move(patient)).value(),
-                                      nullptr));
+    const SessionPair pair = pair_of(std::move(surgeon), std::move(patient)).value();
+    return metrics_json(judge_session(pair, nullptr));
   };
   const auto before = looked();
-  EXPECT_TRUE(before["tap2_a_error"].is_null()) << "no tissue to compare with";
-  EXPECT_FALSE(before["drag_rms_n"].is_null()) << "but phases";
+  EXPECT_FALSE(before["tap2_a_error"].is_null()) << "the script's phases are known";
   write("move -2 0.5\ntaps 6 4 0.7 0.4\nlift 1 0.5\n");
-  EXPECT_EQ(looked(), before);
+  EXPECT_EQ(looked().dump(), before.dump());
   std::filesystem::remove(file);
-  EXPECT_EQ(looked(), before);
+  EXPECT_EQ(looked().dump(), before.dump());
 }
 
 TEST(SessionMetricsTest, WithoutSettingsThereAreNoPhases) {

@@ -47,8 +47,7 @@ Endpoint found(const HostAndPort& place) {
 
 }  // namespace
 
-/// All that the io thread owns. start(), close(), abandon(), local(), news(), noise() and counts()
-/// are the maker's; the rest is the thread's.
+/// All that the io thread owns. What is public is for the maker, the rest for the thread alone.
 class SessionServer::Io {
  public:
   Io(const SessionServerConfig& config, LinkUpdateDesk& desk);
