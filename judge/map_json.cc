@@ -38,8 +38,8 @@ Json map_json(const MapReport& map, const std::vector<MapCell>& cells) {
                                   std::pair{"y", &map.y},
                                   std::pair{"depth", &map.depth},
                                   std::pair{"radius", &map.radius}}) {
-    const auto put = [&](const char* what, double metres) {
-      json[std::string{name} + what] = found ? Json(metres / kMillimetre) : Json(nullptr);
+    const auto put = [&, part = std::string{name}](const char* what, double metres) {
+      json[part + what] = found ? Json(metres / kMillimetre) : Json(nullptr);
     };
     put("_mm", one->median);
     put("_low_mm", one->low);

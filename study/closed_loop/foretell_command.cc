@@ -19,7 +19,7 @@ using config::ExitStatus;
 using config::Json;
 
 constexpr std::size_t kResamples = 200;
-constexpr double kLapse = 0.02;  // [-]
+constexpr double kLapseRate = 0.02;  // [-]
 constexpr std::uint64_t kBankStream = 0x62616e6b;
 constexpr double kStandard = 1.96;  // [-], standard deviations of a 95 % interval
 constexpr double kAllowed = 2.58;   // [-], likewise of 99 %
@@ -113,7 +113,8 @@ void show_whole(const Study& study,
     for (const Answers& one : of) {
       posterior.told(table.nearest(one.level), one.yes > 0);
       const double share =
-          kLapse / 2 + (1 - kLapse) * banked_share(bank, judgement, session.taps(), one.level);
+          kLapseRate / 2 +
+          (1 - kLapseRate) * banked_share(bank, judgement, session.taps(), one.level);
       expected += share;
       variance += share * (1 - share);
       yes += static_cast<double>(one.yes);
@@ -220,7 +221,7 @@ Result<ForetoldRow> foretell(const Study& study,
                              const ForEachIndex& for_each_index) {
   auto session = FeltSession::make(study.conditions[condition]);
   if (!session) return tl::unexpected(session.error());
-  const Judgement judgement = judgement_of(flags.weber, kLapse, own_gain(*session));
+  const Judgement judgement = judgement_of(flags.weber, kLapseRate, own_gain(*session));
   ForetoldRow row{.condition = study.conditions[condition].name};
   const CueBank bank = bank_of(*session,
                                judgement,
