@@ -9,14 +9,14 @@
 namespace palp::coupling {
 
 struct ToldForceConfig {
-  double slew{25};          ///< [N/s], while the hand stands still
+  double slew{22};          ///< [N/s], while the hand stands still
   double stiffness{370};    ///< [N/m], of the stiffest tissue: along the hand's way
   double repay_time{0.05};  ///< [s], in which what was held back is given after all
   double owed_max{0.005};   ///< [N s], of it; more is forgotten
 };
 
 /// The part of the hand's force that the other end has a say in. It follows what that end says no
-/// faster than the stiffest tissue along the hand's way explains, and 25 N/s beside: no news, no
+/// faster than the stiffest tissue along the hand's way explains, and 22 N/s beside: no news, no
 /// lie and no pause is a kick. What was held back comes later, because the sum over time of a
 /// wave's force is a way: without it hand and tip would drift apart. Thread: rt. A value.
 class ToldForce {
