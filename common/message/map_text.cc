@@ -1,24 +1,12 @@
 #include "common/message/map_text.h"
 
-#include <array>
-#include <cstdarg>
-#include <cstdio>
-
 #include "common/core/conventions.h"
+#include "common/core/formatted.h"
 
 namespace palp {
 namespace {
 
 double mm(double metres) noexcept { return metres / kMillimetre; }
-
-[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...) {
-  std::array<char, 320> text{};
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text.data(), text.size(), format, arguments);
-  va_end(arguments);
-  return text.data();
-}
 
 std::string assumption(const MapReport& report) {
   return formatted("if the tissue's stiffness varies by %.3g %% from place to place at most",

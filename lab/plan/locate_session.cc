@@ -1,27 +1,16 @@
 #include "lab/plan/locate_session.h"
 
-#include <array>
-#include <cstdarg>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
 #include "common/core/conventions.h"
+#include "common/core/formatted.h"
 #include "lab/plan/scenario_file.h"
 
 namespace palp::lab {
 namespace {
 
 constexpr double kTissueKpa = 15.3;  // of the database
-
-[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...) {
-  std::array<char, 200> text{};
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text.data(), text.size(), format, arguments);
-  va_end(arguments);
-  return text.data();
-}
 
 std::string words_of(const LocateSession& session,
                      const depth::DepthDatabase::Query* ball,

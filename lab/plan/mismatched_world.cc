@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <numbers>
 
+#include "common/core/formatted.h"
 #include "common/core/random.h"
 
 namespace palp::lab {
@@ -28,15 +27,6 @@ class WorldDraws {
   RandomStream stream_;
   std::uint64_t next_{};
 };
-
-[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...) {
-  std::array<char, 200> text{};
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text.data(), text.size(), format, arguments);
-  va_end(arguments);
-  return text.data();
-}
 
 std::string ball_words(const MismatchedWorld& world, const Place& axis) {
   return formatted("; ball depth=%.9g radius=%.9g ratio=%.9g at=%.9g,%.9g",

@@ -1,19 +1,9 @@
 #include "lab/plan/set_case.h"
 
-#include <cstdarg>
-#include <cstdio>
+#include "common/core/formatted.h"
 
 namespace palp::lab {
 namespace {
-
-[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...) {
-  std::array<char, 240> line{};
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line.data(), line.size(), format, arguments);
-  va_end(arguments);
-  return line.data();
-}
 
 /// In the words of the emulator.
 std::string path_words(const SetDraw& draw) {
