@@ -7,19 +7,10 @@
 #include "common/config/number.h"
 #include "common/core/byte_order_mark.h"
 #include "common/core/printable.h"
+#include "study/tab_cells.h"
 
 namespace palp::study {
 namespace {
-
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> out;
-  for (std::size_t begin = 0;;) {
-    const std::size_t end = line.find('\t', begin);
-    out.push_back(line.substr(begin, end - begin));
-    if (end == std::string_view::npos) return out;
-    begin = end + 1;
-  }
-}
 
 /// Takes the first line off, without its end.
 std::string_view take_line(std::string_view& text) {
@@ -39,7 +30,7 @@ struct Columns {
 };
 
 Result<Columns> columns_of(std::string_view header, const std::string& name) {
-  const auto names = split(header);
+  const auto names = tab_cells(header);
   const auto find = [&](std::string_view wanted) -> std::optional<std::size_t> {
     const auto at = std::ranges::find(names, wanted);
     if (at == names.end()) return std::nullopt;
@@ -71,7 +62,7 @@ Result<std::vector<ConditionAnswers>> parse_answers(std::string_view text,
     const std::string_view line = take_line(text);
     if (line.empty()) continue;
     const std::string where = name + ", line " + std::to_string(number);
-    const auto cells = split(line);
+    const auto cells = tab_cells(line);
     if (cells.size() != columns->count) {
       return fail(where + " has " + std::to_string(cells.size()) + " cells, expected " +
                   std::to_string(columns->count));

@@ -7,6 +7,7 @@
 
 #include "common/config/number.h"
 #include "common/core/printable.h"
+#include "study/tab_cells.h"
 
 namespace palp::study {
 namespace {
@@ -17,16 +18,6 @@ std::string digits(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.9g", value);
   return text.data();
-}
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> out;
-  for (std::size_t begin = 0;;) {
-    const std::size_t end = line.find('\t', begin);
-    out.push_back(line.substr(begin, end - begin));
-    if (end == std::string_view::npos) return out;
-    begin = end + 1;
-  }
 }
 
 std::optional<TrialKind> kind_of(std::string_view text) {
@@ -188,7 +179,7 @@ Result<RowsFile> parse_rows(std::string_view text, const std::string& name, bool
       }
     } else {
       const std::string where = name + ", line " + std::to_string(number);
-      const auto cells = cells_of(line);
+      const auto cells = tab_cells(line);
       if (cells.size() != kCount) return fail(where + " has another number of cells");
       auto row = row_of(cells, two_sided);
       if (!row) return fail(where, row.error());
