@@ -14,7 +14,6 @@ namespace {
 
 using record::NoteCode;
 using std::chrono::milliseconds;
-using test::ListRecorder;
 using test::World;
 
 TEST(PatientNodeTest, FollowsTheHandWhenEngagedAndSaysWhatItFeels) {
@@ -218,7 +217,7 @@ TEST(PatientNodeTest, RecordsEachTickEachArrivalAndTheLinkTenTimesASecond) {
   world.run(std::chrono::seconds{1});
   const PatientStatus status = world.status();
   EXPECT_EQ(world.recorder.all<SiteTick>().size(), status.ticks);
-  EXPECT_EQ(world.recorder.records.size(), status.records);
+  EXPECT_EQ(world.recorder.records().size(), status.records);
   EXPECT_NEAR(static_cast<double>(world.recorder.all<Arrived>().size()),
               static_cast<double>(status.ticks),
               110);
@@ -241,7 +240,7 @@ TEST(PatientNodeTest, CountsThePeriodsItMissed) {
 // link, the estimator is drained as the lab does.
 TEST(PatientNodeTest, ATapGivesADepthAtTheSurgeons) {
   World world;
-  ListRecorder stroke_recorder;
+  palp::test::KeepingRecorder stroke_recorder;
   EstimatorWorker worker{{}, {world.contact, world.found, stroke_recorder}};
   world.engage();
   world.say.site.place = kSiteB;

@@ -2,14 +2,13 @@
 
 #include <cmath>
 #include <optional>
-#include <variant>
-#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "patient_site/patient_node.h"
 #include "patient_site/simulated_phantom.h"
 #include "tests/common/link/link_couple.h"
+#include "tests/support/fake_recorder.h"
 
 /// A patient site on a simulated phantom, with the surgeon's end of its link in a test's hands.
 namespace palp::patient::test {
@@ -68,23 +67,6 @@ class FaultySite final : public Stage, public ForceSensor {
   double crept_{};  ///< [m]
 };
 
-class ListRecorder final : public record::Recorder {
- public:
-  bool record(const Record& record) noexcept override {
-    records.push_back(record);
-    return true;
-  }
-  template <class T>
-  [[nodiscard]] std::vector<T> all() const {
-    std::vector<T> found;
-    for (const Record& record : records) {
-      if (const T* one = std::get_if<T>(&record)) found.push_back(*one);
-    }
-    return found;
-  }
-  std::vector<Record> records;
-};
-
 /// A patient site with everything, and the surgeon's end of the link in the hands of the test.
 struct World {
   link::TestPipe pipe;
@@ -94,7 +76,7 @@ struct World {
   coupling::PatientCoupling law{*coupling::make_patient_coupling({})};
   link::Link patient_link{{}, link::Couple::make_codec(false)};
   link::Link surgeon_link{{}, link::Couple::make_codec(false)};
-  ListRecorder recorder;
+  palp::test::KeepingRecorder recorder;
   SpscQueue<ContactSample> contact{1 << 15};
   Mailbox<Findings> found;
   PatientNode node{{}, {site, site, law, patient_link, recorder, contact, found}};
