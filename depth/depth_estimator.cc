@@ -1,18 +1,18 @@
 #include "depth/depth_estimator.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "common/core/check.h"
 
 namespace palp::depth {
 namespace {
 
-DepthDatabase database_of(const DepthEstimatorConfig& config) {
+/// The one in the program is read once.
+const DepthDatabase& database_of(const DepthEstimatorConfig& config) {
   if (config.database) return *config.database;
-  auto database = default_database();
-  PALP_CHECK(database.has_value(), "the database in the program is sound");
-  return std::move(*database);
+  static const Result<DepthDatabase> built_in = default_database();
+  PALP_CHECK(built_in.has_value(), "the database in the program is sound");
+  return *built_in;
 }
 
 std::variant<BayesEstimator, PaperEstimator> make(const DepthEstimatorConfig& config) {
