@@ -41,20 +41,17 @@ void ReadingAligner::add(const ContactSample& sample) {
   }
 }
 
-/// Nothing until the readings around it are known, or where there are none around it.
-std::optional<double> ReadingAligner::tip_at(TimePoint at) {
-  broken_ = tips_.front().at > at;
+ReadingAligner::Seen ReadingAligner::tip_at(TimePoint at) {
+  constexpr Seen kNotYet{.tip = {}, .ever = true};
+  constexpr Seen kNever{.tip = {}, .ever = false};
   while (tips_.size() > 2 && tips_[2].at <= at) tips_.pop_front();
+  if (tips_.front().at > at) return kNever;
   const auto after = std::ranges::find_if(tips_, [&](const Reading& one) { return one.at >= at; });
-  if (after == tips_.end()) return std::nullopt;
-  if (after->at == at) return after->value;
-  if (broken_) return std::nullopt;
+  if (after == tips_.end()) return kNotYet;
+  if (after->at == at) return {.tip = after->value};
   const auto index = static_cast<std::size_t>(after - tips_.begin());
-  if (seconds(tips_[index].at - tips_[index - 1].at) > gap_of(config_.stage_rate)) {
-    broken_ = true;
-    return std::nullopt;
-  }
-  if (index + 1 == tips_.size()) return std::nullopt;
+  if (seconds(tips_[index].at - tips_[index - 1].at) > gap_of(config_.stage_rate)) return kNever;
+  if (index + 1 == tips_.size()) return kNotYet;
   std::array<double, 4> times{};
   std::array<double, 4> values{};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -66,52 +63,56 @@ std::optional<double> ReadingAligner::tip_at(TimePoint at) {
     times[0] = times[1] - 1;
     values[0] = values[1] - (values[2] - values[1]) / (times[2] - times[1]);
   }
-  return between(times, values, 0);
+  return {.tip = between(times, values, 0)};
+}
+
+void ReadingAligner::give_up() noexcept {
+  forces_.pop_front();
+  begun_ = false;
+}
+
+std::optional<AlignedSample> ReadingAligner::next_step() {
+  const Reading& from = forces_[0];
+  const Reading& to = forces_[1];
+  const double span = seconds(to.at - from.at);
+  if (span > gap_of(config_.sensor_rate)) {
+    give_up();
+    return take();
+  }
+  const auto steps =
+      std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(span / config_.period)));
+  const bool last = steps_done_ + 1 == steps;
+  const double share = static_cast<double>(steps_done_ + 1) / static_cast<double>(steps);
+  const TimePoint at = last ? to.at : from.at + from_seconds(share * span);
+  const Seen seen = tip_at(at);
+  if (!seen.ever) {
+    give_up();
+    return take();
+  }
+  if (!seen.tip) return std::nullopt;
+  const double force = last ? to.value : from.value + share * (to.value - from.value);
+  const AlignedSample out{{.at = at, .position = *seen.tip, .force = force, .place = to.place},
+                          last};
+  steps_done_ = last ? 0 : steps_done_ + 1;
+  if (last) forces_.pop_front();
+  return out;
 }
 
 std::optional<AlignedSample> ReadingAligner::take() {
-  while (!forces_.empty()) {
-    if (steps_ == 0) {  // the first of all, or behind a gap
-      const Reading& first = forces_.front();
-      const std::optional<double> tip = tip_at(first.at);
-      if (!tip && !broken_) return std::nullopt;
-      if (!tip) {
-        forces_.pop_front();
-        continue;
-      }
-      steps_ = 1;
-      step_ = 0;
-      return AlignedSample{
-          {.at = first.at, .position = *tip, .force = first.value, .place = first.place}, true};
-    }
-    if (forces_.size() < 2) return std::nullopt;
-    const Reading& from = forces_[0];
-    const Reading& to = forces_[1];
-    const double span = seconds(to.at - from.at);
-    if (span > gap_of(config_.sensor_rate)) {
-      steps_ = 0;
+  while (!begun_ && !forces_.empty()) {  // the first of all, or behind a gap
+    const Reading first = forces_.front();
+    const Seen seen = tip_at(first.at);
+    if (!seen.ever) {
       forces_.pop_front();
       continue;
     }
-    steps_ =
-        std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(span / config_.period)));
-    const bool last = step_ + 1 == steps_;
-    const double share = static_cast<double>(step_ + 1) / static_cast<double>(steps_);
-    const TimePoint at = last ? to.at : from.at + from_seconds(share * span);
-    const std::optional<double> tip = tip_at(at);
-    if (!tip && !broken_) return std::nullopt;
-    if (!tip) {
-      steps_ = 0;
-      forces_.pop_front();
-      continue;
-    }
-    const double force = last ? to.value : from.value + share * (to.value - from.value);
-    step_ = last ? 0 : step_ + 1;
-    const Place place = to.place;
-    if (last) forces_.pop_front();
-    return AlignedSample{{.at = at, .position = *tip, .force = force, .place = place}, last};
+    if (!seen.tip) return std::nullopt;
+    begun_ = true;
+    steps_done_ = 0;
+    return AlignedSample{
+        {.at = first.at, .position = *seen.tip, .force = first.value, .place = first.place}, true};
   }
-  return std::nullopt;
+  return forces_.size() < 2 ? std::nullopt : next_step();
 }
 
 }  // namespace palp::depth

@@ -45,15 +45,23 @@ class ReadingAligner {
     Place place;
   };
 
+  /// Of the tip at an instant.
+  struct Seen {
+    std::optional<double> tip;  ///< [m]
+    bool ever{true};            ///< false: no reading that comes later will tell
+  };
+
   [[nodiscard]] double gap_of(double rate) const noexcept;
-  [[nodiscard]] std::optional<double> tip_at(TimePoint at);
+  [[nodiscard]] Seen tip_at(TimePoint at);
+  /// What comes after forces_[0], which came out, on the way to forces_[1].
+  [[nodiscard]] std::optional<AlignedSample> next_step();
+  void give_up() noexcept;
 
   ReadingAlignerConfig config_;
-  std::deque<Reading> tips_;    ///< from the last one before what comes next
-  std::deque<Reading> forces_;  ///< the first came out, the others shall
-  std::size_t steps_{};         ///< between the first two forces; 0: not begun
-  std::size_t step_{};
-  bool broken_{};  ///< the tip's way between its readings is not known
+  std::deque<Reading> tips_;    ///< from the last two before what comes next
+  std::deque<Reading> forces_;  ///< the first came out, once begun; the others shall
+  bool begun_{};
+  std::size_t steps_done_{};  ///< of those between the first two forces
 };
 
 }  // namespace palp::depth
