@@ -23,7 +23,8 @@ constexpr double kSensorStaleMax = 60;  ///< [s], a file may say anything
 /// What a run's files say of themselves.
 struct RunFacts {
   link::Role site{};
-  std::string settings;                  ///< of the first file
+  std::string settings;  ///< of the first file
+  std::string coupling;
   std::optional<double> travel_max;      ///< [m]
   std::optional<Duration> sensor_stale;  ///< nothing: as the settings have it
 };
@@ -36,6 +37,7 @@ struct FileFacts {
   std::string settings;
   std::string travel_max;
   std::string sensor_stale;
+  std::string coupling;
 };
 
 Result<FileFacts> facts_of_file(const record::FileBytes& file) {
@@ -47,7 +49,8 @@ Result<FileFacts> facts_of_file(const record::FileBytes& file) {
                   .run = entry("run_began_utc"),
                   .settings = text_of(reader, "config.textproto").value_or(""),
                   .travel_max = entry(patient::kTravelMaxKey),
-                  .sensor_stale = entry(patient::kSensorStaleKey)};
+                  .sensor_stale = entry(patient::kSensorStaleKey),
+                  .coupling = entry("coupling")};
   if (facts.site != "surgeon" && facts.site != "patient") {
     return fail("the file is no site's session file");
   }
@@ -71,6 +74,7 @@ Result<RunFacts> facts_of_run(const RunBytes& files) {
     began = facts->run;
     run.site = facts->site == "surgeon" ? link::Role::Surgeon : link::Role::Patient;
     run.settings = facts->settings;
+    run.coupling = facts->coupling;
     run.travel_max = config::parse_number(facts->travel_max);
     if (const auto stale = config::parse_number(facts->sensor_stale)) {
       run.sensor_stale = from_seconds(std::clamp(*stale * 1e-9, 0.0, kSensorStaleMax));
@@ -107,17 +111,13 @@ std::string describe(const WhatIf& result, const ReplayAsk& ask) {
                      " ticks given to other parts; hand, stage and " +
                      "tissue did what the file says, so this is what would have been said, not " +
                      "what would have happened" + lack_line(result.lack) + '\n';
-  if (!ask.coupling.empty()) {
+  if (!ask.set.empty()) {
     text += "target of the stage: " + number_text("", result.target_rms * 1e3, 3, " mm rms, ") +
             number_text("", result.target_max * 1e3, 3, " mm at most") +
             " from the session's, while both were engaged (" + std::to_string(result.engaged) +
             " ticks)\n" + "motion gate: acted in " + std::to_string(result.gate_acted) +
             " ticks, would have in " + std::to_string(result.gate_would) + '\n' +
-            "state: another one in " + std::to_string(result.other_state) + " ticks\n" +
-            "the lab shows what would have happened: palp-lab run SCENARIO --coupling " +
-            ask.coupling +
-            ", where SCENARIO has surgeon { hand { master: \"recording:FILE\" } }, " +
-            "the surgeon's file\n";
+            "state: another one in " + std::to_string(result.other_state) + " ticks\n";
   }
   for (const OtherEstimate& one : result.estimates) {
     const DepthEstimate& stroke = one.logged ? *one.logged : *one.other;
@@ -162,6 +162,14 @@ Result<ReplayAnswer> patient_again(const RunBytes& files,
   if (auto checked = document.check(); !checked) return tl::unexpected(checked.error());
   const auto settings = patient::make_settings(document);
   if (!settings) return tl::unexpected(settings.error());
+  if (settings->coupling.name != run.coupling) {
+    // Its halves speak to each other in words of their own, through the hand and the tissue.
+    return fail("the session's telegrams are of " + printable(run.coupling) +
+                ", which no half of " + settings->coupling.name +
+                " understands; the lab plays the recorded hand under it: " +
+                "palp-review scenario SURGEON PATIENT again.textproto && " +
+                "palp-lab run again.textproto --coupling " + settings->coupling.name);
+  }
   PatientParts parts{settings->node, settings->coupling, settings->estimator};
   if (run.travel_max) parts.config.gate.travel_max = *run.travel_max;
   if (run.sensor_stale) parts.config.sensor_stale = *run.sensor_stale;

@@ -10,7 +10,7 @@ namespace palp::review {
 
 /// What is asked of `palp-review replay`.
 struct ReplayAsk {
-  std::string coupling{};          ///< another one's half; empty: the session's own
+  std::string coupling{};          ///< empty: the session's own; another one's is refused
   std::string estimator{};         ///< another one; empty: the session's own
   std::vector<std::string> set{};  ///< "path=value" over the session's settings
   [[nodiscard]] bool another() const {

@@ -15,12 +15,13 @@ struct LabFiles {
   record::MemorySink patient;
 };
 
-/// `settings`: "path=value" over the scenario.
+/// `settings`: "path=value" over the scenario `name`.
 inline lab::Scenario lab_scenario(Duration duration,
-                                  const std::vector<std::string>& settings = {}) {
-  auto document = lab::load_scenario("metro").value();
+                                  const std::vector<std::string>& settings = {},
+                                  const std::string& name = "metro") {
+  auto document = lab::load_scenario(name).value();
   for (const std::string& setting : settings) (void)document.set(setting);
-  lab::Scenario scenario = lab::make_scenario("metro", document).value();
+  lab::Scenario scenario = lab::make_scenario(name, document).value();
   scenario.duration = duration;
   return scenario;
 }

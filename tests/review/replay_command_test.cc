@@ -25,8 +25,21 @@ TEST(ReplayCommandTest, TheFileAloneIsEnough) {
   }
 }
 
-TEST(ReplayCommandTest, TellsWhatAnotherCouplingsHalfWouldHaveSaid) {
-  const auto answer = replay_command({three_seconds().patient.bytes()}, {.coupling = "wave"});
+TEST(ReplayCommandTest, AnotherCouplingsHalfDoesNotUnderstandTheTelegrams) {
+  const record::FileBytes file = three_seconds().patient.bytes();
+  for (const ReplayAsk& ask :
+       {ReplayAsk{.coupling = "wave"}, ReplayAsk{.set = {"coupling.name=wave"}}}) {
+    const auto answer = replay_command({file}, ask);
+    ASSERT_FALSE(answer);
+    EXPECT_THAT(answer.error().text, HasSubstr("palp-lab run again.textproto --coupling wave"));
+  }
+  const auto own = replay_command({file}, {.coupling = "mmt"});
+  EXPECT_TRUE(own) << own.error().text;
+}
+
+TEST(ReplayCommandTest, TellsWhatAnotherSettingWouldHaveSaid) {
+  const auto answer = replay_command({three_seconds().patient.bytes()},
+                                     {.set = {"motion_gate.speed_near_surface_m_per_s=0.01"}});
   ASSERT_TRUE(answer) << answer.error().text;
   EXPECT_THAT(answer->text, HasSubstr("target of the stage"));
 }
