@@ -6,9 +6,14 @@ namespace palp::judge {
 
 std::optional<Excursion> ExcursionFinder::look(const Motion& tick) {
   const double indentation = tick.position - surface_;
+  if (!(indentation > 0)) contact_at_.reset();
+  if (indentation > 0 && !contact_at_) contact_at_ = tick.at;
   if (!(indentation > 0.5 * kStrokeDepthMin)) return finish();
   const bool first = !std::exchange(inside_, true);
-  if (first) first_ = tick;
+  if (first) {
+    first_ = tick;
+    stroke_contact_at_ = *contact_at_;
+  }
   last_ = tick;
   if (FeltStiffness::takes(indentation, tick.velocity) && loading_.size() <= kLoadingMax) {
     loading_.push_back({indentation, tick.velocity, tick.force});
@@ -25,6 +30,8 @@ std::optional<Excursion> ExcursionFinder::finish() {
   std::optional<Excursion> found;
   if (deepest_.position - surface_ > kStrokeDepthMin) {
     found = Excursion{.place = deepest_.place,
+                      .indentation_max = deepest_.position - surface_,
+                      .contact_at = stroke_contact_at_,
                       .began_at = first_.at,
                       .deepest_at = deepest_.at,
                       .ended_at = last_.at,

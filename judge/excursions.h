@@ -15,8 +15,10 @@ namespace palp::judge {
 inline constexpr double kStrokeDepthMin = 1.5e-3;
 
 struct Excursion {
-  Place place;  ///< of the deepest tick
-  TimePoint began_at{};
+  Place place;               ///< of the deepest tick
+  double indentation_max{};  ///< [m], at it
+  TimePoint contact_at{};    ///< first tick past the surface
+  TimePoint began_at{};      ///< first tick past half of kStrokeDepthMin
   TimePoint deepest_at{};
   TimePoint ended_at{};
   FeltStiffness stiffness;  ///< of its loading: up to the deepest tick
@@ -46,6 +48,8 @@ class ExcursionFinder {
   double surface_;  ///< [m]
   const TissueTable* tissue_;
   bool inside_{};
+  std::optional<TimePoint> contact_at_;  ///< of what is now past the surface
+  TimePoint stroke_contact_at_{};        ///< of the stroke
   Motion first_;
   Motion last_;
   Motion deepest_;

@@ -17,11 +17,11 @@ enum class PhaseKind : std::uint8_t { Other, FreeAir, Tap, PressHold, LiftHold }
 /// Where in the script a tick lies.
 struct PhaseTag {
   PhaseKind kind{PhaseKind::Other};
-  Site site{Site::A};  ///< what the errors of a site are of; Other: of none
-  Place place;         ///< where it begins
-  int index{};         ///< of the tap (1, 2, ...) or of the press hold (1: shallow, 2: deep)
-  double elapsed{};    ///< [s] since the phase began
-  double duration{};   ///< [s]
+  Site site{Site::Other};  ///< what the errors of a site are of; Other: of none
+  Place place;             ///< where it begins
+  int index{};             ///< of the tap (1, 2, ...) or of the press hold (1: shallow, 2: deep)
+  double elapsed{};        ///< [s] since the phase began
+  double duration{};       ///< [s]
 };
 
 /// True states of one 1 kHz tick. Positions are relative to the true surface at rest.
@@ -99,8 +99,8 @@ struct RunMetrics {
   bool unstable{};
   const char* unstable_reason{""};
   double tap_error[2]{kUndefined, kUndefined};     ///< [-], taps 2-4, sites A and B
-  double tap1_error[2]{kUndefined, kUndefined};    ///< [-]
-  double tap2_error[2]{kUndefined, kUndefined};    ///< [-]
+  double tap1_error[2]{kUndefined, kUndefined};    ///< [-], of the first visit of a site
+  double tap2_error[2]{kUndefined, kUndefined};    ///< [-], likewise
   double ratio_error{kUndefined};                  ///< [-]
   double ratio_true{kUndefined};                   ///< [-], of the slopes B/A
   double contrast{kUndefined};                     ///< [-], (ratio felt - 1)/(ratio true - 1)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <tuple>
 
 #include "common/core/conventions.h"
@@ -145,8 +146,13 @@ void RunJudge::end_phase() {
     metrics_.taps.push_back(phase_.tap());
     const double error = metrics_.taps.back().stiffness.error().value_or(kUndefined);
     if (tag.site != Site::Other) known_[site].tap(metrics_.taps.back());
-    if (tag.site != Site::Other && tag.index == 1) metrics_.tap1_error[site] = error;
-    if (tag.site != Site::Other && tag.index == 2) metrics_.tap2_error[site] = error;
+    // At a later visit the law knows the place.
+    const auto taps = std::span{metrics_.taps};
+    const bool later = std::ranges::any_of(taps.first(taps.size() - 1), [&](const TapMetrics& tap) {
+      return tap.site == tag.site && tap.index == tag.index;
+    });
+    if (tag.site != Site::Other && tag.index == 1 && !later) metrics_.tap1_error[site] = error;
+    if (tag.site != Site::Other && tag.index == 2 && !later) metrics_.tap2_error[site] = error;
   }
   if (tag.kind == PhaseKind::PressHold && tag.site != Site::Other &&
       (tag.index == 1 || tag.index == 2)) {

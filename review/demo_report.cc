@@ -84,7 +84,11 @@ Json direction_json(const Json& relay, const char* direction) {
   return to;
 }
 
-Json link_json(const Asked& asked, const SiteData& surgeon, const Json& report, const Json& relay) {
+Json link_json(const Asked& asked,
+               const SessionPair& session,
+               const Json& report,
+               const Json& relay) {
+  const SiteData& surgeon = session.surgeon;
   Json link;
   link["asked"] = {{"rtt_ms", value(asked.rtt_ms)},
                    {"jitter_ms", value(asked.jitter_ms)},
@@ -96,6 +100,10 @@ Json link_json(const Asked& asked, const SiteData& surgeon, const Json& report, 
       first_known({member(report, "lost"), last ? Json(last->health.lost) : Json(nullptr)});
   link["achieved"]["telegrams_accepted"] =
       first_known({member(report, "accepted"), last ? Json(last->health.accepted) : Json(nullptr)});
+  const auto& there = session.patient.last_link;
+  link["achieved"]["telegrams_lost_to_patient"] = there ? Json(there->health.lost) : Json(nullptr);
+  link["achieved"]["telegrams_accepted_by_patient"] =
+      there ? Json(there->health.accepted) : Json(nullptr);
   link["achieved"]["up"] = direction_json(relay, "up");
   link["achieved"]["down"] = direction_json(relay, "down");
   return link;
@@ -114,14 +122,15 @@ Json statement_json(const judge::DepthStatement& depth, bool with_stddev) {
   return json;
 }
 
-Json tap_json(const Tap& tap, const SiteData& patient) {
+Json tap_json(const Tap& tap, const SessionPair& session) {
+  const SiteData& patient = session.patient;
   const DepthEstimate& estimate = tap.estimate;
   Json json;
   json["site"] = place_text(tap.place);
   json["index"] = tap.index;
   json["kind"] = to_string(tap.kind);
   json["number"] = estimate.number;
-  json["t_s"] = value(seconds(elapsed(patient.began_at, estimate.stroke_began_at)));
+  json["t_s"] = value(seconds(elapsed(session.surgeon.began_at, tap.began_at)));
   json["x_mm"] = value(estimate.place.x * 1e3);
   json["y_mm"] = value(estimate.place.y * 1e3);
   json["indentation_max_mm"] = value(estimate.indentation_max * 1e3);
@@ -134,6 +143,18 @@ Json tap_json(const Tap& tap, const SiteData& patient) {
   depth["reason"] = to_string(estimate.reason);
   depth["estimator"] = value(patient.entry("estimator"));
   return json;
+}
+
+/// Of a touch that no estimate came of.
+Json touch_json(const judge::Excursion& touch, TimePoint began_at) {
+  return {{"site", place_text(touch.place)},
+          {"t_s", value(seconds(elapsed(began_at, touch.contact_at)))},
+          {"until_s", value(seconds(elapsed(began_at, touch.ended_at)))},
+          {"x_mm", value(touch.place.x * 1e3)},
+          {"y_mm", value(touch.place.y * 1e3)},
+          {"indentation_max_mm", value(touch.indentation_max * 1e3)},
+          {"stiffness_felt_n_per_m", value(touch.stiffness.felt())},
+          {"stiffness_true_n_per_m", value(touch.stiffness.truth())}};
 }
 
 Json depth_json(const std::optional<judge::DepthStatement>& depth) {
@@ -259,7 +280,7 @@ Result<void> check_reports(const SessionPair& session, const ProgramReports& rep
 }
 
 std::string demo_report(const SessionPair& session,
-                        const std::vector<Tap>& taps,
+                        const Touches& touches,
                         const Asked& asked,
                         const ProgramReports& reports,
                         const SessionPaths& paths,
@@ -279,12 +300,16 @@ std::string demo_report(const SessionPair& session,
   json["preset"] = text_or_null(asked.preset);
   json["grip"] = first_known({text_or_null(asked.grip), value(surgeon.entry("grip"))});
   json["phantom"] = phantom_json(patient);
-  json["link"] = link_json(asked, surgeon, surgeon_report, parsed(reports.relay));
+  json["link"] = link_json(asked, session, surgeon_report, parsed(reports.relay));
   json["taps"] = Json::array();
-  for (const Tap& tap : taps) {
-    json["taps"].push_back(tap_json(tap, patient));
+  for (const Tap& tap : touches.taps) {
+    json["taps"].push_back(tap_json(tap, session));
   }
-  json["depth"] = depth_json(overall_depth(taps));
+  json["other_touches"] = Json::array();
+  for (const judge::Excursion& touch : touches.others) {
+    json["other_touches"].push_back(touch_json(touch, surgeon.began_at));
+  }
+  json["depth"] = depth_json(overall_depth(touches.taps));
   json["map"] = judge::map_json(patient.map.report, patient.map.cells);
   json["metrics"] = metrics;
   json["sites"]["surgeon"] = site_json(surgeon, surgeon_report, paths.surgeon);

@@ -42,7 +42,7 @@ struct SessionPaths {
 
 /// The JSON document `palp.demo/1`. `metrics`: as metrics_json().
 [[nodiscard]] std::string demo_report(const SessionPair& session,
-                                      const std::vector<Tap>& taps,
+                                      const Touches& touches,
                                       const Asked& asked,
                                       const ProgramReports& reports,
                                       const SessionPaths& paths,

@@ -25,6 +25,7 @@
 #include "review/replay_command.h"
 #include "review/report_curves.h"
 #include "review/report_page.h"
+#include "review/scenario_text.h"
 #include "review/session_metrics.h"
 #include "review/taps.h"
 #include "review/text.h"
@@ -151,6 +152,19 @@ void declare(config::CommandLine& line, MergeFlags& flags) {
   line.required();
 }
 
+ExitStatus run_scenario(const MergeFlags& flags) {
+  const auto session = load_pair(flags.sessions.surgeon, flags.sessions.patient);
+  if (!session) return exit_status_of(session.error());
+  const auto text = scenario_text(*session, flags.sessions.surgeon);
+  if (!text) return bad_input(flags.sessions.patient + ": " + text.error().text);
+  if (const auto written = config::write_whole_file(flags.out, *text); !written) {
+    return cannot_open("OUT: " + written.error().text);
+  }
+  std::cout << "scenario: " << harmless_line(flags.out) << "; palp-lab run plays it\n"
+            << lack_lines(*session);
+  return {};
+}
+
 struct ExportFlags {
   std::string file;
   std::string out;
@@ -220,7 +234,7 @@ void declare(config::CommandLine& line, ReplayFlags& flags) {
   line.text("--coupling",
             flags.ask.coupling,
             "NAME",
-            "what would its half have said? direct, wave, tdpa or mmt");
+            "the session's own; what another one would have done the lab tells, see scenario");
   line.choice("--estimator", flags.ask.estimator, {"bayes", "paper"}, "and this estimator?");
   line.text("--set", flags.set, "PATH=VALUE", "and with this setting of the site?");
 }
@@ -266,10 +280,11 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
   ReportCurves curves;
   const JudgedSession judged =
       judge_session(*session, tissue ? &*tissue : nullptr, flags.page.empty() ? nullptr : &curves);
-  auto taps = match_taps(*surgeon, *patient, session->time_line, judged.excursions);
-  if (judged.by_truth) take_truth(taps, *session, judged.run_began, judged.metrics.taps);
+  Touches touches = match_taps(*surgeon, *patient, session->time_line, judged.excursions);
+  if (judged.by_truth) take_truth(touches.taps, *session, judged.run_began, judged.metrics.taps);
   if (!flags.json && flags.page.empty()) {
-    std::cout << tap_table(taps, overall_depth(taps), session->patient.map.report);
+    std::cout << tap_table(
+        surgeon->began_at, touches, overall_depth(touches.taps), session->patient.map.report);
     std::cout << lack_lines(*session);
   }
   if (flags.report.empty() && flags.page.empty() && !flags.json) {
@@ -282,7 +297,7 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
     return exit_status_of(ours.error());
   }
   const auto document =
-      demo_report(*session, taps, flags.asked, reports, flags.sessions, metrics_json(judged));
+      demo_report(*session, touches, flags.asked, reports, flags.sessions, metrics_json(judged));
   if (flags.json) std::cout << document;
   if (!flags.page.empty()) {
     const std::string page = report_page(*session, curves, document);
@@ -332,6 +347,8 @@ int run(int argc, char** argv) {
   recovery.required();
   MergeFlags merge;
   declare(line.verb("merge", "both sites' files as one, on one line of time"), merge);
+  MergeFlags scenario;
+  declare(line.verb("scenario", "a session as a scenario that palp-lab run plays"), scenario);
   ExportFlags exported;
   declare(line.verb("export", "numbers of chosen topics as CSV or MAT"), exported);
   ReplayFlags replay;
@@ -356,6 +373,7 @@ int run(int argc, char** argv) {
     if (verb == "check") return run_check(in);
     if (verb == "compare") return run_compare(compared);
     if (verb == "merge") return run_merge(merge);
+    if (verb == "scenario") return run_scenario(scenario);
     if (verb == "export") return run_export(exported);
     if (verb == "replay") return run_replay(replay);
     if (verb == "plot") return run_plot(plotted);

@@ -12,8 +12,9 @@ namespace {
 
 template <class Item>
 std::string name_of(std::string_view prefix, const Item& item, link::Role site) {
-  return std::string{prefix} +
-         std::string{site == link::Role::Patient ? item.name.patient : item.name.surgeon};
+  const std::string name{site == link::Role::Patient ? item.name.patient : item.name.surgeon};
+  const bool apart = prefix.empty() || prefix.ends_with('_');
+  return std::string{prefix} + (apart ? "" : "_") + name;
 }
 
 template <class Number>

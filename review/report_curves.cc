@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace palp::review {
 namespace {
@@ -12,7 +13,7 @@ using config::Json;
 constexpr std::size_t kBucketsMax = 6000;
 constexpr std::size_t kIdleMax = 2000;
 constexpr std::size_t kLoopsMax = 60;
-constexpr double kTickPeriod = 1e-3;  ///< [s]
+constexpr double kGapMin = 0.05;  ///< [s], longer than a site stands still
 
 }  // namespace
 
@@ -21,9 +22,27 @@ Json shown(double value, double unit) {
   return std::round(value / unit * 1e4) * 1e-4;
 }
 
+/// No line leads through time that nobody wrote down.
+ReportCurves::Point ReportCurves::nothing_at(double at) {
+  Point point;
+  point.tick.at = at;
+  for (double* value : {&point.tick.hand,
+                        &point.tick.hand_force,
+                        &point.tick.force_true,
+                        &point.tick.contact_force,
+                        &point.tick.tip,
+                        &point.tick.tip_place.x,
+                        &point.tick.tip_place.y,
+                        &point.tick.energy_operator,
+                        &point.energy_tissue}) {
+    *value = judge::kUndefined;
+  }
+  return point;
+}
+
 void ReportCurves::see(const judge::RunTick& tick) {
-  if (std::isfinite(tick.tip)) tissue_ += tick.contact_force * tick.tip_velocity * kTickPeriod;
-  see_curve({tick, tissue_});
+  if (std::isfinite(tick.tip)) tissue_.add_reading(tick.tip, tick.contact_force);
+  see_curve({tick, tissue_.work()});
   see_idle(tick);
   see_stroke(tick);
 }
@@ -51,6 +70,8 @@ void ReportCurves::see_curve(const Point& point) {
 }
 
 void ReportCurves::see_idle(const judge::RunTick& tick) {
+  const double before = std::exchange(seen_at_, tick.at);
+  if (tick.at - before > kGapMin && idle_.size() < kIdleMax) idle_.emplace_back(before, tick.at);
   if (tick.counted) {
     idle_now_ = false;
     return;
@@ -87,12 +108,16 @@ void ReportCurves::end_stroke() {
 
 std::vector<ReportCurves::Point> ReportCurves::points() const {
   std::vector<Point> points;
+  const double gap = kGapMin + 2e-3 * static_cast<double>(bucket_size_);
+  const auto add = [&](const Point& point) {
+    const double last = points.empty() ? point.tick.at : points.back().tick.at;
+    if (point.tick.at - last > gap) points.push_back(nothing_at(0.5 * (last + point.tick.at)));
+    points.push_back(point);
+  };
   for (const Bucket& bucket : buckets_) {
     const bool falls = bucket.high.tick.at < bucket.low.tick.at;
-    points.push_back(falls ? bucket.high : bucket.low);
-    if (bucket.high.tick.at != bucket.low.tick.at) {
-      points.push_back(falls ? bucket.low : bucket.high);
-    }
+    add(falls ? bucket.high : bucket.low);
+    if (bucket.high.tick.at != bucket.low.tick.at) add(falls ? bucket.low : bucket.high);
   }
   return points;
 }

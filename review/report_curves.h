@@ -6,6 +6,7 @@
 
 #include "common/config/json.h"
 #include "judge/excursions.h"
+#include "judge/port_work.h"
 #include "review/session_metrics.h"
 #include "review/thinned.h"
 
@@ -22,7 +23,8 @@ class ReportCurves final : public TickWatcher {
 
   /// Of all ticks so far: curves over time, when the hand was not engaged, and the strokes.
   void add_to(config::Json& series) const;
-  /// The ticks that those curves are drawn through, in order of time.
+  /// The ticks that those curves are drawn through, in order of time; not a number in between where
+  /// there was none for long.
   [[nodiscard]] std::vector<judge::RunTick> ticks() const;
 
  private:
@@ -46,15 +48,18 @@ class ReportCurves final : public TickWatcher {
   void see_stroke(const judge::RunTick& tick);
   void see_idle(const judge::RunTick& tick);
   void end_stroke();
+  [[nodiscard]] static Point nothing_at(double at);
+  /// Of what is drawn, in order of time.
   [[nodiscard]] std::vector<Point> points() const;
   [[nodiscard]] bool went_in() const { return inside_ && stroke_max_ > judge::kStrokeDepthMin; }
 
-  double tissue_{};  ///< [J]
+  judge::PortWork tissue_;
   std::vector<Bucket> buckets_;
   std::size_t bucket_size_{1};                   ///< [ticks]
   std::size_t in_last_{};                        ///< [ticks]
   std::vector<std::pair<double, double>> idle_;  ///< [s]
   bool idle_now_{};
+  double seen_at_{judge::kUndefined};  ///< [s], the newest tick
   bool inside_{};
   double stroke_at_{};   ///< [s]
   double stroke_max_{};  ///< [m]

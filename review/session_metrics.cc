@@ -7,6 +7,7 @@
 
 #include "common/config/document.h"
 #include "judge/metric_table.h"
+#include "judge/port_work.h"
 #include "judge/run_judge.h"
 #include "judge/truth_judge.h"
 #include "patient_site/phantom.h"
@@ -47,7 +48,8 @@ std::optional<surgeon::GestureScript> script_of(const SiteData& surgeon) {
 }
 
 /// Where in its script the hand was: by the phases that it told, each from its beginning on. What
-/// comes after a break within a phase is nobody's, until the next phase begins.
+/// comes after a break within a phase is nobody's, until the next phase begins. Of a hand without a
+/// script only the site that it is at is known.
 class ScriptFollower {
  public:
   explicit ScriptFollower(const SiteData& surgeon)
@@ -64,7 +66,12 @@ class ScriptFollower {
       broken_ = false;
     }
     broken_ = broken_ || !counted;
-    const bool within = present_.phase > 0 && knows() && present_.phase <= script_->phases().size();
+    if (!knows()) {
+      judge::PhaseTag here;
+      here.site = site_at(hand);
+      return here;
+    }
+    const bool within = present_.phase > 0 && present_.phase <= script_->phases().size();
     if (!within || broken_) return {};
     const Duration time = script_->phase(present_.phase).began_at + elapsed(present_.at, now);
     return time < script_->length() ? finder_->at(time, hand) : judge::PhaseTag{};
@@ -111,21 +118,21 @@ class TipFollower {
 /// Work of the hand on its device, and of the tip on the tissue.
 class WorkAccount {
  public:
-  void add(const judge::Motion& hand, const judge::Motion* tip, double period) {
-    hand_ += hand.force * hand.velocity * period;
-    if (tip != nullptr) tissue_ += tip->force * tip->velocity * period;
-    hand_min_ = std::min(hand_min_, hand_);
-    net_min_ = std::min(net_min_, hand_ - tissue_);
+  void add(const judge::Motion& hand, const judge::Motion* tip) {
+    hand_.add_applied(hand.position, hand.force);
+    if (tip != nullptr) tissue_.add_reading(tip->position, tip->force);
+    hand_min_ = std::min(hand_min_, hand_.work());
+    net_min_ = std::min(net_min_, hand_.work() - tissue_.work());
   }
   void tell(judge::RunTick& tick) const {
-    tick.energy_operator = hand_;
+    tick.energy_operator = hand_.work();
     tick.energy_operator_min = hand_min_;
     tick.energy_net_min = net_min_;
   }
 
  private:
-  double hand_{};      ///< [J]
-  double tissue_{};    ///< [J]
+  judge::PortWork hand_;
+  judge::PortWork tissue_;
   double hand_min_{};  ///< [J]
   double net_min_{};   ///< [J]
 };
@@ -136,8 +143,6 @@ double truth_of(const judge::TissueTable* tissue, const Place& place, double ind
   if (indentation <= 0) return 0;
   return tissue->force(place, indentation).value_or(judge::kUndefined);
 }
-
-constexpr double kPeriod = 1e-3;  ///< [s], of a tick
 
 /// Takes a session's ticks as both sites wrote them down, and judges them.
 class LoggedJudge {
@@ -152,7 +157,7 @@ class LoggedJudge {
   judge::RunTick look(const SiteTick& hand) {
     const judge::Motion* const tip = tips_.at(hand.at);
     const bool counted = hand.state == SiteState::Engaged || hand.state == SiteState::Hold;
-    work_.add(motion_of(hand), tip, kPeriod);
+    work_.add(motion_of(hand), tip);
     judge::RunTick tick;
     tick.at = seconds(elapsed(began_at_, hand.at));
     tick.phase = script_.at(hand.at, counted, hand.place);

@@ -90,18 +90,59 @@ class Strokes {
   std::vector<judge::Stay> stays_;                 ///< the same
 };
 
+/// On the surgeon's line.
+TimePoint beginning_of(const DepthEstimate& estimate,
+                       const Strokes& strokes,
+                       const std::optional<std::size_t>& stroke,
+                       const TimeLine& line) {
+  return stroke ? strokes[*stroke].contact_at : line.surgeons(estimate.stroke_began_at);
+}
+
 std::string cell(const std::optional<double>& value, int digits, std::size_t width) {
   return right(value ? fixed(*value, digits) : "-", width);
 }
 
+std::string stiffness_cells(const judge::FeltStiffness& stiffness) {
+  const std::optional<double> error = stiffness.error();
+  return cell(stiffness.felt(), 1, 16) + cell(stiffness.truth(), 1, 8) +
+         cell(error ? std::optional{*error * 100} : std::nullopt, 1, 8);
+}
+
+std::string tap_row(const Tap& tap) {
+  const DepthEstimate& estimate = tap.estimate;
+  const judge::DepthStatement statement = judge::statement_of(estimate);
+  const auto millimetres = [](const std::optional<double>& value) {
+    return value ? std::optional{*value * 1e3} : std::nullopt;
+  };
+  std::string row = left(place_text(tap.place), 10) + ' ' +
+                    left(std::string{to_string(tap.kind)} + ' ' + std::to_string(tap.index), 10) +
+                    cell(estimate.indentation_max * 1e3, 2, 11) + cell(estimate.force_max, 3, 11) +
+                    stiffness_cells(tap.stiffness) + cell(estimate.hash, 4, 8) + "  " +
+                    left(std::string{to_string(estimate.verdict)}, 7) +
+                    cell(millimetres(statement.depth), 2, 7);
+  if (statement.low && statement.high) {
+    row += "  " + fixed(*statement.low * 1e3, 1) + " to " + fixed(*statement.high * 1e3, 1);
+  }
+  const std::string reason{to_string(estimate.reason)};
+  return row + (reason.empty() ? "" : "  (" + reason + ')') + '\n';
+}
+
+std::string touch_row(const judge::Excursion& touch) {
+  return left(place_text(touch.place), 10) + ' ' + left("touch", 10) +
+         cell(touch.indentation_max * 1e3, 2, 11) + cell(std::nullopt, 0, 11) +
+         stiffness_cells(touch.stiffness) + cell(std::nullopt, 0, 8) + "  no estimate came of it\n";
+}
+
 }  // namespace
 
-std::vector<Tap> match_taps(const SiteData& surgeon,
-                            const SiteData& patient,
-                            const TimeLine& line,
-                            const std::vector<judge::Excursion>& excursions) {
+Touches match_taps(const SiteData& surgeon,
+                   const SiteData& patient,
+                   const TimeLine& line,
+                   const std::vector<judge::Excursion>& excursions) {
   const Strokes strokes{surgeon, line, excursions};
-  std::vector<Tap> taps;
+  std::vector<bool> told(excursions.size());
+  Touches touches;
+  std::vector<Tap>& taps = touches.taps;
   for (const DepthEstimate& estimate : patient.estimates) {
     const auto stroke = strokes.of(estimate);
     const Duration span = stroke ? elapsed(strokes[*stroke].began_at, strokes[*stroke].ended_at)
@@ -109,17 +150,22 @@ std::vector<Tap> match_taps(const SiteData& surgeon,
     Tap tap{.place = estimate.place,
             .kind = span > kTapMax ? StrokeKind::Press : StrokeKind::Tap,
             .index = 0,
+            .began_at = beginning_of(estimate, strokes, stroke, line),
             .estimate = estimate,
             .stiffness = {}};
     tap.index = 1 + static_cast<int>(std::count_if(taps.begin(), taps.end(), [&](const Tap& other) {
                   return other.kind == tap.kind && distance(other.place, tap.place) <= kSamePlace;
                 }));
     if (stroke) {
+      told[*stroke] = true;
       tap.stiffness = strokes[*stroke].stiffness;
     }
     taps.push_back(tap);
   }
-  return taps;
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (!told[i]) touches.others.push_back(strokes[i]);
+  }
+  return touches;
 }
 
 void take_truth(std::vector<Tap>& taps,
@@ -153,35 +199,25 @@ std::optional<judge::DepthStatement> overall_depth(const std::vector<Tap>& taps)
   return judge::statement_of(judge::summarise_depths(over));
 }
 
-std::string tap_table(const std::vector<Tap>& taps,
+std::string tap_table(TimePoint began_at,
+                      const Touches& touches,
                       const std::optional<judge::DepthStatement>& depth,
                       const MapReport& map) {
   std::string text{
-      "place      stroke    indentation  force max  stiffness felt    true   error      h  "
-      "verdict  depth  95 % interval\n"
-      "                              mm          N             N/m     N/m       %      N"
-      "              mm\n"};
-  for (const Tap& tap : taps) {
-    const std::optional<double> error = tap.stiffness.error();
-    const DepthEstimate& estimate = tap.estimate;
-    const judge::DepthStatement statement = judge::statement_of(estimate);
-    const auto scaled = [](const std::optional<double>& value, double factor) {
-      return value ? std::optional{*value * factor} : std::nullopt;
-    };
-    text += left(place_text(tap.place), 10) + ' ' +
-            left(std::string{to_string(tap.kind)} + ' ' + std::to_string(tap.index), 10) +
-            cell(estimate.indentation_max * 1e3, 2, 11) + cell(estimate.force_max, 3, 11) +
-            cell(tap.stiffness.felt(), 1, 16) + cell(tap.stiffness.truth(), 1, 8) +
-            cell(scaled(error, 100), 1, 8) + cell(estimate.hash, 4, 8) + "  " +
-            left(std::string{to_string(estimate.verdict)}, 7) +
-            cell(scaled(statement.depth, 1e3), 2, 7);
-    if (statement.low && statement.high) {
-      text += "  " + fixed(*statement.low * 1e3, 1) + " to " + fixed(*statement.high * 1e3, 1);
-    }
-    const std::string reason{to_string(estimate.reason)};
-    text += (reason.empty() ? "" : "  (" + reason + ')') + '\n';
+      "    time  place      stroke    indentation  force max  stiffness felt    true   error      "
+      "h  verdict  depth  95 % interval\n"
+      "       s                                mm          N             N/m     N/m       %      "
+      "N              mm\n"};
+  std::vector<std::pair<TimePoint, std::string>> rows;
+  for (const Tap& tap : touches.taps) rows.emplace_back(tap.began_at, tap_row(tap));
+  for (const judge::Excursion& touch : touches.others) {
+    rows.emplace_back(touch.contact_at, touch_row(touch));
   }
-  if (taps.empty()) {
+  std::ranges::stable_sort(rows, {}, &std::pair<TimePoint, std::string>::first);
+  for (const auto& [at, row] : rows) {
+    text += right(fixed(seconds(elapsed(began_at, at)), 2), 8) + "  " + row;
+  }
+  if (rows.empty()) {
     text += "no stroke\n";
   }
   if (map.number != 0) return text + "all places together: " + map_sentence(map) + '\n';

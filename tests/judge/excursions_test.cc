@@ -30,6 +30,19 @@ TEST(ExcursionsTest, FindsEachTapOnceAndEndsItsLoadingAtTheDeepestTick) {
   }
 }
 
+TEST(ExcursionsTest, ContactIsWhereTheSurfaceWasPassed) {
+  std::vector<Motion> motion;
+  for (int ms = 0; ms < 100; ++ms) {
+    motion.push_back(tip_at(1e-3 * (0.05 * ms - 1)));  // the surface after 20 ms, 1.5 mm after 50
+    motion.back().at = test::at_ms(ms);
+  }
+  const auto excursions = find_excursions(motion, 0);
+  ASSERT_EQ(excursions.size(), 1u);
+  EXPECT_EQ(excursions[0].contact_at, test::at_ms(21));
+  EXPECT_EQ(excursions[0].began_at, test::at_ms(36)) << "half of what makes a stroke";
+  EXPECT_NEAR(excursions[0].indentation_max, 3.95e-3, 1e-12);
+}
+
 TEST(ExcursionsTest, DipJustDeepEnoughCountsAndOneLessDoesNot) {
   const auto dip = [](double depth) {
     return std::vector<Motion>{tip_at(0), tip_at(depth), tip_at(0)};

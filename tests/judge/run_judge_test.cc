@@ -31,6 +31,41 @@ TEST(RunJudgeTest, AskedOnTheWayItCountsThePhaseThatIsNotOverAndGoesOn) {
   EXPECT_EQ(metrics.taps[1].ended_at, 2e-3);
 }
 
+TEST(RunJudgeTest, TheFirstTapOfAPlaceIsThatOfTheFirstVisit) {
+  RunJudge judge{{}};
+  int ms = 0;
+  // A tap of 200 N/m that is felt as `felt` [N/m].
+  const auto tap = [&](Site site, double felt) {
+    for (int i = 0; i < 400; ++i, ++ms) {
+      RunTick tick = tick_at(ms, PhaseKind::Tap, 1);
+      tick.phase.site = site;
+      tick.phase.place = site == Site::A ? kSiteA : kSiteB;
+      tick.hand = 1e-5 * i;
+      tick.hand_velocity = 1e-2;
+      tick.hand_force = felt * tick.hand;
+      tick.force_true = 200 * tick.hand;
+      judge.look(tick);
+    }
+  };
+  tap(Site::B, 100);
+  tap(Site::A, 150);
+  tap(Site::B, 200);
+  EXPECT_NEAR(judge.metrics().tap1_error[1], -0.5, 1e-6);
+  EXPECT_NEAR(judge.metrics().tap1_error[0], -0.25, 1e-6);
+}
+
+TEST(RunJudgeTest, ATickOfNoPlaceCountsForNone) {
+  RunJudge judge{{}};
+  for (int ms = 0; ms < 200; ++ms) {
+    RunTick tick = tick_at(ms, PhaseTag{}.kind, 0);
+    tick.contact_force = tick.hand_force = tick.force_true = 1;
+    tick.hand = 2e-3;
+    judge.look(tick);
+  }
+  EXPECT_TRUE(std::isnan(judge.metrics().learning[0]));
+  EXPECT_TRUE(std::isnan(judge.metrics().learning[1]));
+}
+
 TEST(RunJudgeTest, ABlackoutMayBeToldAsItBegins) {
   RunJudge judge{{}};
   RunTick tick = tick_at(0, PhaseKind::Other, 0);

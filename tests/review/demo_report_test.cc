@@ -187,7 +187,7 @@ TEST(DemoReportTest, NumbersThatAreNoneAreNull) {
   SessionPair session = sample_pair();
   session.patient.estimates[0].hash = std::numeric_limits<double>::quiet_NaN();
   session.patient.estimates[0].force_max = std::numeric_limits<double>::infinity();
-  const auto taps = match_taps(session.surgeon, session.patient, {}, {});
+  const Touches taps = match_taps(session.surgeon, session.patient, {}, {});
   const auto json = nlohmann::json::parse(demo_report(session, taps, {}, {}, {}));
   EXPECT_EQ(json["taps"][0]["depth"]["h_n"], nullptr);
   EXPECT_EQ(json["taps"][0]["force_max_n"], nullptr);

@@ -218,10 +218,11 @@ inline void expect_same_judgement(const lab::Scenario& scenario, Looked& looked)
                              load_site(files.patient.bytes(), "p", link::Role::Patient).value())
                          .value();
   const JudgedSession judged = judge_session(pair, nullptr);
-  auto taps = match_taps(pair.surgeon, pair.patient, pair.time_line, judged.excursions);
+  Touches touches = match_taps(pair.surgeon, pair.patient, pair.time_line, judged.excursions);
   ASSERT_TRUE(judged.by_truth);
   const double way = seconds(scenario.up.delay.mean);
   std::vector<double> turns;
+  std::vector<Tap>& taps = touches.taps;
   for (const Tap& tap : taps) {
     ++(tap.kind == StrokeKind::Tap ? looked.taps : looked.presses);
     turns.push_back(turned_at(tap.estimate, pair, judged.run_began, way));
@@ -235,7 +236,7 @@ inline void expect_same_judgement(const lab::Scenario& scenario, Looked& looked)
     EXPECT_EQ(metrics[name].dump(), lab[name].dump()) << name;
   }
   EXPECT_EQ(metrics["unstable"], lab["unstable"]);
-  const nlohmann::json review = nlohmann::json::parse(demo_report(pair, taps, {}, {}, {}, told));
+  const nlohmann::json review = nlohmann::json::parse(demo_report(pair, touches, {}, {}, {}, told));
   expect_same_taps(lab["taps"], review["taps"]);
   expect_paired_by_time(lab["taps"], review["taps"], run, turns);
 

@@ -23,6 +23,28 @@ TEST(RecordComparisonTest, NamesTopicTimeAndField) {
             "surgeon/tick, 1.000000 s, force_n: 0.5 became 0.25");
 }
 
+TEST(RecordComparisonTest, NamesTheNumberOfAModelThatChanged) {
+  RecordComparison comparison{link::Role::Patient};
+  const auto named = [&](auto change) {
+    ModelPayload model{.version = 3};
+    for (double& c : model.c) c = 0.25;
+    for (double& stiffness : model.stiffness) stiffness = 100;
+    SiteTick there = tick_at(TimePoint{2ms}, 0);
+    there.sent.payload = model;
+    change(model);
+    SiteTick again = there;
+    again.sent.payload = model;
+    return comparison.compare({there}, {again}, TimePoint{});
+  };
+  const std::string at = "patient/tick, 0.002000 s, ";
+  EXPECT_EQ(named([](ModelPayload& of) { of.c[1] = 0.5; }), at + "model_c2_n: 0.25 became 0.5");
+  EXPECT_EQ(named([](ModelPayload& of) { of.c[4] = 0.5; }), at + "model_c5_n: 0.25 became 0.5");
+  EXPECT_EQ(named([](ModelPayload& of) { of.stiffness[11] = 50; }),
+            at + "model_stiffness12_n_per_m: 100 became 50");
+  EXPECT_EQ(named([](ModelPayload& of) { of.swing_rate = 2; }),
+            at + "model_swing_rad_per_s: 0 became 2");
+}
+
 TEST(RecordComparisonTest, NamesARecordThatIsMissingOrTooMuch) {
   RecordComparison comparison{link::Role::Patient};
   const Record tick = tick_at(TimePoint{2ms}, 0);

@@ -49,6 +49,38 @@ TEST(ReportCurvesTest, NoPeakOfALongSessionIsLostBetweenItsPoints) {
   EXPECT_EQ(least, -3);
 }
 
+TEST(ReportCurvesTest, NoLineLeadsThroughTimeThatNobodyWroteDown) {
+  ReportCurves curves;
+  for (int ms = 0; ms < 500; ++ms) curves.see(tick_at(ms));
+  for (int ms = 520; ms < 1000; ++ms) curves.see(tick_at(ms));  // a pause of the process
+  for (int ms = 3000; ms < 3500; ++ms) curves.see(tick_at(ms));
+  const nlohmann::json series = series_of(curves);
+  int gaps = 0;
+  for (std::size_t i = 0; i < series["t"].size(); ++i) {
+    if (!series["hand"][i].is_null()) continue;
+    ++gaps;
+    EXPECT_NEAR(series["t"][i].get<double>(), 2, 0.01);
+    for (const char* name : {"felt", "touched", "truth", "x", "y", "energy", "energy_tissue"}) {
+      EXPECT_TRUE(series[name][i].is_null()) << name;
+    }
+  }
+  EXPECT_EQ(gaps, 1);
+  ASSERT_EQ(series["idle"].size(), 1U);
+  EXPECT_NEAR(series["idle"][0][0].get<double>(), 0.999, 1e-9);
+  EXPECT_NEAR(series["idle"][0][1].get<double>(), 3, 1e-9);
+}
+
+TEST(ReportCurvesTest, NorThroughAGapThatTwoPointsOfOneBucketSpan) {
+  ReportCurves curves;
+  for (int ms = 0; ms < 40'007; ++ms) {
+    curves.see(tick_at(ms < 20'003 ? ms : ms + 5000));
+  }
+  const nlohmann::json series = series_of(curves);
+  int gaps = 0;
+  for (const auto& hand : series["hand"]) gaps += hand.is_null() ? 1 : 0;
+  EXPECT_EQ(gaps, 1);
+}
+
 TEST(ReportCurvesTest, EachTimeTheHandWentInDeepIsALoop) {
   ReportCurves curves;
   const auto stroke = [&](int from, double depth) {
@@ -72,7 +104,7 @@ TEST(ReportCurvesTest, EachTimeTheHandWentInDeepIsALoop) {
   ASSERT_EQ(series["loops"].size(), 3U) << "and the one that is not over";
   EXPECT_EQ(series["loops"][1]["at"].get<double>(), 2);
   EXPECT_LE(series["loops"][0]["d"].size(), 150U);
-  EXPECT_EQ(series["idle"].size(), 1U);
+  EXPECT_EQ(series["idle"].size(), 4U) << "three half seconds that nobody wrote down, and the tick";
 }
 
 }  // namespace

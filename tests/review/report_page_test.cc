@@ -16,7 +16,7 @@ std::string page_of(const std::string& outcome) {
   const SessionPair pair = pair_of(std::move(surgeon), std::move(patient)).value();
   ReportCurves curves;
   const JudgedSession judged = judge_session(pair, nullptr, &curves);
-  const auto taps = match_taps(pair.surgeon, pair.patient, pair.time_line, judged.excursions);
+  const Touches taps = match_taps(pair.surgeon, pair.patient, pair.time_line, judged.excursions);
   Asked asked;
   asked.outcome = outcome;
   return report_page(pair, curves, demo_report(pair, taps, asked, {}, {}, metrics_json(judged)));

@@ -14,15 +14,19 @@ std::vector<Tap> taps_of(const test::SampleFiles& files) {
   const auto session = load(files);
   const auto tissue = judge::TissueTable::parse(*session.patient.texts.tissue_csv);
   const auto hand = test::hand_motion(static_cast<int>(session.surgeon.ticks / 2000));
-  return match_taps(
-      session.surgeon, session.patient, {}, test::find_excursions(hand, test::kSurface, &*tissue));
+  return match_taps(session.surgeon,
+                    session.patient,
+                    {},
+                    test::find_excursions(hand, test::kSurface, &*tissue))
+      .taps;
 }
 
 /// The same of a hand that moved so, where nobody knows the tissue.
 std::vector<Tap> taps_of(const test::LoadedSession& session,
                          const std::vector<judge::Motion>& hand) {
   return match_taps(
-      session.surgeon, session.patient, {}, test::find_excursions(hand, test::kSurface));
+             session.surgeon, session.patient, {}, test::find_excursions(hand, test::kSurface))
+      .taps;
 }
 
 TEST(TapsTest, EachStrokeGetsItsPlaceIndexAndStiffness) {
@@ -51,6 +55,39 @@ TEST(TapsTest, StrokeThatThePatientNeverSawDoesNotShiftTheOthers) {
   ASSERT_EQ(taps.size(), 5u);
   EXPECT_NEAR(taps[1].stiffness.felt().value(), test::kFeltA, 1e-6);
   EXPECT_EQ(taps[1].estimate.number, 3u);
+}
+
+TEST(TapsTest, ATouchThatNoEstimateCameOfStandsInItsTurn) {
+  const auto session = load(sample_session({.unseen_stroke = 1}));
+  const auto hand = test::hand_motion(3);
+  const auto touches =
+      match_taps(session.surgeon, session.patient, {}, test::find_excursions(hand, test::kSurface));
+  EXPECT_EQ(touches.taps.size(), 5u);
+  ASSERT_EQ(touches.others.size(), 1u);
+  EXPECT_EQ(touches.others[0].place, kSiteA);
+  EXPECT_GT(touches.others[0].contact_at, touches.taps[0].began_at);
+  EXPECT_LT(touches.others[0].contact_at, touches.taps[1].began_at);
+  const std::string text = tap_table(session.surgeon.began_at, touches, {}, {});
+  EXPECT_LT(text.find("tap 1"), text.find("no estimate came of it"));
+  EXPECT_LT(text.find("no estimate came of it"), text.find("tap 2"));
+}
+
+TEST(TapsTest, AStrokeBeginsWithTheHandsContact) {
+  const auto session = load(sample_session());
+  const auto hand = test::hand_motion(3);
+  const auto touches =
+      match_taps(session.surgeon, session.patient, {}, test::find_excursions(hand, test::kSurface));
+  ASSERT_EQ(touches.taps.size(), 6u);
+  std::size_t next = 0;
+  double before = -1;
+  for (const judge::Motion& tick : hand) {
+    const double indentation = tick.position - test::kSurface;
+    if (indentation > 0 && !(before > 0) && next < touches.taps.size()) {
+      EXPECT_EQ(touches.taps[next++].began_at, tick.at);
+    }
+    before = indentation;
+  }
+  EXPECT_EQ(next, 6u);
 }
 
 TEST(TapsTest, ManyEstimatesOfOneLongStrokeTakeNoLonger) {
@@ -127,12 +164,13 @@ TEST(TapsTest, WithoutTapsOverTheInclusionThereIsNoVerdict) {
   auto taps = taps_of(sample_session());
   taps.resize(3);
   EXPECT_FALSE(overall_depth(taps));
-  EXPECT_NE(tap_table({}, overall_depth({}), {}).find("no stroke"), std::string::npos);
+  EXPECT_NE(tap_table({}, {}, overall_depth({}), {}).find("no stroke"), std::string::npos);
 }
 
 TEST(TapsTest, AMapSpeaksForAllPlaces) {
   const auto taps = taps_of(sample_session());
-  const std::string text = tap_table(taps, overall_depth(taps), {.number = 9, .places = 9});
+  const std::string text =
+      tap_table({}, {taps, {}}, overall_depth(taps), {.number = 9, .places = 9});
   EXPECT_NE(text.find("all places together: No inclusion found"), std::string::npos);
   EXPECT_EQ(text.find("over the inclusion"), std::string::npos);
 }
