@@ -84,9 +84,10 @@ void RateControl::grow(Duration round_trip, TimePoint now) noexcept {
 void RateControl::set_pace(const Report& report) noexcept {
   const double ratio = report.span_ratio / 256.0;
   if (ratio > kSpreadMuch) {
+    narrow_ = true;
     pace_ = std::min(pace_, std::max(1.2 * target_, 0.85 * report.rate_kbps));
   } else if (ratio < kSpreadLittle) {
-    pace_ = pace_ * 1.015;
+    pace_ *= narrow_ ? 1.015 : 1.04;  // quickly, until a line is met for the first time
   }
   pace_ = std::clamp(pace_, kPaceMin, kPaceMax);
 }

@@ -47,6 +47,7 @@ class RateControl {
   double target_;                  ///< [kbit/s]
   double pace_{600};               ///< [kbit/s]
   double loss_{};                  ///< [-]
+  bool narrow_{};                  ///< the line was slower than the pace once
   std::optional<double> ceiling_;  ///< [kbit/s], where it had to yield last
   std::optional<TimePoint> cut_at_;
   std::optional<TimePoint> grown_at_;

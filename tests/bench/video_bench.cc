@@ -66,6 +66,9 @@ void run_all(Duration length) {
            "M7: frozen 1");
     }
   }
+  VideoPathSetup beginning = video_path("loss 2%", kOneWay, 100);
+  beginning.judged_from = Duration{0};
+  show("2 %, the first 5 s", run(beginning, std::chrono::seconds{5}), "M2: p95 25");
   show("2 % in runs of 3",
        run(video_path("loss gemodel 0.68% 33.3% 100% 0%", kOneWay, 10), length),
        "M8: frozen 4");

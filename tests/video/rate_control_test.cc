@@ -56,6 +56,20 @@ TEST(RateControlTest, IsOffWhereItsLeastIsTooMuchAndLongerEachTime) {
   EXPECT_LE(again - now, seconds{10});
 }
 
+TEST(RateControlTest, ThePaceRisesQuicklyUntilALineIsMet) {
+  RateControl rate{{}};
+  Report report;
+  TimePoint now{};
+  for (int i = 0; i < 75; ++i, now += milliseconds{33}) rate.hear(report, kRoundTrip, now);
+  EXPECT_EQ(rate.pace(), 9600) << "within 2.5 s";
+  report.span_ratio = 400;
+  report.rate_kbps = 3000;
+  rate.hear(report, kRoundTrip, now);
+  report.span_ratio = 256;
+  for (int i = 0; i < 30; ++i, now += milliseconds{33}) rate.hear(report, kRoundTrip, now);
+  EXPECT_LT(rate.pace(), 4500) << "and slowly from then on";
+}
+
 TEST(RateControlTest, ALineSlowerThanThePaceSlowsIt) {
   RateControl rate{{}};
   Report report;

@@ -18,7 +18,6 @@ using std::chrono::milliseconds;
 constexpr Duration kStep = microseconds{250};
 constexpr Duration kForcePeriod = milliseconds{1};
 constexpr std::size_t kForceSize = 200;  // [bytes] of a telegram: 228 on the wire
-constexpr Duration kSettled = std::chrono::seconds{3};
 constexpr std::size_t kHeads = 32 + 28;  // [bytes]: header and tag, UDP and IP
 
 enum Kind : std::uint8_t { kForce, kMedia };
@@ -106,7 +105,7 @@ class Run {
     std::memcpy(&stamp, body.data(), sizeof stamp);
     const TimePoint sent_at{Duration{stamp.sent_ns}};
     standing_.add(stamp.number, arrived_at - sent_at, arrived_at);
-    if (sent_at.time_since_epoch() < kSettled) return;
+    if (sent_at.time_since_epoch() < setup_.judged_from) return;
     result_.force_excess_ms.push_back(1e3 * seconds(arrived_at - sent_at - line_));
     result_.force_arrived_s.push_back(seconds(arrived_at.time_since_epoch()));
   }
@@ -114,7 +113,7 @@ class Run {
   void show(const ReceivedFrame& frame, TimePoint now) {
     if (!is_right_(frame)) ++result_.wrong;
     const TimePoint captured_at{frame.captured};
-    if (now.time_since_epoch() >= kSettled) {
+    if (now.time_since_epoch() >= setup_.judged_from) {
       result_.frame_delay_ms.push_back(1e3 * seconds(now - captured_at - setup_.one_way));
       const Duration pause = now - shown_at_;
       if (pause > milliseconds{100}) frozen_ += pause - RateControl::kFramePeriod;
@@ -141,7 +140,7 @@ class Run {
   }
 
   void finish() {
-    const Duration span = setup_.length - kSettled;
+    const Duration span = setup_.length - setup_.judged_from;
     if (const Duration rest = TimePoint{setup_.length} - shown_at_; rest > milliseconds{100}) {
       frozen_ += rest;
     }
@@ -167,7 +166,7 @@ class Run {
   TimePoint force_at_{};
   TimePoint frame_at_{milliseconds{100}};
   TimePoint report_at_{milliseconds{50}};
-  TimePoint shown_at_{kSettled};
+  TimePoint shown_at_{setup_.judged_from};
   std::uint64_t force_number_{};
   std::uint64_t wire_bytes_{};
   std::uint64_t shown_{};

@@ -18,6 +18,7 @@ struct VideoPathSetup {
   double rate_mbps{100};  ///< [Mbit/s] of `down` at the start, for what force has without video
   Duration one_way{};     ///< of `down`, without queue
   Duration length{std::chrono::seconds{60}};
+  Duration judged_from{std::chrono::seconds{3}};
   std::uint64_t seed{1};
   RateConfig rate{};
   bool with_video{true};
@@ -25,10 +26,10 @@ struct VideoPathSetup {
 };
 
 struct VideoPathResult {
-  std::vector<double> force_excess_ms;  ///< one a telegram, from 3 s on; by time
+  std::vector<double> force_excess_ms;  ///< one a telegram, from judged_from on; by time
   std::vector<double> force_arrived_s;  ///< beside it
   std::uint64_t force_dropped{};        ///< by the full queue, telegrams and fragments alike
-  std::vector<double> frame_delay_ms;   ///< capture to whole, less the line, from 3 s on
+  std::vector<double> frame_delay_ms;   ///< capture to whole, less the line, likewise
   double frozen_share{};                ///< of time, in pauses above 100 ms
   double fps{};
   double wire_kbps{};     ///< [kbit/s], with heads
