@@ -10,9 +10,11 @@ video::Shot DrawnCamera::shoot(TimePoint /*now*/) {
           .captured_at = tip.at};
 }
 
-std::unique_ptr<video::Camera> make_camera(std::string_view source,
+std::unique_ptr<video::Camera> make_camera(std::unique_ptr<video::Camera> captured,
+                                           std::string_view source,
                                            Mailbox<video::TipSeen>* tip,
                                            double surface) {
+  if (captured) return captured;
   if (source == "phantom") return std::make_unique<DrawnCamera>(*tip, surface);
   if (source == "test") return std::make_unique<video::TestCamera>();
   return nullptr;

@@ -29,8 +29,10 @@ class DrawnCamera final : public video::Camera {
   video::PhantomPicture picture_;
 };
 
-/// By its name in the settings: phantom, test; null: any other. `tip` is that of a phantom.
-[[nodiscard]] std::unique_ptr<video::Camera> make_camera(std::string_view source,
+/// The `captured` one, or by its name in the settings: phantom, test; null: any other. `tip` is
+/// that of a phantom.
+[[nodiscard]] std::unique_ptr<video::Camera> make_camera(std::unique_ptr<video::Camera> captured,
+                                                         std::string_view source,
                                                          Mailbox<video::TipSeen>* tip,
                                                          double surface);
 

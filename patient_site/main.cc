@@ -15,6 +15,7 @@
 #include "common/io/realtime/background_loop.h"
 #include "common/io/realtime/steady_clock.h"
 #include "common/link/codec_wire.h"
+#include "patient_site/captured_camera.h"
 #include "patient_site/devices/device_rig.h"
 #include "patient_site/devices_command.h"
 #include "patient_site/display.h"
@@ -76,24 +77,8 @@ struct Plan {
   PatientDevices facts;
   site_program::RunnerConfig runner;
   record::SessionInfo info;
+  std::unique_ptr<video::Camera> camera;  ///< of a video device; null: another one or none
 };
-
-/// What stands behind --devices, where the stage is not simulated.
-Result<std::optional<DevicePlans>> plan_devices(Settings& settings) {
-  if (settings.stage == "sim") return std::nullopt;
-  auto plans = read_device_plans(settings.devices);
-  if (!plans) return tl::unexpected{plans.error()};
-  if (const auto flaw = flaw_of(DeviceFacts{
-          .hand = {}, .stage = facts_of(*plans).stage, .sensor = facts_of(*plans).sensor})) {
-    return fail(settings.devices + ": " + *flaw);
-  }
-  if (!plans->phantom.empty()) settings.phantom = plans->phantom;
-  if ((settings.force == "hid") != plans->card.has_value()) {
-    return fail(settings.devices + ": a card and --force hid go together, one needs the other");
-  }
-  settings.node.sensor_stale = sensor_silence_of(*plans);
-  return std::optional{std::move(*plans)};
-}
 
 /// The simulated patient is that phantom, and the gate keeps within what is known of it.
 Result<void> take_phantom(const Phantom& phantom, Settings& settings) {
@@ -106,6 +91,20 @@ Result<void> take_phantom(const Phantom& phantom, Settings& settings) {
                                      simulation.surface_offset - simulation.breathing_amplitude,
                                      phantom.depth_max());
   return {};
+}
+
+/// As far as the settings say it.
+site_program::RunnerConfig runner_of(const Settings& settings, const PatientDevices& facts) {
+  site_program::RunnerConfig runner;
+  runner.session = {.role = link::Role::Patient,
+                    .settings_hash = settings.agreement,
+                    .coupling = settings.coupling.name,
+                    .git = std::string{site_program::git_commit()},
+                    .devices = {.hand = {}, .stage = facts.stage, .sensor = facts.sensor}};
+  runner.protection = settings.protection;
+  runner.loop = settings.loop;
+  runner.with_media = settings.camera.any();
+  return runner;
 }
 
 tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
@@ -135,18 +134,12 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
     if (const auto fits = take_phantom(*phantom, *settings); !fits) return bad(fits.error());
   }
   const PatientDevices facts = *devices ? facts_of(**devices) : facts_of(simulation);
-  site_program::RunnerConfig runner;
-  runner.session = {.role = link::Role::Patient,
-                    .settings_hash = settings->agreement,
-                    .coupling = settings->coupling.name,
-                    .git = std::string{site_program::git_commit()},
-                    .devices = {.hand = {}, .stage = facts.stage, .sensor = facts.sensor}};
+  auto camera = open_camera(settings->camera.source);
+  if (!camera) return bad(camera.error());
+  site_program::RunnerConfig runner = runner_of(*settings, facts);
   runner.address = local;
   runner.meeting = *meeting;
-  runner.protection = settings->protection;
   runner.wrap_transport = std::move(*wrap);
-  runner.loop = settings->loop;
-  runner.with_media = settings->camera.any();
   auto info =
       site_program::session_info(link::Role::Patient, "palp-patient", settings->seed, document);
   info.metadata.emplace_back("coupling", settings->coupling.name);
@@ -164,7 +157,8 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
               std::move(*devices),
               facts,
               std::move(runner),
-              std::move(info)};
+              std::move(info),
+              std::move(*camera)};
 }
 
 /// Started, not ready; null where there are none.
@@ -204,7 +198,8 @@ class Program {
                      {"version", std::string{site_program::version()}}},
                     recording_,
                     std::nullopt},
-        camera_{make_camera(settings_.camera.source,
+        camera_{make_camera(std::move(plan.camera),
+                            settings_.camera.source,
                             settings_.camera.any() ? &recording_.camera()->force().tip() : nullptr,
                             settings_.simulation.surface_offset)},
         began_at_{clock_.now()},

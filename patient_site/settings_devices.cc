@@ -216,6 +216,22 @@ Result<DevicePlans> sound(DevicePlans plans, const std::string& name) {
 
 }  // namespace
 
+Result<std::optional<DevicePlans>> plan_devices(Settings& settings) {
+  if (settings.stage == "sim") return std::nullopt;
+  auto plans = read_device_plans(settings.devices);
+  if (!plans) return tl::unexpected{plans.error()};
+  if (const auto flaw = flaw_of(DeviceFacts{
+          .hand = {}, .stage = facts_of(*plans).stage, .sensor = facts_of(*plans).sensor})) {
+    return fail(settings.devices + ": " + *flaw);
+  }
+  if (!plans->phantom.empty()) settings.phantom = plans->phantom;
+  if ((settings.force == "hid") != plans->card.has_value()) {
+    return fail(settings.devices + ": a card and --force hid go together, one needs the other");
+  }
+  settings.node.sensor_stale = sensor_silence_of(*plans);
+  return std::optional{std::move(*plans)};
+}
+
 Result<DeviceProfile> find_profile(const std::string& name) {
   constexpr std::string_view kFile = "file:";
   std::string text{profile_text(name)};

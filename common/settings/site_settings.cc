@@ -103,8 +103,10 @@ Result<RecordSettings> make_record(const proto::config::Record& message) {
 
 Result<CameraSettings> make_camera(const proto::config::Camera& message) {
   const std::string& source = message.source();
-  if (source != "none" && source != "phantom" && source != "test") {
-    return fail("unknown camera '" + source + "'; there are: none, phantom, test");
+  const bool device = source.starts_with('/');
+  if (!device && source != "none" && source != "phantom" && source != "test") {
+    return fail("unknown camera '" + source +
+                "'; there are: none, phantom, test, or a video device's file (/dev/video0)");
   }
   return CameraSettings{.source = source,
                         .jpeg = message.codec() == "jpeg",

@@ -139,6 +139,7 @@ const std::vector<Arrow>& arrows() {
         "common/settings"}},
       {"surgeon_site/*", {"common/message", "common/coupling", "common/link", "common/record"}},
       {"patient_site/drawn_camera.*", {"video"}},
+      {"patient_site/captured_camera.*", {"video", "common/io/device", "common/io/process"}},
       {"patient_site/main.cc",
        {"patient_site/devices",
         "video",
