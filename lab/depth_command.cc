@@ -17,6 +17,7 @@
 #include "common/core/conventions.h"
 #include "common/core/printable.h"
 #include "common/core/whole_file.h"
+#include "lab/number_list.h"
 #include "lab/partial_rows.h"
 #include "lab/plan/plan.h"
 #include "lab/report/depth_cases.h"
@@ -35,25 +36,6 @@ ExitStatus bad_input(const std::string& sentence) {
   return {ExitCode::BadInput, "palp-lab: " + sentence};
 }
 
-Result<std::vector<double>> parse_depths(const std::string& text) {
-  std::vector<double> out;
-  std::string part;
-  for (const char c : text + ",") {
-    if (c != ',') {
-      part += c;
-      continue;
-    }
-    const auto value = config::parse_number(part);
-    if (!value || !(*value >= 3 && *value <= 27)) {
-      return fail("--depths-mm is \"" + printable(text) +
-                  "\", expected numbers from 3 to 27 with commas between");
-    }
-    out.push_back(*value * kMillimetre);
-    part.clear();
-  }
-  return out;
-}
-
 Result<DepthStudy> study_of(const DepthFlags& flags) {
   DepthStudy study{.depths = {},
                    .count = static_cast<std::uint32_t>(flags.count),
@@ -68,9 +50,9 @@ Result<DepthStudy> study_of(const DepthFlags& flags) {
                    .coupling = flags.coupling};
   study.wide_count = flags.wide ? study.count : study.count / kWideShare;
   if (flags.depths_mm.empty()) return study;
-  auto depths = parse_depths(flags.depths_mm);
+  const auto depths = parse_numbers("--depths-mm", flags.depths_mm, 3, 27);
   if (!depths) return tl::unexpected(depths.error());
-  study.depths = std::move(*depths);
+  for (const double depth : *depths) study.depths.push_back(depth * kMillimetre);
   return study;
 }
 

@@ -16,6 +16,7 @@
 #include "common/io/process/process_time.h"
 #include "common/plot/picture.h"
 #include "lab/depth_command.h"
+#include "lab/impedance_command.h"
 #include "lab/locate_command.h"
 #include "lab/plan/plan.h"
 #include "lab/plan/scenario_file.h"
@@ -224,6 +225,8 @@ int main(int argc, char** argv) {
   declare_depth(line.verb("depth", "how well a depth is estimated, over many phantoms"), depth);
   palp::lab::LocateFlags locate;
   declare_locate(line.verb("locate", "how well taps at several places find a ball"), locate);
+  palp::lab::ImpedanceFlags impedance;
+  declare_impedance(line.verb("impedance", "what a coupling transmits, over frequency"), impedance);
   palp::lab::VisibilityFlags visible;
   declare_visible(line.verb("visible", "the smallest inclusion the sensor sees"), visible);
   return palp::config::run_program(line, argc, argv, [&]() -> palp::config::ExitStatus {
@@ -237,6 +240,7 @@ int main(int argc, char** argv) {
     if (verb == "scenarios") return scenarios.run();
     if (verb == "depth") return palp::lab::run_depth(depth, palp::lab::machine());
     if (verb == "locate") return palp::lab::run_locate(locate, palp::lab::machine());
+    if (verb == "impedance") return palp::lab::run_impedance(impedance, palp::lab::machine());
     if (verb == "visible") return palp::lab::run_visible(visible);
     return palp::lab::run(arguments);
   });
