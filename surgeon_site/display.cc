@@ -14,8 +14,6 @@
 namespace palp::surgeon {
 namespace {
 
-double in_milliseconds(Duration span) noexcept { return seconds(span) * 1e3; }
-
 LinePart bar_of(const ScriptProgress& script) {
   constexpr int kWidth = 10;
   if (!script.scripted) return {};
@@ -73,19 +71,6 @@ std::string status_line(const SurgeonStatus& status, std::size_t columns) {
        bar_of(status.script),
        {.full = phase_text(status.script), .brief = {}, .rank = 3}}};
   return fitted_line(parts, columns);
-}
-
-std::optional<std::string> delay_advice(const SurgeonStatus& status,
-                                        Duration round_trip_max,
-                                        bool engagement_forced) {
-  const LinkHealth& link = status.link;
-  if (link.state != LinkState::Live || link.round_trip <= round_trip_max) return std::nullopt;
-  return number_text("the round trip is ", in_milliseconds(link.round_trip), 1, " ms: ") +
-         number_text("above ", in_milliseconds(round_trip_max), 0, " ms ") +
-         "coupling direct is not stable, tissue feels too soft or too stiff and a light hand is "
-         "shaken; it " +
-         (engagement_forced ? "engages here because --force-engage was given"
-                            : "does not engage here unless --force-engage is given");
 }
 
 }  // namespace palp::surgeon

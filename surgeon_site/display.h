@@ -13,9 +13,4 @@ namespace palp::surgeon {
 /// left out. Pure. Thread: the display's; allocates.
 [[nodiscard]] std::string status_line(const SurgeonStatus& status, std::size_t columns = 0);
 
-/// What coupling direct does at the present round trip, if that is above `round_trip_max`.
-[[nodiscard]] std::optional<std::string> delay_advice(const SurgeonStatus& status,
-                                                      Duration round_trip_max,
-                                                      bool engagement_forced);
-
 }  // namespace palp::surgeon

@@ -28,6 +28,7 @@
 #include "site_program/site_main.h"
 #include "site_program/site_report.h"
 #include "site_program/status_line.h"
+#include "surgeon_site/advice.h"
 #include "surgeon_site/devices/master_rig.h"
 #include "surgeon_site/devices_command.h"
 #include "surgeon_site/display.h"
@@ -276,7 +277,9 @@ class Program {
   site_program::PeerWatch watch_;
   site_program::StatusLine line_;
   site_program::RoundTrips round_trips_;
-  bool advised_{};
+  Advice advice_{{.coupling = settings_.coupling.name,
+                  .direct_round_trip_max = settings_.direct_round_trip_max,
+                  .engagement_forced = settings_.engagement_forced}};
 };
 
 std::optional<ExitStatus> Program::await_master(io::Terminal& terminal) {
@@ -334,12 +337,7 @@ std::optional<ExitStatus> Program::look(TimePoint now) {
   watch_.note_refusal(runner_.refusal());
   if (const auto peer = runner_.take_peer()) recording_.tell_of_peer(*peer);
   recording_.tell_news(line_);
-  if (!advised_ && settings_.coupling.name == "direct") {
-    const auto advice =
-        delay_advice(status, settings_.direct_round_trip_max, settings_.engagement_forced);
-    if (advice) line_.warn(*advice);
-    advised_ = advice.has_value();
-  }
+  for (const std::string& sentence : advice_.news(status)) line_.warn(sentence);
   show(status, now);
   if (hopeless) return ExitStatus{ExitCode::CannotOpen, "refused", *hopeless};
   if (auto exit_status = end_of_script(status)) return exit_status;

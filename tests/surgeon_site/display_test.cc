@@ -137,20 +137,6 @@ TEST(DisplayTest, SaysTheOutcomeOfAFinishedScript) {
               AllOf(HasSubstr("[##########] 100 %  completed"), Not(HasSubstr("taps"))));
 }
 
-TEST(DelayAdviceTest, IsGivenAboveTheLimitOnly) {
-  constexpr Duration kLimit = std::chrono::milliseconds{20};
-  SurgeonStatus status;
-  status.link.round_trip = std::chrono::milliseconds{60};
-  EXPECT_FALSE(delay_advice(status, kLimit, false)) << "the link is down";
-  status.link.state = LinkState::Live;
-  EXPECT_THAT(delay_advice(status, kLimit, false).value(),
-              testing::AllOf(testing::HasSubstr("60.0 ms"),
-                             testing::HasSubstr("does not engage here unless --force-engage")));
-  EXPECT_THAT(delay_advice(status, kLimit, true).value(), testing::HasSubstr("engages here"));
-  status.link.round_trip = kLimit;
-  EXPECT_FALSE(delay_advice(status, kLimit, false));
-}
-
 TEST(DisplayTest, AMapSaysMoreThanTheLastTouch) {
   SurgeonStatus status;
   status.depth = {.number = 9, .verdict = DepthVerdict::Found, .depth = 7.7e-3};
