@@ -63,6 +63,7 @@ Json figures_json(const SiteReport& report) {
   json["ticks"] = loop.ticks;
   json["missed_ticks"] = loop.missed;
   json["lateness_p50_us"] = microseconds(loop.lateness_p50);
+  json["lateness_p99_us"] = microseconds(loop.lateness_p99);
   json["lateness_p999_us"] = microseconds(loop.lateness_p999);
   json["lateness_max_us"] = microseconds(loop.lateness_max);
   json["realtime"] = {{"priority", loop.grant.priority},

@@ -27,6 +27,7 @@ TEST(SiteReportTest, HasTheKeysThatScriptsRelyOn) {
                           "ticks",
                           "missed_ticks",
                           "lateness_p50_us",
+                          "lateness_p99_us",
                           "lateness_p999_us",
                           "lateness_max_us",
                           "records_written",
