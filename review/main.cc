@@ -1,4 +1,5 @@
 // palp-review: reads session files. It is linked into no site.
+#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <sstream>
@@ -143,11 +144,15 @@ ExitStatus run_merge(const MergeFlags& flags) {
   return {};
 }
 
-void declare(config::CommandLine& line, MergeFlags& flags) {
+void declare_pair(config::CommandLine& line, MergeFlags& flags) {
   line.argument("SURGEON", flags.sessions.surgeon, "session file of the surgeon's site");
   line.required();
   line.argument("PATIENT", flags.sessions.patient, "session file of the patient's site");
   line.required();
+}
+
+void declare(config::CommandLine& line, MergeFlags& flags) {
+  declare_pair(line, flags);
   line.argument("OUT", flags.out, "new file; must not exist");
   line.required();
 }
@@ -155,10 +160,12 @@ void declare(config::CommandLine& line, MergeFlags& flags) {
 ExitStatus run_scenario(const MergeFlags& flags) {
   const auto session = load_pair(flags.sessions.surgeon, flags.sessions.patient);
   if (!session) return exit_status_of(session.error());
-  const auto text = scenario_text(*session, flags.sessions.surgeon);
+  // Wherever the lab is run.
+  const auto text =
+      scenario_text(*session, std::filesystem::absolute(flags.sessions.surgeon).string());
   if (!text) return bad_input(flags.sessions.patient + ": " + text.error().text);
   if (const auto written = config::write_whole_file(flags.out, *text); !written) {
-    return cannot_open("OUT: " + written.error().text);
+    return cannot_open("--out: " + written.error().text);
   }
   std::cout << "scenario: " << harmless_line(flags.out) << "; palp-lab run plays it\n"
             << lack_lines(*session);
@@ -348,7 +355,10 @@ int run(int argc, char** argv) {
   MergeFlags merge;
   declare(line.verb("merge", "both sites' files as one, on one line of time"), merge);
   MergeFlags scenario;
-  declare(line.verb("scenario", "a session as a scenario that palp-lab run plays"), scenario);
+  auto& as_scenario = line.verb("scenario", "a session as a scenario that palp-lab run plays");
+  declare_pair(as_scenario, scenario);
+  as_scenario.output("--out", scenario.out, "text file; written over");
+  as_scenario.required();
   ExportFlags exported;
   declare(line.verb("export", "numbers of chosen topics as CSV or MAT"), exported);
   ReplayFlags replay;

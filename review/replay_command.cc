@@ -167,7 +167,7 @@ Result<ReplayAnswer> patient_again(const RunBytes& files,
     return fail("the session's telegrams are of " + printable(run.coupling) +
                 ", which no half of " + settings->coupling.name +
                 " understands; the lab plays the recorded hand under it: " +
-                "palp-review scenario SURGEON PATIENT again.textproto && " +
+                "palp-review scenario SURGEON PATIENT --out again.textproto && " +
                 "palp-lab run again.textproto --coupling " + settings->coupling.name);
   }
   PatientParts parts{settings->node, settings->coupling, settings->estimator};
