@@ -99,7 +99,7 @@ function Touch({ s }: { s: Status | undefined }) {
     <Gauge force={s ? model.contact(s) : 0} />
     <dl>
       <Row name="Indentation" id="indentation" unit="mm">{s ? Math.max(0, model.tip(s)).toFixed(1) : '-'}</Row>
-      {!model.patient && <Row name="Felt by the hand" unit="N">{s ? s.force_n.toFixed(2) : '-'}</Row>}
+      {!model.patient && <Row name="Felt by the hand" unit="N">{s ? (Math.round(s.force_n * 100) / 100 || 0).toFixed(2) : '-'}</Row>}
       <Row name="Stiffness, last stroke" id="stiffness" unit="N/m">{last ? last.stiffness.toFixed(0) : '-'}</Row>
     </dl>
   </section>;
