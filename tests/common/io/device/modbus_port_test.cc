@@ -1,5 +1,9 @@
 #include "common/io/device/modbus_port.h"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 #include "tests/common/io/device/modbus_line.h"
 
 namespace palp::io {
@@ -47,6 +51,49 @@ TEST(ModbusPortTest, ALateAnswerIsNotTakenForTheNext) {
     EXPECT_EQ(port.read(0x9000, words, false), PortFault::None);
   });
   EXPECT_EQ(words[1], 3070);
+}
+
+/// A server of TCP that answers each of two connections once: 3070 at the asked register, the
+/// first time with the transaction's number changed by `wrong`.
+void answer_twice(int listener, std::uint8_t wrong) {
+  for (const std::uint8_t change : {wrong, std::uint8_t{0}}) {
+    pollfd one{.fd = listener, .events = POLLIN, .revents = 0};
+    if (::poll(&one, 1, 5000) <= 0) return;
+    const int peer = ::accept(listener, nullptr, nullptr);
+    std::array<std::uint8_t, 12> asked{};
+    EXPECT_EQ(::recv(peer, asked.data(), asked.size(), MSG_WAITALL), 12);
+    Bytes reply{asked[0], asked[1], 0, 0, 0, 5, asked[6], 3, 2, 0x0B, 0xFE};
+    reply[1] ^= change;
+    EXPECT_EQ(::send(peer, reply.data(), reply.size(), MSG_NOSIGNAL), 11);
+    std::uint8_t end{};
+    (void)::recv(peer, &end, 1, 0);  // till the other side closes
+    ::close(peer);
+  }
+}
+
+TEST(ModbusPortTest, AnAnswerToAnotherTransactionIsRefusedAndANewConnectionGoesOn) {
+  const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in here{};
+  here.sin_family = AF_INET;
+  here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof here;
+  ASSERT_EQ(::bind(listener, reinterpret_cast<sockaddr*>(&here), size), 0);
+  ASSERT_EQ(::listen(listener, 2), 0);
+  ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&here), &size), 0);
+  std::jthread server{[listener] { answer_twice(listener, 1); }};
+  ModbusAddress address;
+  address.host = "127.0.0.1";
+  address.port = ntohs(here.sin_port);
+  {
+    ModbusPort port{address};
+    ASSERT_EQ(port.open(), PortFault::None);
+    std::array<std::uint16_t, 1> words{};
+    EXPECT_EQ(port.read(0x9000, words, false), PortFault::BrokenFrame);
+    EXPECT_EQ(port.read(0x9000, words, false), PortFault::None);
+    EXPECT_EQ(words[0], 3070);
+  }
+  server.join();
+  ::close(listener);
 }
 
 TEST(ModbusPortTest, ALineThatGoesAwayIsLost) {
