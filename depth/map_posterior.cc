@@ -14,10 +14,20 @@ constexpr std::size_t kDrawsPrior = 240;
 constexpr std::size_t kDrawsFirst = 500;   // by the cells' own masses
 constexpr std::size_t kDrawsLater = 1100;  // and by what these said of them
 constexpr double kFirstShare = 0.25;       // [-], of the later draws, by the cells' own masses
-constexpr double kTail = 0.025;            // [-], outside of an interval on each side
-constexpr double kEnd = 0.08;              // [-], of a range: near its end
-constexpr double kModeShare = 0.02;        // [-]: less is no mode
-constexpr double kForgottenShare = 1e-9;   // [-], share of a ball
+/// Outside of an interval, by side, and on the lower side where the interval reaches the upper end.
+struct Tails {
+  double low{};          ///< [-], share
+  double high{};         ///< [-]
+  double low_to_end{};   ///< [-]
+  double high_to_end{};  ///< [-], and on the upper side where it reaches the lower end
+};
+constexpr Tails kEven{.low = 0.025, .high = 0.025, .low_to_end = 0.05, .high_to_end = 0.05};
+// Of the radius: a large ball is seen from more places and depths than a small one, and has more of
+// the posterior where the touches tell little of the size. Small ones are left in longer.
+constexpr Tails kOfRadius{.low = 0.005, .high = 0.045, .low_to_end = 0.005, .high_to_end = 0.05};
+constexpr double kEnd = 0.08;             // [-], of a range: near its end
+constexpr double kModeShare = 0.02;       // [-]: less is no mode
+constexpr double kForgottenShare = 1e-9;  // [-], share of a ball
 constexpr std::uint64_t kSeed = 0x6d6170;
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
@@ -144,6 +154,7 @@ template <class Value>
 Estimated estimated(const std::vector<LikelyBall>& balls,
                     double low,
                     double high,
+                    const Tails& tails,
                     const Value& value) {
   std::vector<WeighedValue> all;
   all.reserve(balls.size());
@@ -168,8 +179,8 @@ Estimated estimated(const std::vector<LikelyBall>& balls,
     return all.back().value;
   };
   out.median = quantile(0.5);
-  out.low = quantile(kTail);
-  out.high = quantile(1 - kTail);
+  out.low = quantile(tails.low);
+  out.high = quantile(1 - tails.high);
   // Densities near the ends beside the largest anywhere.
   const double window = kEnd * (high - low);
   const auto within = [&](double from) {
@@ -191,9 +202,9 @@ Estimated estimated(const std::vector<LikelyBall>& balls,
   if (std::max(first, last) < most) return out;
   if (first > last) {
     out.low = low;
-    out.high = quantile(1 - 2 * kTail);
+    out.high = quantile(1 - tails.high_to_end);
   } else {
-    out.low = quantile(2 * kTail);
+    out.low = quantile(tails.low_to_end);
     out.high = high;
   }
   return out;
@@ -260,15 +271,17 @@ MapPosterior map_posterior(const MapLikelihood& likelihood,
   out.gain = 2 * (likelihood.at(out.best) - likelihood.plain());
   find_modes(drawn, shares, out);
   const DepthPrior& ball = prior.ball;
-  out.x = estimated(out.balls, 0, 0, [](const MapBall& one) { return one.place.x; });
-  out.y = estimated(out.balls, 0, 0, [](const MapBall& one) { return one.place.y; });
-  out.depth = estimated(out.balls, ball.depth_min, ball.depth_max, [](const MapBall& one) {
+  out.x = estimated(out.balls, 0, 0, kEven, [](const MapBall& one) { return one.place.x; });
+  out.y = estimated(out.balls, 0, 0, kEven, [](const MapBall& one) { return one.place.y; });
+  out.depth = estimated(out.balls, ball.depth_min, ball.depth_max, kEven, [](const MapBall& one) {
     return std::exp(one.log_depth);
   });
-  out.radius = estimated(
-      out.balls, ball.radius_min, ball.radius_max, [](const MapBall& one) { return one.radius; });
+  out.radius =
+      estimated(out.balls, ball.radius_min, ball.radius_max, kOfRadius, [](const MapBall& one) {
+        return one.radius;
+      });
   out.ratio = estimated(
-      out.balls, std::log(ball.ratio_min), std::log(ball.ratio_max), [](const MapBall& one) {
+      out.balls, std::log(ball.ratio_min), std::log(ball.ratio_max), kEven, [](const MapBall& one) {
         return one.log_ratio;
       });
   out.ratio = {std::exp(out.ratio.median),

@@ -7,6 +7,8 @@
 namespace palp::depth {
 namespace {
 
+constexpr double kApart = 3e-3;  // [m]; two tops of the posterior nearer than that are one place
+
 /// Share of the posterior outside of the box that the touched places span, and half their distance
 /// more.
 double share_outside(const MapLikelihood& likelihood, const MapPosterior& posterior) {
@@ -49,7 +51,8 @@ MapVerdict map_verdict(const MapLikelihood& likelihood,
   if (out.worst_curve > config.curve_max) out.doubts.push_back(MapDoubt::Curve);
   if (out.worst_deviation > config.deviation_max) out.doubts.push_back(MapDoubt::NotOneBall);
   if (!out.found) return out;
-  if (posterior.modes.size() > 1 && posterior.modes[1].share > config.side_min) {
+  if (posterior.modes.size() > 1 && posterior.modes[1].share > config.side_min &&
+      distance(posterior.modes[0].place, posterior.modes[1].place) > kApart) {
     out.doubts.push_back(MapDoubt::TwoSides);
   }
   if (share_outside(likelihood, posterior) > config.outside_max) {

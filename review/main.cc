@@ -20,6 +20,7 @@
 #include "review/demo_report.h"
 #include "review/export.h"
 #include "review/info.h"
+#include "review/map_drawing.h"
 #include "review/merge.h"
 #include "review/plot_command.h"
 #include "review/recover.h"
@@ -292,6 +293,7 @@ ExitStatus run_metrics(const MetricsFlags& flags) {
   if (!flags.json && flags.page.empty()) {
     std::cout << tap_table(
         surgeon->began_at, touches, overall_depth(touches.taps), session->patient.map.report);
+    std::cout << map_drawing(session->patient.map.report, session->patient.map.cells);
     std::cout << lack_lines(*session);
   }
   if (flags.report.empty() && flags.page.empty() && !flags.json) {

@@ -162,6 +162,35 @@ TEST_F(MapTest, IntervalsHoldTheTruthAsOftenAsTheySay) {
   for (const int count : inside) EXPECT_GE(count, 51);
 }
 
+TEST_F(MapTest, TwoTopsOfThePosteriorSideBySideAreOnePlace) {
+  const auto seen = likelihood(all_felt({}, pattern(3, 3, 7.5e-3), 1));
+  MapPosterior found = map_posterior(seen, field(), {});
+  const auto two_sides = [&](double apart) {
+    found.modes = {{{}, 0.6}, {{apart, 0}, 0.4}};
+    const auto doubts = map_verdict(seen, found).doubts;
+    return std::find(doubts.begin(), doubts.end(), MapDoubt::TwoSides) != doubts.end();
+  };
+  EXPECT_FALSE(two_sides(2e-3));
+  EXPECT_TRUE(two_sides(6e-3));
+}
+
+/// A large ball has more of the posterior than a small one that explains the touches as well.
+TEST_F(MapTest, TheIntervalOfTheRadiusLeavesSmallBallsIn) {
+  for (const double radius : {4e-3, 6e-3, 9e-3}) {
+    const Truth truth{.ball = {.depth = 5e-3, .radius = radius, .ratio = 100}};
+    const MapPosterior found = posterior(all_felt(truth, pattern(3, 3, 7.5e-3), 1), 0.05);
+    double below = 0;
+    double above = 0;
+    for (const LikelyBall& one : found.balls) {
+      if (one.ball.radius < found.radius.low) below += one.share;
+      if (one.ball.radius > found.radius.high) above += one.share;
+    }
+    EXPECT_LE(below, 0.005);
+    EXPECT_LE(above, 0.05);
+    EXPECT_GT(below + above, 0);
+  }
+}
+
 TEST_F(MapTest, TheOrderOfPlacesDoesNotMatter) {
   auto places = all_felt({}, pattern(3, 3, 7.5e-3), 2);
   const MapPosterior one = posterior(places);
