@@ -242,7 +242,7 @@ void declare(config::CommandLine& line, ReplayFlags& flags) {
   line.text("--coupling",
             flags.ask.coupling,
             "NAME",
-            "the session's own; what another one would have done the lab tells, see scenario");
+            "direct, wave, tdpa or mmt; of another than the session's the lab tells: scenario");
   line.choice("--estimator", flags.ask.estimator, {"bayes", "paper"}, "and this estimator?");
   line.text("--set", flags.set, "PATH=VALUE", "and with this setting of the site?");
 }
