@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <tuple>
 
@@ -57,7 +58,7 @@ void PhaseAccount::begin(const RunTick& tick) {
   *this = {};
   tag_ = tick.phase;
   began_at_ = tick.at;
-  hand_max_ = -INFINITY;
+  hand_max_ = -std::numeric_limits<double>::infinity();
   sums_ = {0, 0, 0};
 }
 

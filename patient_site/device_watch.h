@@ -93,14 +93,13 @@ class DeviceWatch {
     const bool air = std::abs(look.force) < config_.contact_force;
     if (look.force >= config_.pressed) {
       pressed_ = {.known = true, .at = look.felt_at, .tip = look.tip};
-    } else if (!look.in_tissue || look.tip < pressed_.tip - config_.stays) {
+    } else if (!look.in_tissue || look.tip < pressed_.tip - config_.stays ||
+               (pressed_.fell && !air)) {
       pressed_ = Pressed{};
     } else if (pressed_.known && !pressed_.fell) {
       const bool too_late = look.felt_at - pressed_.at > config_.fall_time;
       if (air && !too_late) pressed_.fell = true;
       if (too_late) pressed_ = Pressed{};
-    } else if (pressed_.fell && !air) {
-      pressed_ = Pressed{};
     }
     return pressed_.fell && look.at - pressed_.at > config_.gone_time;
   }

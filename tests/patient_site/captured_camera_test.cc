@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 constexpr TimePoint kNow{seconds{100}};
 constexpr std::int64_t kNowNs = kNow.time_since_epoch().count();
-constexpr std::size_t kPixels = 640 * 480;
+constexpr std::size_t kPixels = std::size_t{640} * 480;
 
 std::unique_ptr<CapturedCamera> opened(test::Capture& device) {
   auto camera =
@@ -77,9 +77,10 @@ TEST_P(CapturedCameraLayout, ShowsTheSamePictureWhateverItsLayout) {
     ASSERT_EQ(shot.picture->y[j * 640], 20 + j / 4);
     ASSERT_EQ(shot.picture->y[j * 640 + 639], 20 + j / 4);
   }
+  constexpr std::size_t kLast = std::size_t{239} * 320;
   for (std::size_t i = 0; i < 320; ++i) {
-    ASSERT_EQ(shot.picture->u[239 * 320 + i], 30 + i / 4);
-    ASSERT_EQ(shot.picture->v[239 * 320 + i], 200 - i / 4);
+    ASSERT_EQ(shot.picture->u[kLast + i], 30 + i / 4);
+    ASSERT_EQ(shot.picture->v[kLast + i], 200 - i / 4);
   }
 }
 
@@ -100,7 +101,8 @@ TEST(CapturedCameraTest, ShowsTheNewestAndGivesEachBufferBack) {
     const TimePoint now = kNow + milliseconds{33 * round};
     for (int i = 0; i < 3; ++i) {
       std::vector<std::uint8_t> bytes(2 * kPixels, static_cast<std::uint8_t>(50 + i));
-      ASSERT_TRUE(device.take(bytes, now.time_since_epoch().count() - 1'000'000 * (3 - i)));
+      ASSERT_TRUE(
+          device.take(bytes, now.time_since_epoch().count() - std::int64_t{1'000'000} * (3 - i)));
     }
     const video::Shot shot = camera->shoot(now);
     ASSERT_NE(shot.picture, nullptr);

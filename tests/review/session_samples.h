@@ -80,7 +80,7 @@ inline SampleFiles sample_session(const SampleOptions& options = {}) {
                                                 {"estimator", "paper"}},
                                    .attachments = {{"tissue.csv", "text/csv", kTissueCsv}}}};
     const int strokes = 2 * options.taps_per_place;
-    for (std::int64_t ms = 0; ms < 1000 * strokes; ++ms) {
+    for (std::int64_t ms = 0; ms < std::int64_t{1000} * strokes; ++ms) {
       const SiteTick tick = hand_tick(ms, options.taps_per_place);
       surgeon.write(tick);
       const TimePoint there = tick.at + kClockOffset + kWay;
@@ -125,7 +125,7 @@ inline SampleFiles sample_session(const SampleOptions& options = {}) {
 /// The hand's motion of such a session.
 inline std::vector<judge::Motion> hand_motion(int taps_per_place) {
   std::vector<judge::Motion> motion;
-  for (std::int64_t ms = 0; ms < 2000 * taps_per_place; ++ms) {
+  for (std::int64_t ms = 0; ms < std::int64_t{2000} * taps_per_place; ++ms) {
     const auto tick = hand_tick(ms, taps_per_place);
     motion.push_back({tick.at, tick.position, tick.velocity, tick.force, tick.place});
   }

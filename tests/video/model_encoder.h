@@ -69,7 +69,7 @@ class ModelEncoder final : public Encoder {
   }
 
   [[nodiscard]] static std::byte expected(std::uint32_t number, std::size_t at) noexcept {
-    return static_cast<std::byte>((number * 31U + at * 7U) & 0xFFU);
+    return static_cast<std::byte>((std::size_t{number} * 31U + at * 7U) & 0xFFU);
   }
 
  private:

@@ -20,7 +20,7 @@ constexpr Duration kForcePeriod = milliseconds{1};
 constexpr std::size_t kForceSize = 200;  // [bytes] of a telegram: 228 on the wire
 constexpr std::size_t kHeads = 32 + 28;  // [bytes]: header and tag, UDP and IP
 
-enum Kind : std::uint8_t { kForce, kMedia };
+enum class Kind : std::uint8_t { Force, Media };
 
 /// What is in a test's datagram of force: its number and when it was sent.
 struct ForceStamp {
@@ -48,7 +48,7 @@ class Run {
       if (now >= force_at_) send_force(now);
       if (setup_.with_video && now >= frame_at_) capture(now);
       while (const auto payload = sender_.next(now)) {
-        send(*patient_, kMedia, *payload, now);
+        send(*patient_, Kind::Media, *payload, now);
         wire_bytes_ += payload->size() + kHeads;
       }
       hear_at_surgeon(now);
@@ -64,10 +64,10 @@ class Run {
                    Kind kind,
                    std::span<const std::byte> body,
                    TimePoint now) {
-    Bytes datagram{std::byte{kind}};
+    Bytes datagram{static_cast<std::byte>(kind)};
     datagram.insert(datagram.end(), body.begin(), body.end());
     // What header and tag would be.
-    if (kind == kMedia) datagram.resize(datagram.size() + 31);
+    if (kind == Kind::Media) datagram.resize(datagram.size() + 31);
     (void)end.send(datagram, now);
   }
 
@@ -75,7 +75,7 @@ class Run {
     const ForceStamp stamp{.number = force_number_++, .sent_ns = now.time_since_epoch().count()};
     Bytes body(kForceSize - 1);
     std::memcpy(body.data(), &stamp, sizeof stamp);
-    send(*patient_, kForce, body, now);
+    send(*patient_, Kind::Force, body, now);
     force_at_ += kForcePeriod;
   }
 
@@ -91,7 +91,7 @@ class Run {
     std::array<std::byte, link::kDatagramSizeMax> buffer{};
     while (const auto datagram = surgeon_->receive(buffer, now)) {
       const std::span<const std::byte> bytes{buffer.data(), datagram->size};
-      if (bytes[0] == std::byte{kForce}) {
+      if (bytes[0] == static_cast<std::byte>(Kind::Force)) {
         hear_force(bytes.subspan(1), datagram->arrived_at);
       } else if (const auto frame =
                      receiver_.hear(bytes.subspan(1, bytes.size() - 32), datagram->arrived_at)) {
@@ -126,7 +126,7 @@ class Run {
     report_at_ += StandingDelay::kStep;
     StandingDelay::Reading force = standing_.read(now);
     if (!setup_.with_control) force.standing = Duration{0};
-    send(*surgeon_, kMedia, write(receiver_.report(force)), now);
+    send(*surgeon_, Kind::Media, write(receiver_.report(force)), now);
   }
 
   void hear_at_patient(TimePoint now) {
