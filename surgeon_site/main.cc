@@ -35,6 +35,7 @@
 #include "surgeon_site/pointer_hand.h"
 #include "surgeon_site/script_record.h"
 #include "surgeon_site/script_source.h"
+#include "surgeon_site/session_end.h"
 #include "surgeon_site/settings.h"
 #include "surgeon_site/settings_devices.h"
 #include "surgeon_site/simulated_hand.h"
@@ -62,26 +63,6 @@ void declare_flags(config::CommandLine& line, config::Document& document, std::s
   line.knob("--surface-offset-mm", "hand.surface_offset_mm");
   site_program::declare_session_flags(line);
   line.knob("--force-engage", "engagement.forced");
-}
-
-std::optional<ExitStatus> end_of_script(const SurgeonStatus& status) {
-  if (!status.script.finished) return std::nullopt;
-  const std::string outcome{to_string(status.script.outcome)};
-  const auto cut_short = [&](const std::string& why, record::NoteCode code) {
-    return ExitStatus{ExitCode::CutShort, outcome, why + std::string{record::to_string(code)}};
-  };
-  switch (status.script.outcome) {
-    case ScriptOutcome::None:
-    case ScriptOutcome::Completed:
-      return ExitStatus{ExitCode::Done, outcome, ""};
-    case ScriptOutcome::Interrupted:
-      return cut_short("the link was lost and the script ends there", record::NoteCode::None);
-    case ScriptOutcome::Refused:
-      return cut_short("the site would not engage: ", status.refused);
-    case ScriptOutcome::Stopped:
-      return cut_short("the site was stopped: ", status.reason);
-  }
-  return std::nullopt;
 }
 
 /// What the parts are made of, all checked.
@@ -275,6 +256,7 @@ class Program {
   io::SteadyClock clock_;
   TimePoint began_at_;
   site_program::PeerWatch watch_;
+  StoppedPeerWatch stopped_peer_;
   site_program::StatusLine line_;
   site_program::RoundTrips round_trips_;
   Advice advice_{{.coupling = settings_.coupling.name,
@@ -342,10 +324,13 @@ std::optional<ExitStatus> Program::look(TimePoint now) {
   if (hopeless) return ExitStatus{ExitCode::CannotOpen, "refused", *hopeless};
   if (auto exit_status = end_of_script(status)) return exit_status;
   if (auto exit_status = watch_.judge(status.link, now)) return exit_status;
+  if (auto exit_status = stopped_peer_.judge(status, scripted_ != nullptr, now)) {
+    return exit_status;
+  }
   if (settings_.duration == Duration{0} || now - began_at_ < settings_.duration) {
     return std::nullopt;
   }
-  return watch_.ever_worked() ? ExitStatus{ExitCode::Done, "duration reached", ""}
+  return watch_.ever_worked() ? end_of_time(status)
                               : watch_.unreachable(status.link, settings_.duration);
 }
 
