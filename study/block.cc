@@ -38,7 +38,7 @@ TrialAsk Block::next() const {
                .number = answered(),
                .track = slot.track,
                .level = 0,
-               .second = slot.second,
+               .stronger = slot.stronger,
                .decoy = slot.decoy};
   const Track& track = tracks_[slot.track];
   const AnswerTable& table = track.posterior().table();
@@ -49,7 +49,7 @@ TrialAsk Block::next() const {
                     ? table.levels()[table.nearest(study_->practice.level)]
                     : table.levels().back();
     // Easy is a level of either sign where the question is which is stiffer.
-    if (study_->task.two_sided && !slot.second) ask.level = -ask.level;
+    if (study_->task.two_sided && slot.stronger == 0) ask.level = -ask.level;
   }
   return ask;
 }
@@ -57,7 +57,7 @@ TrialAsk Block::next() const {
 void Block::told(bool yes) {
   const TrialAsk ask = next();
   if (ask.kind == TrialKind::Practice) {
-    practice_.push_back(study_->task.two_sided ? yes == ask.second : yes);
+    practice_.push_back(study_->task.two_sided ? yes == (ask.stronger == 1) : yes);
     return;
   }
   if (ask.kind == TrialKind::Trial) {

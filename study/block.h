@@ -13,9 +13,9 @@ struct TrialAsk {
   TrialKind kind{};
   std::size_t number{};  ///< in its block, practice included, from 0
   std::size_t track{};
-  double level{};       ///< [-]
-  bool second{};        ///< the second interval holds the stronger stimulus
-  std::size_t decoy{};  ///< place by way of which the stage travels
+  double level{};          ///< [-]
+  std::size_t stronger{};  ///< the interval that holds the stronger stimulus, from 0
+  std::size_t decoy{};     ///< place by way of which the stage travels
 };
 
 /// Where a participant stands under one condition: a value that the schedule and the answers so far

@@ -98,7 +98,7 @@ Result<std::vector<ParticipantRows>> read_rows(const PlannedStudy& planned) {
       if (!fs::exists(path, ignored)) continue;
       const auto text = read_whole_file(path, kTableMax);
       if (!text) return tl::unexpected(text.error());
-      auto parsed = parse_rows(*text, path, planned.study.task.two_sided);
+      auto parsed = parse_rows(*text, path, planned.study.task);
       if (!parsed) return tl::unexpected(parsed.error());
       for (TrialRow& row : parsed->rows) one.rows.push_back(std::move(row));
     }

@@ -21,7 +21,10 @@ inline constexpr std::string_view kExportFormats[]{
 /// - psychopy: wide CSV as its TrialHandler writes it: participant, session, trials.thisN,
 ///   trials.intensity, trials.response, trials.rt, condition;
 /// - lme4: CSV, a row a trial: participant, condition, level, correct, trial; for
-///   glmer(correct ~ level * condition + (1 | participant), binomial("probit")).
+///   glmer(correct ~ 0 + level:condition + (0 + level | participant), binomial("probit")),
+///   without an intercept: of two equal ones half are chosen, so a JND is qnorm(0.75) over a slope.
+///   At two-sided tasks the intercept is the bias, and the model has one for each condition:
+///   correct ~ 0 + condition + level:condition + (1 + level | participant).
 /// nullopt: no such format.
 [[nodiscard]] std::optional<std::string> export_text(std::string_view format,
                                                      const std::vector<ParticipantRows>& rows);

@@ -10,14 +10,14 @@ namespace {
 
 constexpr std::uint64_t kPeople = 0x70656f706c650000;  // streams apart from those of schedules
 constexpr std::uint64_t kAnswers = 0x616e737765720000;
-enum : std::uint64_t { kResponse, kYes };
+enum : std::uint64_t { kResponse, kYes, kWrong };
 
 constexpr Duration kTick = std::chrono::milliseconds{1};
 constexpr Duration kTap = std::chrono::milliseconds{600};  // of a tap, half of it in the tissue
 constexpr double kForce = 0.5;                             // [N], of a tap
 
 /// From the first to the last stage of a trial, with taps one after the other.
-TrialOutcome live_through(Trial trial, double response_time, bool second) {
+TrialOutcome live_through(Trial trial, double response_time, std::size_t chosen) {
   TimePoint now{};
   TimePoint asked_at{};
   TrialStage before = TrialStage::Travel;
@@ -34,12 +34,12 @@ TrialOutcome live_through(Trial trial, double response_time, bool second) {
       in.force = in.contact ? kForce : 0;
     }
     if (before == TrialStage::Answer && now - asked_at >= from_seconds(response_time)) {
-      in.answer = second;
+      in.answer = chosen;
     }
     trial.tick(now, in);
     now += kTick;
   }
-  return {.second = second,
+  return {.chosen = chosen,
           .onset = 0,
           .duration = seconds(trial.length(now)),
           .response_time = seconds(trial.response_time()),
@@ -75,11 +75,19 @@ Observer formula_participants(const Study& study, const PeopleTraits& people) {
         .lapse = people.lapse};
     const bool yes = random_uniform(study.seed, trial_stream(place, ask.number), kYes) <
                      answer_share(study.task, traits, ask.level);
-    const bool second = study.task.two_sided ? yes : yes == ask.second;
-    return live_through(
-        {study.conditions[place.condition].taps, ask.kind == TrialKind::Practice, TrialTimes{}},
-        drawn_response_time(study.seed, place, ask.number),
-        second);
+    const std::size_t stronger = study.task.two_sided ? 1 : ask.stronger;
+    // Who is wrong chooses each of the others alike.
+    const auto intervals = static_cast<std::size_t>(study.task.intervals);
+    const std::size_t further =
+        yes ? 0
+            : 1 + random_bits(study.seed, trial_stream(place, ask.number), kWrong) %
+                      (intervals - 1);
+    return live_through({intervals,
+                         study.conditions[place.condition].taps,
+                         ask.kind == TrialKind::Practice,
+                         TrialTimes{}},
+                        drawn_response_time(study.seed, place, ask.number),
+                        (stronger + further) % intervals);
   };
 }
 

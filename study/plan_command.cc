@@ -93,13 +93,16 @@ std::string preregistration(const Study& study,
     text += "- " + what + ": " + (is.empty() ? "missing" : is) + "\n";
   };
   say("Question", study.question);
-  say("Task", std::string{task_name(study)} + ", two intervals");
+  say("Task",
+      std::string{task_name(study)} + ", " + std::to_string(study.task.intervals) + " intervals");
   std::string conditions;
   for (const Condition& one : study.conditions) {
     conditions += (conditions.empty() ? "" : "; ") + one.name;
   }
   say("Conditions, all for everybody", conditions);
-  say("Measure", study.task.two_sided ? "PSE and ln JND" : "ln JND, 75 % right");
+  say("Measure",
+      study.task.two_sided ? "PSE and ln JND"
+                           : "ln JND, " + per_cent(0.5 + 0.5 / study.task.intervals) + " right");
   say("Primary comparison", study.primary);
   say("Participants",
       std::to_string(study.participants) + "; expected sd of differences of ln JND " +

@@ -10,7 +10,7 @@ Result<void> replay_rows(Block& block, std::span<const TrialRow> rows, const std
     if (block.done()) return fail(where + " comes after the last one of the schedule");
     const TrialAsk ask = block.next();
     const bool same = row.ask.kind == ask.kind && row.ask.number == ask.number &&
-                      row.ask.track == ask.track && row.ask.second == ask.second &&
+                      row.ask.track == ask.track && row.ask.stronger == ask.stronger &&
                       std::abs(row.ask.level - ask.level) < 1e-8 && row.condition == code;
     if (!same) {
       return fail(where + " is not the one that the schedule and the answers before it ask for");

@@ -39,7 +39,7 @@ struct BlockEnd {
 Result<RowsFile> rows_before(const std::string& path, const Study& study) {
   const auto text = read_whole_file(path, kTableMax);
   if (!text) return RowsFile{};
-  return parse_rows(*text, path, study.task.two_sided);
+  return parse_rows(*text, path, study.task);
 }
 
 Result<BlockEnd> run_block(const Runner& runner,

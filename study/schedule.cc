@@ -53,12 +53,30 @@ std::size_t track_of(const Study& study, std::size_t trial, std::uint64_t stream
   return drawn_order(study.tracks, random_bits(study.seed, stream, round), 0)[trial % study.tracks];
 }
 
+/// The kind but `other` of which most are left.
+std::size_t most_left(const std::vector<std::size_t>& left, std::size_t other) {
+  std::size_t most = other == 0 ? 1 : 0;
+  for (std::size_t kind = 0; kind < left.size(); ++kind) {
+    if (kind != other && left[kind] > left[most]) most = kind;
+  }
+  return most;
+}
+
+/// The kind at `place` [-] of all that are left, put in a row from the last kind to the first.
+std::size_t drawn_kind(const std::vector<std::size_t>& left, double place) {
+  std::size_t kind = left.size() - 1;
+  for (; kind > 0 && place >= static_cast<double>(left[kind]); --kind) {
+    place -= static_cast<double>(left[kind]);
+  }
+  return left[kind] > 0 ? kind : most_left(left, kind);
+}
+
 Json slots_json(const std::vector<Slot>& slots) {
   Json out = Json::array();
   for (const Slot& slot : slots) {
     out.push_back(Json{{"type", to_string(slot.kind)},
                        {"track", slot.track},
-                       {"second", slot.second},
+                       {"interval", slot.stronger + 1},
                        {"decoy", slot.decoy}});
   }
   return out;
@@ -66,21 +84,24 @@ Json slots_json(const std::vector<Slot>& slots) {
 
 }  // namespace
 
-std::vector<bool> balanced_draw(std::size_t count, std::uint64_t seed, std::uint64_t stream) {
+std::vector<std::size_t> balanced_draw(std::size_t count,
+                                       std::size_t kinds,
+                                       std::uint64_t seed,
+                                       std::uint64_t stream) {
   // Never a longer run than allowed, and never so many left of one that they could not be placed.
-  std::size_t left[2]{count / 2, count / 2};
-  left[random_bits(seed, stream, count) & 1] += count % 2;
-  std::vector<bool> out;
+  std::vector<std::size_t> left(kinds, count / kinds);
+  const std::size_t more = random_bits(seed, stream, count) % kinds;
+  for (std::size_t i = 0; i < count % kinds; ++i) ++left[(more + i) % kinds];
+  std::vector<std::size_t> out;
   std::size_t run = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double share = static_cast<double>(left[1]) / static_cast<double>(left[0] + left[1]);
-    bool one = random_uniform(seed, stream, i) < share;
-    for (const bool wanted : {false, true}) {
+    const std::size_t all = count - i;
+    std::size_t one = drawn_kind(left, random_uniform(seed, stream, i) * static_cast<double>(all));
+    for (std::size_t wanted = 0; wanted < kinds; ++wanted) {
       // Another one now, and what is left of `wanted` would not fit between what is left of those.
-      if (left[wanted] > kRunMax * left[!wanted]) one = wanted;
+      if (left[wanted] > kRunMax * (all - left[wanted])) one = wanted;
     }
-    if (!out.empty() && run == kRunMax && out.back() == one) one = !one;
-    if (left[one] == 0) one = !one;
+    if (!out.empty() && run == kRunMax && out.back() == one) one = most_left(left, one);
     run = !out.empty() && out.back() == one ? run + 1 : 1;
     --left[one];
     out.push_back(one);
@@ -90,6 +111,7 @@ std::vector<bool> balanced_draw(std::size_t count, std::uint64_t seed, std::uint
 
 std::vector<BlockPlan> participant_plan(const Study& study, std::size_t participant) {
   const auto square = williams_square(study.conditions.size());
+  const auto intervals = static_cast<std::size_t>(study.task.intervals);
   std::vector<BlockPlan> blocks;
   for (const std::size_t condition : square[participant % square.size()]) {
     const auto stream = [&](std::uint64_t what) { return stream_of(participant, condition, what); };
@@ -98,7 +120,7 @@ std::vector<BlockPlan> participant_plan(const Study& study, std::size_t particip
     };
     BlockPlan block{.condition = condition, .stream = stream(kLevels)};
     const std::vector<bool> is_catch = catches(study, stream(kCatches));
-    const auto sides = balanced_draw(is_catch.size(), study.seed, stream(kSides));
+    const auto sides = balanced_draw(is_catch.size(), intervals, study.seed, stream(kSides));
     std::size_t trial = 0;
     for (std::size_t i = 0; i < is_catch.size(); ++i) {
       const TrialKind kind = is_catch[i] ? TrialKind::Catch : TrialKind::Trial;
@@ -106,7 +128,7 @@ std::vector<BlockPlan> participant_plan(const Study& study, std::size_t particip
       block.trials.push_back({kind, track, sides[i], decoy(i)});
     }
     const std::size_t practice = study.practice.right > 0 ? study.practice.trials_max : 0;
-    const auto others = balanced_draw(practice, study.seed, stream(kPracticeSides));
+    const auto others = balanced_draw(practice, intervals, study.seed, stream(kPracticeSides));
     for (std::size_t i = 0; i < practice; ++i) {
       block.practice.push_back({TrialKind::Practice, 0, others[i], decoy(is_catch.size() + i)});
     }

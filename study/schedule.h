@@ -34,8 +34,8 @@ enum class TrialKind : std::uint8_t {
 struct Slot {
   TrialKind kind{};
   std::size_t track{};  ///< of TrialKind::Trial
-  /// The second interval holds the stronger stimulus; two-sided tasks: of easy trials only.
-  bool second{};
+  /// The interval that holds the stronger stimulus, from 0; two-sided tasks: of easy trials only.
+  std::size_t stronger{};
   std::size_t decoy{};  ///< place by way of which the stage travels, 0 to 3
 };
 
@@ -54,10 +54,11 @@ struct BlockPlan {
 /// out by the seed.
 [[nodiscard]] std::string condition_code(const Study& study, std::size_t condition);
 
-/// `count` answers to "the second?", as even as can be and never more than 4 equal ones on end.
-[[nodiscard]] std::vector<bool> balanced_draw(std::size_t count,
-                                              std::uint64_t seed,
-                                              std::uint64_t stream);
+/// `count` numbers below `kinds` >= 2, as even as can be and never more than 4 equal ones on end.
+[[nodiscard]] std::vector<std::size_t> balanced_draw(std::size_t count,
+                                                     std::size_t kinds,
+                                                     std::uint64_t seed,
+                                                     std::uint64_t stream);
 
 /// The schedule of all participants as JSON, with codes in place of conditions: what is registered
 /// and hashed.

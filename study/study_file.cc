@@ -69,6 +69,9 @@ Result<void> check_study(const proto::config::Study& message) {
   if (two_sided && message.method() != "quest-plus" && message.method() != "constant") {
     return fail("method " + message.method() + " finds no bias: quest-plus or constant does");
   }
+  if (two_sided && message.intervals() != 2) {
+    return fail("intervals must be 2 where task is bias");
+  }
   if (message.practice().right() > message.practice().of()) {
     return fail("practice.right must not be above practice.of");
   }
@@ -92,7 +95,8 @@ Result<Study> parse_study(std::string_view text, const std::string& name) {
               .ethics_number = message.ethics().number(),
               .seed = message.seed(),
               .participants = message.participants(),
-              .task = {.intervals = 2, .two_sided = message.task() == "bias"},
+              .task = {.intervals = static_cast<int>(message.intervals()),
+                       .two_sided = message.task() == "bias"},
               .trials = message.trials(),
               .tracks = message.tracks(),
               .catch_share = message.catch_share(),

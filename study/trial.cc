@@ -5,8 +5,8 @@
 
 namespace palp::study {
 
-Trial::Trial(int taps, bool practice, const TrialTimes& times) noexcept
-    : taps_wanted_{taps}, practice_{practice}, times_{times} {}
+Trial::Trial(std::size_t intervals, int taps, bool practice, const TrialTimes& times) noexcept
+    : intervals_{intervals}, taps_wanted_{taps}, practice_{practice}, times_{times} {}
 
 void Trial::enter(TrialStage stage, TimePoint now) noexcept {
   stage_ = stage;
@@ -24,13 +24,17 @@ bool Trial::by_decoy(TimePoint now) const noexcept {
 void Trial::explore(TimePoint now, const TrialInput& in) noexcept {
   force_max_ = std::max(force_max_, std::abs(in.force));
   if (in.contact) contact_ += now - last_;
-  if (touching_ && !in.contact) ++taps_[interval_];
+  if (touching_ && !in.contact) {
+    ++taps_;
+    ++taps_now_;
+  }
   touching_ = in.contact;
-  const bool enough = taps_[interval_] >= taps_wanted_ && !in.contact;
+  const bool enough = taps_now_ >= taps_wanted_ && !in.contact;
   if (!enough && now - entered_at_ < times_.explore_max) return;
   touching_ = false;
-  if (interval_ == 0) {
-    interval_ = 1;
+  if (interval_ + 1 < intervals_) {
+    ++interval_;
+    taps_now_ = 0;
     enter(TrialStage::Travel, now);
   } else {
     enter(TrialStage::Answer, now);
@@ -52,7 +56,7 @@ void Trial::tick(TimePoint now, const TrialInput& in) noexcept {
       explore(now, in);
       break;
     case TrialStage::Answer:
-      if (in.answer) {
+      if (in.answer && *in.answer < intervals_) {
         answer_ = in.answer;
         response_time_ = now - entered_at_;
         enter(practice_ ? TrialStage::Told : TrialStage::Done, now);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -26,31 +25,32 @@ struct TrialTimes {
 
 /// What happened since the last tick.
 struct TrialInput {
-  double force{};                ///< [N], that the hand was given, any sign
-  bool contact{};                ///< the tip touches, whether the hand is told or not
-  bool pedal{true};              ///< held
-  std::optional<bool> answer{};  ///< "the second"
+  double force{};                       ///< [N], that the hand was given, any sign
+  bool contact{};                       ///< the tip touches, whether the hand is told or not
+  bool pedal{true};                     ///< held
+  std::optional<std::size_t> answer{};  ///< the interval that was chosen, from 0
 };
 
-/// One trial of two intervals as a state machine: it moves only in tick(now), and knows neither
+/// One trial as a state machine: it moves only in tick(now), and knows neither
 /// device nor screen. Counts taps by contacts that end. An answer counts in TrialStage::Answer
-/// only. A value.
+/// only, and if it names an interval. A value.
 class Trial {
  public:
-  /// `taps` >= 1 of an interval end it, once out of the tissue, or explore_max does.
-  Trial(int taps, bool practice, const TrialTimes& times) noexcept;
+  /// `intervals` >= 2. `taps` >= 1 of an interval end it, once out of the tissue, or explore_max
+  /// does.
+  Trial(std::size_t intervals, int taps, bool practice, const TrialTimes& times) noexcept;
 
   /// `now` does not go back. The first call begins the trial.
   void tick(TimePoint now, const TrialInput& in) noexcept;
 
   [[nodiscard]] TrialStage stage() const noexcept { return stage_; }
-  /// 0 or 1: the interval felt now, or travelled to.
+  /// From 0: the interval felt now, or travelled to.
   [[nodiscard]] std::size_t interval() const noexcept { return interval_; }
   /// First half of a travel: the stage makes for the decoy.
   [[nodiscard]] bool by_decoy(TimePoint now) const noexcept;
-  [[nodiscard]] std::optional<bool> answer() const noexcept { return answer_; }
+  [[nodiscard]] std::optional<std::size_t> answer() const noexcept { return answer_; }
   [[nodiscard]] Duration response_time() const noexcept { return response_time_; }
-  [[nodiscard]] int taps() const noexcept { return taps_[0] + taps_[1]; }
+  [[nodiscard]] int taps() const noexcept { return taps_; }
   [[nodiscard]] double force_max() const noexcept { return force_max_; }  ///< [N], magnitude
   [[nodiscard]] Duration contact() const noexcept { return contact_; }
   [[nodiscard]] Duration length(TimePoint now) const noexcept;  ///< since the trial began
@@ -59,6 +59,7 @@ class Trial {
   void enter(TrialStage stage, TimePoint now) noexcept;
   void explore(TimePoint now, const TrialInput& in) noexcept;
 
+  std::size_t intervals_;
   int taps_wanted_;
   bool practice_;
   TrialTimes times_;
@@ -68,10 +69,11 @@ class Trial {
   TimePoint entered_at_{};
   TimePoint last_{};
   bool touching_{};
-  std::array<int, 2> taps_{};
+  int taps_{};          ///< of all intervals
+  int taps_now_{};      ///< of this one
   double force_max_{};  ///< [N]
   Duration contact_{};
-  std::optional<bool> answer_;
+  std::optional<std::size_t> answer_;
   Duration response_time_{};
 };
 

@@ -50,7 +50,7 @@ enum Cell : std::size_t {
   kCount
 };
 
-Result<TrialRow> row_of(const std::vector<std::string_view>& cells, bool two_sided) {
+Result<TrialRow> row_of(const std::vector<std::string_view>& cells, const Task& task) {
   std::array<double, kCount> number{};
   for (const Cell at : {kOnset,
                         kDuration,
@@ -79,13 +79,18 @@ Result<TrialRow> row_of(const std::vector<std::string_view>& cells, bool two_sid
   if (!kind || number[kBlock] < 1 || number[kTrial] < 1 || number[kTrack] < 0) {
     return fail("trial_type, block, trial or track is none");
   }
+  for (const Cell at : {kInterval, kResponse}) {
+    if (number[at] < 1 || number[at] > task.intervals) {
+      return fail(std::string{row_columns()[at].name} + " is none of the trial's");
+    }
+  }
   TrialRow row{.ask = {.kind = *kind,
                        .number = whole(kTrial) - 1,
                        .track = whole(kTrack),
                        .level = number[kLevel],
-                       .second = number[kInterval] == 2,
+                       .stronger = whole(kInterval) - 1,
                        .decoy = 0},
-               .outcome = {.second = number[kResponse] == 2,
+               .outcome = {.chosen = whole(kResponse) - 1,
                            .onset = number[kOnset],
                            .duration = number[kDuration],
                            .response_time = number[kResponseTime],
@@ -97,7 +102,7 @@ Result<TrialRow> row_of(const std::vector<std::string_view>& cells, bool two_sid
                .kind = std::string{cells[kWho]},
                .believed_mean = number[kMean],
                .believed_sd = number[kSd],
-               .two_sided = two_sided};
+               .two_sided = task.two_sided};
   if (number[kCorrect] != (row.yes() ? 1 : 0)) {
     return fail("correct does not follow from interval and response");
   }
@@ -107,7 +112,7 @@ Result<TrialRow> row_of(const std::vector<std::string_view>& cells, bool two_sid
 }  // namespace
 
 bool TrialRow::yes() const noexcept {
-  return two_sided ? outcome.second : outcome.second == ask.second;
+  return two_sided ? outcome.chosen == 1 : outcome.chosen == ask.stronger;
 }
 
 const std::vector<Column>& row_columns() {
@@ -121,12 +126,12 @@ const std::vector<Column>& row_columns() {
       {"track", "which of the interleaved tracks, from 0", ""},
       {"condition", "code; the key is kept apart", ""},
       {"level_ln", "logarithm of the ratio of stiffnesses", "1"},
-      {"interval", "which held the stiffer tissue, 1 or 2; two-sided: of easy trials only", ""},
-      {"response", "which was called the stiffer, 1 or 2", ""},
+      {"interval", "which held the stiffer tissue, from 1; two-sided: of easy trials only", ""},
+      {"response", "which was called the stiffest, from 1", ""},
       {"correct", "1: right; two-sided tasks: the second was called the stiffer", ""},
       {"posterior_mean", "of ln JND, by the track, after the answer", "1"},
       {"posterior_sd", "of the same", "1"},
-      {"taps", "of both intervals", ""},
+      {"taps", "of all intervals", ""},
       {"force_max_n", "largest force the hand was given", "N"},
       {"contact_s", "time in contact", "s"},
       {"kind", "who answered: person, pilot (no approval was named) or simulated", ""}};
@@ -152,8 +157,8 @@ std::string row_text(const TrialRow& row) {
                                               std::to_string(row.ask.track),
                                               row.condition,
                                               digits(row.ask.level),
-                                              row.ask.second ? "2" : "1",
-                                              row.outcome.second ? "2" : "1",
+                                              std::to_string(row.ask.stronger + 1),
+                                              std::to_string(row.outcome.chosen + 1),
                                               row.yes() ? "1" : "0",
                                               digits(row.believed_mean),
                                               digits(row.believed_sd),
@@ -166,7 +171,7 @@ std::string row_text(const TrialRow& row) {
   return text + '\n';
 }
 
-Result<RowsFile> parse_rows(std::string_view text, const std::string& name, bool two_sided) {
+Result<RowsFile> parse_rows(std::string_view text, const std::string& name, const Task& task) {
   RowsFile out;
   for (std::size_t number = 1, begin = 0;; ++number) {
     const std::size_t end = text.find('\n', begin);
@@ -181,7 +186,7 @@ Result<RowsFile> parse_rows(std::string_view text, const std::string& name, bool
       const std::string where = name + ", line " + std::to_string(number);
       const auto cells = tab_cells(line);
       if (cells.size() != kCount) return fail(where + " has another number of cells");
-      auto row = row_of(cells, two_sided);
+      auto row = row_of(cells, task);
       if (!row) return fail(where, row.error());
       out.rows.push_back(std::move(*row));
     }

@@ -13,11 +13,11 @@ namespace palp::study {
 
 /// What came out of a trial.
 struct TrialOutcome {
-  bool second{};           ///< the participant chose the second interval
+  std::size_t chosen{};    ///< the interval, from 0
   double onset{};          ///< [s], since the participant's first trial began
   double duration{};       ///< [s]
   double response_time{};  ///< [s]
-  int taps{};              ///< of both intervals
+  int taps{};              ///< of all intervals
   double force_max{};      ///< [N], magnitude of what the hand was given
   double contact{};        ///< [s]
 };
@@ -48,7 +48,7 @@ struct RowsFile {
 };
 [[nodiscard]] Result<RowsFile> parse_rows(std::string_view text,
                                           const std::string& name,
-                                          bool two_sided);
+                                          const Task& task);
 
 /// Column by column: name, meaning, unit or levels: for task-*_beh.json.
 struct Column {

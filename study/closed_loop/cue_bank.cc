@@ -64,7 +64,7 @@ CueBank bank_of(const FeltSession& session,
     const std::size_t which = i % count;
     // The stronger one comes second in every other session.
     const bool second = two_sided || which % 2 == 0;
-    const TrialAsk ask{.level = levels[level], .second = second};
+    const TrialAsk ask{.level = levels[level], .stronger = second ? 1U : 0U};
     const FeltSetting setting = setting_of(
         ask, two_sided, session.taps(), judgement.depth_sd, random_bits(seed, level, which) >> 16);
     FeltTrial felt = session.feel(setting);

@@ -79,7 +79,7 @@ double own_gain(const FeltSession& session) {
 FeltSetting setting_of(
     const TrialAsk& ask, bool two_sided, int taps, double depth_sd, std::uint64_t seed) {
   FeltSetting setting{.seed = seed};
-  const std::size_t stronger = two_sided || ask.second ? 1 : 0;
+  const std::size_t stronger = two_sided ? 1 : ask.stronger;
   setting.ln_stiffness[stronger] = ask.level;
   for (std::size_t interval = 0; interval < 2; ++interval) {
     for (int tap = 0; tap < taps; ++tap) {
@@ -101,6 +101,7 @@ FeltParticipants::FeltParticipants(const Study& study,
       own_gain_{own_gain(sessions_.front())} {}
 
 Result<FeltParticipants> FeltParticipants::make(const Study& study, const PeopleTraits& people) {
+  if (study.task.intervals != 2) return fail("a felt trial has 2 places, intervals is not 2");
   std::vector<FeltSession> sessions;
   for (const Condition& condition : study.conditions) {
     auto session = FeltSession::make(condition);
@@ -120,7 +121,7 @@ TrialOutcome FeltParticipants::answer(const TrialPlace& place, const TrialAsk& a
   FeltTrial felt = session.feel(setting);
   if (two_sided_) felt.ln_slopes[0] = session.touch(setting).ln_slopes[0];
   const double response = drawn_response_time(seed_, place, ask.number);
-  return {.second = judge_second(felt.ln_slopes, judgement, seed_, stream),
+  return {.chosen = judge_second(felt.ln_slopes, judgement, seed_, stream) ? 1U : 0U,
           .onset = 0,
           .duration = felt.duration + response,
           .response_time = response,

@@ -61,7 +61,7 @@ surgeon::GestureScript script_of(const FeltSetting& setting, double hand_stiffne
 /// Goes through a Trial with what a hand meets, and keeps what it felt.
 class Listener {
  public:
-  explicit Listener(int taps) : trial_{taps, false, TrialTimes{}} {}
+  explicit Listener(int taps) : trial_{2, taps, false, TrialTimes{}} {}
 
   void tick(TimePoint now, double position, double force, bool contact) {
     now_ = now;

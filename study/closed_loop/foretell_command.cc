@@ -77,7 +77,7 @@ std::vector<Answers> feel_track(const Study& study,
     const std::size_t level = track.next();
     const std::uint64_t stream = trial_stream(place, track.trials());
     const TrialAsk ask{.level = table.levels()[level],
-                       .second = (random_bits(study.seed, stream, 1) & 1) != 0};
+                       .stronger = random_bits(study.seed, stream, 1) & 1};
     const bool two_sided = study.task.two_sided;
     const FeltSetting setting = setting_of(ask,
                                            two_sided,
@@ -87,7 +87,7 @@ std::vector<Answers> feel_track(const Study& study,
     FeltTrial felt = session.feel(setting);
     if (two_sided) felt.ln_slopes[0] = session.touch(setting).ln_slopes[0];
     const bool second = judge_second(felt.ln_slopes, judgement, study.seed, stream);
-    const bool yes = two_sided ? second : second == ask.second;
+    const bool yes = two_sided ? second : second == (ask.stronger == 1);
     track.told(level, yes);
     out.push_back({ask.level, yes ? std::size_t{1} : 0, 1});
   }

@@ -47,7 +47,7 @@ TEST(BlockTest, AsksWhatTheScheduleSaysAndLearnsFromTrialsOnly) {
   for (const Slot& slot : standing.plans.front().trials) {
     const TrialAsk ask = block.next();
     EXPECT_EQ(ask.kind, slot.kind);
-    EXPECT_EQ(ask.second, slot.second);
+    EXPECT_EQ(ask.stronger, slot.stronger);
     EXPECT_EQ(ask.track, slot.track);
     const double before = block.believed(slot.track).mean;
     block.told(true);
@@ -71,9 +71,9 @@ TEST(BlockTest, EasyTrialsOfATwoSidedTaskHaveBothSigns) {
   int below = 0;
   for (int i = 0; i < 8; ++i) {
     const TrialAsk ask = block.next();
-    EXPECT_EQ(ask.level > 0, ask.second);
+    EXPECT_EQ(ask.level > 0, ask.stronger == 1);
     below += ask.level < 0 ? 1 : 0;
-    block.told(ask.second);  // right
+    block.told(ask.stronger == 1);  // right
   }
   EXPECT_GT(below, 0);
   EXPECT_NE(block.next().kind, TrialKind::Practice);

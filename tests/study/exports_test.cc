@@ -6,8 +6,8 @@ namespace palp::study {
 namespace {
 
 TrialRow a_row(TrialKind kind, const std::string& condition, double level, bool right) {
-  TrialRow row{.ask = {.kind = kind, .level = level, .second = true}, .condition = condition};
-  row.outcome = {.second = right, .response_time = 0.5};
+  TrialRow row{.ask = {.kind = kind, .level = level, .stronger = 1}, .condition = condition};
+  row.outcome = {.chosen = right ? 1U : 0U, .response_time = 0.5};
   return row;
 }
 

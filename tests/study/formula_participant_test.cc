@@ -16,10 +16,28 @@ TEST(FormulaParticipantTest, AnswersByTheFunctionOnBothSidesAlike) {
   std::array<int, 2> right{};
   constexpr std::size_t kTrials = 1000;
   for (std::size_t i = 0; i < 2 * kTrials; ++i) {
-    const TrialAsk ask{.number = i, .level = std::log1p(0.15), .second = i % 2 == 1};
-    right[i % 2] += observer({0, 0}, ask).second == ask.second ? 1 : 0;
+    const TrialAsk ask{.number = i, .level = std::log1p(0.15), .stronger = i % 2};
+    right[i % 2] += observer({0, 0}, ask).chosen == ask.stronger ? 1 : 0;
   }
   for (const int count : right) EXPECT_NEAR(count / double{kTrials}, 0.75, 0.055);
+}
+
+// At one JND half of what is left to chance is right: two of three.
+TEST(FormulaParticipantTest, OfThreeChoosesWronglyEitherOther) {
+  Study study = test::small_study();
+  study.task.intervals = 3;
+  const PeopleTraits people{.weber = 0.15, .spread = 0, .lapse = 0};
+  const Observer observer = formula_participants(study, people);
+  std::array<int, 3> further{};
+  constexpr std::size_t kTrials = 3000;
+  for (std::size_t i = 0; i < kTrials; ++i) {
+    const TrialAsk ask{.number = i, .level = std::log1p(0.15), .stronger = i % 3};
+    const TrialOutcome out = observer({0, 0}, ask);
+    ++further[(out.chosen + 3 - ask.stronger) % 3];
+    ASSERT_EQ(out.taps, 9);
+  }
+  EXPECT_NEAR(further[0] / double{kTrials}, 2.0 / 3, 0.035);
+  EXPECT_NEAR(further[1] / double{kTrials}, 1.0 / 6, 0.028);
 }
 
 TEST(FormulaParticipantTest, DoesAllTapsOfItsConditionAndPractisesWithTheAnswerTold) {

@@ -18,7 +18,7 @@ struct Standing {
     std::vector<TrialRow> out;
     for (Block asked = block(); !asked.done();) {
       TrialRow row{.ask = asked.next(), .condition = "A"};
-      row.outcome.second = row.ask.number % 3 == 0 ? !row.ask.second : row.ask.second;
+      row.outcome.chosen = row.ask.number % 3 == 0 ? 1 - row.ask.stronger : row.ask.stronger;
       asked.told(row.yes());
       out.push_back(row);
     }
@@ -51,7 +51,7 @@ TEST(ReplayRowsTest, NoticesEveryChange) {
   };
   EXPECT_TRUE(refused([](auto&) {}, "B"));
   EXPECT_TRUE(refused([&](auto& all) { all[last].ask.level *= 1.01; }));
-  EXPECT_TRUE(refused([&](auto& all) { all[last].ask.second = !all[last].ask.second; }));
+  EXPECT_TRUE(refused([&](auto& all) { all[last].ask.stronger ^= 1; }));
   EXPECT_TRUE(refused([&](auto& all) { all[last].ask.track ^= 1; }));
   EXPECT_TRUE(refused([&](auto& all) { all[last].ask.kind = TrialKind::Practice; }));
   EXPECT_TRUE(refused([&](auto& all) { all.erase(all.begin()); }));

@@ -87,7 +87,7 @@ TEST(RunCommandTest, WhoCannotPractiseGoesNoFurther) {
   const test::PlannedFolder folder;
   const auto end = folder.run([](const Study&) -> Result<Observer> {
     return [](const TrialPlace&, const TrialAsk& ask) {
-      return TrialOutcome{.second = !ask.second, .duration = 10};
+      return TrialOutcome{.chosen = 1 - ask.stronger, .duration = 10};
     };
   });
   EXPECT_EQ(end.code, config::ExitCode::Done);

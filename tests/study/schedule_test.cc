@@ -13,10 +13,16 @@ namespace {
 
 RC_GTEST_PROP(BalancedDrawTest, IsEvenAndNeverFiveOnEnd, ()) {
   const auto count = *rc::gen::inRange<std::size_t>(0, 200);
-  const auto sides = balanced_draw(count, *rc::gen::arbitrary<std::uint64_t>(), 3);
+  const auto kinds = *rc::gen::inRange<std::size_t>(2, 9);
+  const auto sides = balanced_draw(count, kinds, *rc::gen::arbitrary<std::uint64_t>(), 3);
   RC_ASSERT(sides.size() == count);
-  const auto seconds = static_cast<std::size_t>(std::ranges::count(sides, true));
-  RC_ASSERT(seconds == count / 2 || seconds == (count + 1) / 2);
+  std::size_t all = 0;
+  for (std::size_t kind = 0; kind < kinds; ++kind) {
+    const auto of = static_cast<std::size_t>(std::ranges::count(sides, kind));
+    RC_ASSERT(of == count / kinds || of == count / kinds + 1);
+    all += of;
+  }
+  RC_ASSERT(all == count);
   std::size_t run = 0;
   for (std::size_t i = 0; i < count; ++i) {
     run = i > 0 && sides[i] == sides[i - 1] ? run + 1 : 1;

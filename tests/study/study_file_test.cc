@@ -37,6 +37,8 @@ TEST(StudyFileTest, WhatCannotBeIsRefusedInOneSentence) {
                                   one + "levels { from_ln: 1 to_ln: 0.5 }",
                                   one + "practice { right: 9 of: 8 }",
                                   one + "task: \"bias\" method: \"staircase\"",
+                                  one + "task: \"bias\" intervals: 3",
+                                  one + "intervals: 1",
                                   one + "tracks: 4 trials: 3",
                                   one + "seed: -1",
                                   one + "colour: \"red\"",

@@ -9,7 +9,7 @@ constexpr Duration kMs = std::chrono::milliseconds{1};
 
 /// A trial and its time.
 struct Rig {
-  Trial trial{2, false, TrialTimes{}};
+  Trial trial{2, 2, false, TrialTimes{}};
   TimePoint now{};
 
   void pass(Duration span, const TrialInput& in = {}) {
@@ -44,13 +44,29 @@ TEST(TrialTest, GoesFromPlaceToPlaceAndAsks) {
   rig.taps(2);
   EXPECT_EQ(rig.trial.stage(), TrialStage::Answer);
   rig.pass(700 * kMs);
-  rig.pass(kMs, {.answer = true});
+  rig.pass(kMs, {.answer = 1});
   EXPECT_EQ(rig.trial.stage(), TrialStage::Done);
-  EXPECT_EQ(rig.trial.answer(), true);
+  EXPECT_EQ(rig.trial.answer(), 1U);
   EXPECT_EQ(rig.trial.taps(), 4);
   EXPECT_DOUBLE_EQ(rig.trial.force_max(), 0.7);
   EXPECT_EQ(rig.trial.contact(), 400 * kMs);
   EXPECT_NEAR(seconds(rig.trial.response_time()), 0.8, 0.002);  // the pause after the last tap too
+}
+
+TEST(TrialTest, HasAsManyIntervalsAsWanted) {
+  Rig rig{.trial = {3, 2, false, TrialTimes{}}};
+  rig.to_the_question();
+  EXPECT_EQ(rig.trial.stage(), TrialStage::Travel);
+  EXPECT_EQ(rig.trial.interval(), 2U);
+  rig.pass(1501 * kMs);
+  rig.taps(2);
+  EXPECT_EQ(rig.trial.stage(), TrialStage::Answer);
+  EXPECT_EQ(rig.trial.taps(), 6);
+  rig.pass(kMs, {.answer = 3});  // there is none
+  EXPECT_EQ(rig.trial.stage(), TrialStage::Answer);
+  rig.pass(kMs, {.answer = 2});
+  EXPECT_EQ(rig.trial.stage(), TrialStage::Done);
+  EXPECT_EQ(rig.trial.answer(), 2U);
 }
 
 TEST(TrialTest, TravelsAsLongByWhateverDecoyAndIsThereInTheSecondHalf) {
@@ -63,9 +79,9 @@ TEST(TrialTest, TravelsAsLongByWhateverDecoyAndIsThereInTheSecondHalf) {
 
 TEST(TrialTest, AnAnswerBeforeTheQuestionIsNone) {
   Rig rig;
-  rig.pass(1501 * kMs, {.answer = true});
+  rig.pass(1501 * kMs, {.answer = 1});
   rig.taps(2);
-  rig.pass(1501 * kMs, {.answer = true});
+  rig.pass(1501 * kMs, {.answer = 1});
   rig.taps(2);
   EXPECT_EQ(rig.trial.stage(), TrialStage::Answer);
   EXPECT_FALSE(rig.trial.answer());
@@ -96,16 +112,16 @@ TEST(TrialTest, WhoLetsGoOfThePedalEndsItAtAnyTime) {
     rig.pass(ms * kMs);
     rig.pass(kMs, {.pedal = false});
     EXPECT_EQ(rig.trial.stage(), TrialStage::Ended) << ms;
-    rig.pass(20000 * kMs, {.answer = true});
+    rig.pass(20000 * kMs, {.answer = 1});
     EXPECT_EQ(rig.trial.stage(), TrialStage::Ended);
     EXPECT_FALSE(rig.trial.answer());
   }
 }
 
 TEST(TrialTest, PracticeShowsWhetherItWasRight) {
-  Rig rig{.trial = {2, true, TrialTimes{}}};
+  Rig rig{.trial = {2, 2, true, TrialTimes{}}};
   rig.to_the_question();
-  rig.pass(kMs, {.answer = false});
+  rig.pass(kMs, {.answer = 0});
   EXPECT_EQ(rig.trial.stage(), TrialStage::Told);
   rig.pass(1001 * kMs);
   EXPECT_EQ(rig.trial.stage(), TrialStage::Done);

@@ -49,12 +49,12 @@ TEST(JudgementTest, PeopleKnowWhatTheirOwnFingerShows) {
 }
 
 TEST(SettingTest, TheStrongerOneIsWhereTheScheduleSaysAndTapsVary) {
-  const TrialAsk ask{.level = 0.3, .second = false};
+  const TrialAsk ask{.level = 0.3, .stronger = 0};
   const FeltSetting first = setting_of(ask, false, 3, 0.1, 7);
   EXPECT_EQ(first.ln_stiffness, (std::array{0.3, 0.0}));
-  EXPECT_EQ(setting_of({.level = 0.3, .second = true}, false, 3, 0.1, 7).ln_stiffness,
+  EXPECT_EQ(setting_of({.level = 0.3, .stronger = 1}, false, 3, 0.1, 7).ln_stiffness,
             (std::array{0.0, 0.3}));
-  EXPECT_EQ(setting_of({.level = -0.3, .second = false}, true, 3, 0.1, 7).ln_stiffness,
+  EXPECT_EQ(setting_of({.level = -0.3, .stronger = 0}, true, 3, 0.1, 7).ln_stiffness,
             (std::array{0.0, -0.3}));
   ASSERT_EQ(first.depth[0].size(), 3U);
   EXPECT_NE(first.depth[0][0], first.depth[0][1]);
@@ -69,13 +69,18 @@ TEST(FeltParticipantsTest, TellAGreatDifferenceAndNoneWithoutForce) {
   ASSERT_TRUE(observer);
   int right = 0;
   for (std::size_t i = 0; i < 6; ++i) {
-    const TrialAsk ask{.number = i, .level = 1, .second = i % 2 == 0};
+    const TrialAsk ask{.number = i, .level = 1, .stronger = (i + 1) % 2};
     const TrialOutcome out = observer->answer({0, 0}, ask);
-    right += out.second == ask.second ? 1 : 0;
+    right += out.chosen == ask.stronger ? 1 : 0;
     EXPECT_EQ(out.taps, 6);
     EXPECT_EQ(observer->answer({0, 1}, ask).force_max, 0);
   }
   EXPECT_EQ(right, 6);
+}
+
+TEST(FeltParticipantsTest, FeelTwoPlacesAndNoMore) {
+  const Study study = *parse_study("intervals: 3 condition { name: \"one\" }", "study");
+  EXPECT_FALSE(FeltParticipants::make(study, {}));
 }
 
 }  // namespace
