@@ -20,9 +20,9 @@ struct Axis {
 
 Axis axis_over(double low, double high) {
   const double length = high - low + 2 * kRound;
-  const double pitch = std::max(kPitchMin, length / (kMapCellsMax - 1));
+  const double pitch = std::max(kPitchMin, length / (kMapSideMax - 1));
   const int count = 1 + static_cast<int>(length / pitch + 1e-6);
-  return {low - kRound, pitch, std::min(count, kMapCellsMax)};
+  return {low - kRound, pitch, std::min(count, static_cast<int>(kMapSideMax))};
 }
 
 MapCell cell_at(const Place& place,
@@ -69,6 +69,10 @@ std::vector<MapCell> stiffness_map(const MapLikelihood& likelihood,
       const Place place{x.first + column * x.pitch, y.first + row * y.pitch};
       cells.push_back(cell_at(place, balls, probability, spread));
     }
+  }
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    cells[i].index = i;
+    cells[i].count = static_cast<std::uint32_t>(cells.size());
   }
   return cells;
 }

@@ -14,7 +14,8 @@ using config::Json;
 using record::Topic;
 
 /// What a screen can take: 50 Hz and slower. The 1 kHz topics are in the file alone.
-constexpr std::array kLive{Topic::TickView, Topic::Link, Topic::Event, Topic::Depth, Topic::Map};
+constexpr std::array kLive{
+    Topic::TickView, Topic::Link, Topic::Event, Topic::Depth, Topic::Map, Topic::MapCell};
 constexpr std::uint32_t kStatusChannel = 100;
 constexpr std::uint32_t kClientChannel = 101;
 constexpr std::uint32_t kCameraChannel = 102;
@@ -218,12 +219,14 @@ void Desk::subscribe(Client& client, const ClientText::Subscription& wanted) {
     return tell(client, Level::Warning, "this subscription exists");
   }
   if (is_camera(wanted.channel)) want_key(client);
-  for (const Kept& one : kept_) {
-    if (one.channel != wanted.channel) continue;
-    client.outbox.push(
-        {.text = false,
-         .passing = false,
-         .body = message_bytes(wanted.id, one.stamp, std::as_bytes(std::span{one.bytes}))});
+  for (const auto* kept : {&kept_, &cells_}) {
+    for (const Kept& one : *kept) {
+      if (one.channel != wanted.channel) continue;
+      client.outbox.push(
+          {.text = false,
+           .passing = false,
+           .body = message_bytes(wanted.id, one.stamp, std::as_bytes(std::span{one.bytes}))});
+    }
   }
 }
 
@@ -330,15 +333,21 @@ void Desk::send(std::uint32_t channel, std::uint64_t stamp, std::span<const std:
   for (auto& [number, client] : clients_) send(client, channel, stamp, payload);
 }
 
+void Desk::keep(const LiveMessage& message, std::deque<Kept>& in, std::size_t most) {
+  std::string bytes(message.size, '\0');
+  std::ranges::transform(
+      message.payload(), bytes.begin(), [](std::byte one) { return static_cast<char>(one); });
+  in.push_back({channel_id(message.topic), message.stamp, std::move(bytes)});
+  if (in.size() > most) in.pop_front();
+}
+
 void Desk::publish(const LiveMessage& message) {
   const std::uint32_t channel = channel_id(message.topic);
   if (message.topic == Topic::Event || message.topic == Topic::Depth ||
       message.topic == Topic::Map) {
-    std::string bytes(message.size, '\0');
-    std::ranges::transform(
-        message.payload(), bytes.begin(), [](std::byte one) { return static_cast<char>(one); });
-    kept_.push_back({channel, message.stamp, std::move(bytes)});
-    if (kept_.size() > kKeptMax) kept_.pop_front();
+    keep(message, kept_, kKeptMax);
+  } else if (message.topic == Topic::MapCell) {
+    keep(message, cells_, kMapCellsMax);
   }
   send(channel, message.stamp, message.payload());
 }

@@ -76,6 +76,7 @@ class Desk {
     std::string bytes;
   };
 
+  static void keep(const LiveMessage& message, std::deque<Kept>& in, std::size_t most);
   [[nodiscard]] bool within_budget(Client& client, TimePoint now) noexcept;
   void subscribe(Client& client, const ClientText::Subscription& wanted);
   void hear_pointer(std::uint32_t number, std::string_view json, TimePoint now);
@@ -103,8 +104,9 @@ class Desk {
   std::uint32_t joined_{};
   std::uint32_t stops_{};
   Pilot pilot_;
-  std::deque<Kept> kept_;  ///< events and depths so far, for who comes late
-  std::uint64_t told_{};   ///< stamp of the newest status
+  std::deque<Kept> kept_;   ///< events, depths and maps so far, for who comes late
+  std::deque<Kept> cells_;  ///< of the newest stiffness map, likewise
+  std::uint64_t told_{};    ///< stamp of the newest status
   CameraWish wish_;
 };
 

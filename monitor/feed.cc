@@ -22,7 +22,8 @@ bool is_slow(const Record& record) noexcept {
          std::holds_alternative<Transition>(record) ||
          std::holds_alternative<DepthEstimate>(record) ||
          std::holds_alternative<DepthArrived>(record) ||
-         std::holds_alternative<MapEstimate>(record) || std::holds_alternative<MapArrived>(record);
+         std::holds_alternative<MapEstimate>(record) ||
+         std::holds_alternative<MapArrived>(record) || std::holds_alternative<MapCell>(record);
 }
 
 }  // namespace

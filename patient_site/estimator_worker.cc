@@ -31,10 +31,13 @@ void EstimatorWorker::judge_map() {
   found_.map = *map;
   parts_.found.put(found_);
   record(MapEstimate{.at = found_.depth.stroke_ended_at, .report = *map});
+  cells_.count = 0;
   for (MapCell& cell : estimator_.map_cells()) {
     cell.at = found_.depth.stroke_ended_at;
     record(cell);
+    cells_.all.at(cells_.count++) = cell;
   }
+  parts_.cells.put(cells_);
 }
 
 void EstimatorWorker::record(const Record& record) {

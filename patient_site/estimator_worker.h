@@ -20,6 +20,7 @@ class EstimatorWorker {
   struct Parts {
     SpscQueue<ContactSample>& contact;  ///< writer: rt; reader: this
     Mailbox<Findings>& found;           ///< writer: this; reader: rt
+    Mailbox<MapCells>& cells;           ///< writer: this; reader: rt
     record::Recorder& recorder;
   };
 
@@ -44,6 +45,7 @@ class EstimatorWorker {
   depth::DepthEstimator estimator_;
   Parts parts_;
   Findings found_;
+  MapCells cells_;
   std::uint64_t strokes_{};
   TimePoint reversal_at_{};
   std::uint64_t records_{};

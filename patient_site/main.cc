@@ -184,7 +184,7 @@ class Program {
                    settings_.monitor.serve ? std::optional{settings_.loop.period} : std::nullopt,
                    settings_.camera.any()},
         worker_{depth::with_devices(settings_.estimator, plan.facts),
-                {contact_, found_, recording_.recorder(1)}},
+                {contact_, found_, cells_, recording_.recorder(1)}},
         node_{settings_.node,
               {rig_ ? rig_->stage() : simulated_,
                rig_ ? rig_->sensor() : simulated_,
@@ -192,7 +192,8 @@ class Program {
                link_,
                recording_.recorder(0),
                contact_,
-               found_}},
+               found_,
+               cells_}},
         monitoring_{settings_.monitor,
                     {{"coupling", settings_.coupling.name},
                      {"version", std::string{site_program::version()}}},
@@ -240,6 +241,7 @@ class Program {
   site_program::Recording recording_;
   SpscQueue<ContactSample> contact_{kContactSamples};  ///< writer: rt, reader: estimator
   Mailbox<Findings> found_;                            ///< writer: estimator, reader: rt
+  Mailbox<MapCells> cells_;                            ///< likewise
   EstimatorWorker worker_;
   PatientNode node_;
   site_program::Monitoring monitoring_;

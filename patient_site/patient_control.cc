@@ -208,7 +208,12 @@ PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
   take_findings(in.found);
   return {.halt = answer.halt,
           .target = {answer.position, answer.place},
-          .to_peer = {{now_.state, now_.epoch, now_.place, depth_report(), map_report()},
+          .to_peer = {{.state = now_.state,
+                       .epoch = now_.epoch,
+                       .place = now_.place,
+                       .depth = depth_report(),
+                       .map = map_report(),
+                       .map_cell = map_cell(in.map_cells)},
                       account_.within_limits(wanted.to_surgeon)}};
 }
 
@@ -286,6 +291,17 @@ DepthReport PatientControl::depth_report() const noexcept {
 MapReport PatientControl::map_report() const noexcept {
   constexpr std::uint64_t kTicksApart = 20;
   return account_.counts().ticks % kTicksApart == 0 ? now_.map : MapReport{};
+}
+
+/// By turns, for ever: what is lost comes again with the next round, 0.7 s later. Never in a
+/// telegram that has the map.
+MapCell PatientControl::map_cell(std::span<const MapCell> cells) const noexcept {
+  constexpr std::uint64_t kTicksApart = 4;
+  constexpr std::uint64_t kAfterMap = 2;
+  const std::uint64_t ticks = account_.counts().ticks;
+  if (cells.empty() || now_.map.number == 0 || ticks % kTicksApart != kAfterMap) return {};
+  const MapCell& cell = cells[ticks / kTicksApart % cells.size()];
+  return cell.number == now_.map.number ? cell : MapCell{};
 }
 
 }  // namespace palp::patient

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "common/core/device_facts.h"
 #include "common/core/spsc_queue.h"
@@ -40,6 +41,7 @@ struct PatientInputs {
   LinkHealth link;
   DeviceFacts peer_devices;  ///< says something where the session is another than a tick ago
   Findings found;            ///< newest
+  std::span<const MapCell> map_cells;  ///< of the newest map; valid for this tick
 };
 
 /// All that a tick wants done.
@@ -89,6 +91,7 @@ class PatientControl {
   [[nodiscard]] MotionAnswer limit(double target, const Place& place, const Lapse& lapse) noexcept;
   [[nodiscard]] DepthReport depth_report() const noexcept;
   [[nodiscard]] MapReport map_report() const noexcept;
+  [[nodiscard]] MapCell map_cell(std::span<const MapCell> cells) const noexcept;
   void take_findings(const Findings& found) noexcept;
   void give_contact_sample() noexcept;
   void record_readings(const PatientInputs& in) noexcept;

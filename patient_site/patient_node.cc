@@ -22,6 +22,7 @@ PatientInputs PatientNode::read(TimePoint now) noexcept {
     in.peer_devices = parts_.link.peer_devices();
   }
   in.found = parts_.found.get();
+  in.map_cells = parts_.cells.get().told();
   return in;
 }
 

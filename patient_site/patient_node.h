@@ -32,6 +32,7 @@ class PatientNode {
     record::Recorder& recorder;
     SpscQueue<ContactSample>& contact;  ///< writer: rt; reader: the estimator's thread
     Mailbox<Findings>& found;           ///< writer: the estimator's thread; reader: rt
+    Mailbox<MapCells>& cells;           ///< likewise
   };
 
   PatientNode(const PatientConfig& config, Parts parts);

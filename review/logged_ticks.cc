@@ -9,14 +9,16 @@ namespace palp::review {
 namespace {
 
 /// Said by the estimator's thread, by the lab, by the recording itself, or by who sat there.
-bool of_no_tick(const Record& record) {
+bool of_no_tick(const record::SessionEntry& entry) {
   using palp::record::NoteCode;
+  const Record& record = entry.record;
   if (const auto* note = std::get_if<Note>(&record)) {
     return static_cast<NoteCode>(note->code) >= NoteCode::Marked;
   }
   return std::holds_alternative<DepthEstimate>(record) ||
-         std::holds_alternative<MapEstimate>(record) || std::holds_alternative<MapCell>(record) ||
-         std::holds_alternative<PlantTruth>(record);
+         std::holds_alternative<MapEstimate>(record) ||
+         std::holds_alternative<PlantTruth>(record) ||
+         (std::holds_alternative<MapCell>(record) && entry.site == link::Role::Patient);
 }
 
 /// No site makes more in one tick; a file may hold any number.
@@ -33,7 +35,7 @@ std::uint64_t LoggedTicks::damaged() const { return damaged_ + (reader_ ? torn_i
 std::optional<LoggedTick> LoggedTicks::next() {
   LoggedTick tick;
   while (const auto entry = next_entry()) {
-    if (of_no_tick(entry->record)) continue;
+    if (of_no_tick(*entry)) continue;
     if (const auto* status = std::get_if<LinkStatus>(&entry->record)) {
       dropped_ = status->records_dropped;
     }

@@ -30,6 +30,7 @@ struct LoggedTick {
   std::optional<DeviceFacts> peer_devices;
   std::optional<DepthReport> depth;
   std::optional<MapReport> map;
+  std::optional<MapCell> map_cell;
 
   void add(const Record& record) {
     records.push_back(record);
@@ -66,6 +67,7 @@ struct LoggedTick {
   void sort(const UserAsked& one) { user = one.command; }
   void sort(const DepthArrived& one) { depth = one.report; }
   void sort(const MapArrived& one) { map = one.report; }
+  void sort(const MapCell& one) { map_cell = one; }
   void sort(const DevicesTold& one) { (one.of_peer ? peer_devices : own_devices) = one.facts; }
 };
 

@@ -103,6 +103,7 @@ class SurgeonAgain {
     in.arrived = tick.arrived();
     if (tick.depth) depth_ = *tick.depth;
     if (tick.map) in.arrived.peer.map = *tick.map;
+    if (tick.map_cell) in.arrived.peer.map_cell = *tick.map_cell;
     if (tick.heard->depth_number != 0) in.arrived.peer.depth = depth_;
     recorder_.records.clear();
     (void)control_.step(in);

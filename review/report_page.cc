@@ -94,6 +94,7 @@ std::string report_page(const SessionPair& session,
   put(page, "/*UPLOT-STYLE*/", page_text("uplot-style"));
   const std::string licence = "/*\n" + std::string{page_text("uplot-license")} + "*/\n";
   put(page, "/*UPLOT-CODE*/", licence + std::string{page_text("uplot-code")});
+  put(page, "/*PLANE-CODE*/", page_text("plane"));
   put(page, "/*DATA*/", harmless(data.dump()));
   return page;
 }

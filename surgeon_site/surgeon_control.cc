@@ -56,6 +56,7 @@ void SurgeonControl::begin_session(const DeviceFacts& peer) noexcept {
   now_.contact_force = 0;
   now_.depth = {};
   now_.map = {};
+  cells_ = {};
   now_.peer_devices = peer;
   if (peer.stage && peer.sensor) coupling::meet(parts_.law, {*peer.stage, *peer.sensor});
 }
@@ -79,6 +80,17 @@ void SurgeonControl::hear(const link::Arrivals& arrived) noexcept {
     now_.map = map;
     account_.record(MapArrived{now_.at, map});
   }
+  if (arrived.peer_heard) hear(arrived.peer.map_cell);
+}
+
+/// Each comes again and again; the file gets it once.
+void SurgeonControl::hear(MapCell cell) noexcept {
+  if (cell.number == 0 || cell.index >= kMapCellsMax) return;
+  if (cell.number != cells_.number) cells_ = {cell.number, {}};
+  if (cells_.indices.test(cell.index)) return;
+  cells_.indices.set(cell.index);
+  cell.at = now_.at;
+  account_.record(cell);
 }
 
 SupervisorOutput SurgeonControl::supervise(const SurgeonInputs& given,

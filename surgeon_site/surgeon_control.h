@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bitset>
 #include <cstdint>
 
 #include "common/core/device_facts.h"
@@ -73,9 +74,16 @@ class SurgeonControl {
   [[nodiscard]] const SurgeonStatus& status() const noexcept { return now_; }
 
  private:
+  /// Which cells of the newest map came.
+  struct HeardCells {
+    std::uint32_t number{};  ///< of the map; 0: none yet
+    std::bitset<kMapCellsMax> indices;
+  };
+
   void take_hand(const HandState& read) noexcept;
   void begin_session(const DeviceFacts& peer) noexcept;
   void hear(const link::Arrivals& arrived) noexcept;
+  void hear(MapCell cell) noexcept;
   [[nodiscard]] SupervisorOutput supervise(const SurgeonInputs& in, const Lapse& lapse) noexcept;
   void record_decision(const SupervisorOutput& decision, SiteState before) noexcept;
   void engage() noexcept;
@@ -96,6 +104,7 @@ class SurgeonControl {
   SurgeonStatus now_;  ///< of this tick: what is shown, and what one tick leaves to the next
   HandState hand_;     ///< last one with numbers
   ForceAnswer answer_;
+  HeardCells cells_;
   double force_before_{};    ///< [N], applied in the tick before
   double incomplete_for_{};  ///< [s], that the force is otherwise than the surgeon was told
   bool hand_was_finite_{true};

@@ -293,7 +293,11 @@ void Link::accept(const WireTelegram& wire, std::uint64_t number, TimePoint arri
   state.newest_arrived_at = arrived_at;
 
   const std::uint32_t wanted_before = epoch_wanted();
-  state.peer = wire.telegram.site;
+  const SiteReport before = std::exchange(state.peer, wire.telegram.site);
+  if (accepted_now_ > 1) {  // what not every telegram says is not lost where several come at once
+    if (state.peer.map.number == 0) state.peer.map = before.map;
+    if (state.peer.map_cell.number == 0) state.peer.map_cell = before.map_cell;
+  }
   state.note_payload(wire.telegram.port);
   if (epoch_wanted() > wanted_before) {  // what came just before belongs to a finished account
     counters_.old_epoch += samples_.size();

@@ -18,6 +18,6 @@ inline constexpr double kSumMax = 1e9;                      ///< [J] and [sqrt(W
 inline constexpr std::uint64_t kNothingHeard = std::numeric_limits<std::uint64_t>::max();
 
 /// Larger than any telegram of any codec, smaller than a datagram.
-inline constexpr std::size_t kTelegramSizeMax = 1024;  ///< [bytes]
+inline constexpr std::size_t kTelegramSizeMax = 1100;  ///< [bytes]
 
 }  // namespace palp::message

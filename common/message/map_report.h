@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 
 #include "common/core/depth_verdict.h"
 #include "common/core/map_doubt.h"
@@ -43,14 +45,31 @@ struct MapReport {
   friend bool operator==(const MapReport&, const MapReport&) = default;
 };
 
-/// A cell of the stiffness map of such a report.
+/// Cells of a stiffness map: so many along x and y at most, and in all.
+inline constexpr std::uint32_t kMapSideMax = 13;
+inline constexpr std::uint32_t kMapCellsMax = kMapSideMax * kMapSideMax;
+
+/// A cell of the stiffness map of such a report, in the patient's file and on its way to the
+/// surgeon, cell by cell.
 struct MapCell {
   TimePoint at{};
-  std::uint32_t number{};     ///< of the report
+  std::uint32_t number{};     ///< of the report; 0: none
+  std::uint32_t index{};      ///< from 0, row by row from the least y on
+  std::uint32_t count{};      ///< of the map's cells
   Place place{};              ///< its middle
   double stiffness{};         ///< [-], over that of the tissue without an inclusion, 2.3 mm deep
   double stiffness_stddev{};  ///< [-], of its logarithm
   double inclusion{};         ///< [-], probability of one below
+};
+
+/// The whole of a stiffness map.
+struct MapCells {
+  std::array<MapCell, kMapCellsMax> all{};
+  std::uint32_t count{};  ///< of them are told
+
+  [[nodiscard]] std::span<const MapCell> told() const noexcept {
+    return std::span{all}.first(count);
+  }
 };
 
 /// All that the estimator's thread has found so far.
@@ -91,14 +110,17 @@ inline constexpr auto fields<S> =
          field<22, &S::next_gain>("next_gain", wire<float>, limit(kForceMax)));
 
 template <std::same_as<MapCell> S>
-inline constexpr auto fields<S> = list({.log = "MapCell"},
-                                       aside<&S::at>("at_ns"),
-                                       field<1, &S::number>("number"),
-                                       field<2, &S::place, &Place::x>("x_m"),
-                                       field<3, &S::place, &Place::y>("y_m"),
-                                       field<4, &S::stiffness>("stiffness"),
-                                       field<5, &S::stiffness_stddev>("stiffness_stddev"),
-                                       field<6, &S::inclusion>("inclusion"));
+inline constexpr auto fields<S> =
+    list({.wire = "MapCell", .log = "MapCell"},
+         aside<&S::at>("at_ns"),
+         field<1, &S::number>("number"),
+         field<2, &S::place, &Place::x>("x_m", wire<float>, limit(kLengthMax)),
+         field<3, &S::place, &Place::y>("y_m", wire<float>, limit(kLengthMax)),
+         field<4, &S::stiffness>("stiffness", wire<float>, limit(kForceMax)),
+         field<5, &S::stiffness_stddev>("stiffness_stddev", wire<float>, limit(kForceMax)),
+         field<6, &S::inclusion>("inclusion", wire<float>, limit(1.0)),
+         field<7, &S::index>("index", limit(kMapCellsMax - 1)),
+         field<8, &S::count>("count", limit(kMapCellsMax)));
 
 }  // namespace message
 }  // namespace palp

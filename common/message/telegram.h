@@ -20,8 +20,9 @@ struct SiteReport {
   SiteState state{};
   std::uint32_t epoch{};  ///< +1 at every engagement; samples of older epochs are dropped
   Place place;
-  DepthReport depth;  ///< patient to surgeon only
-  MapReport map{};    ///< likewise, at times; number 0: not this time
+  DepthReport depth;   ///< patient to surgeon only
+  MapReport map{};     ///< likewise, at times; number 0: not this time
+  MapCell map_cell{};  ///< likewise: one of its cells
 };
 
 /// What a node says. The link adds stamps, acknowledgements and two older samples (WIRE.md).
@@ -53,7 +54,8 @@ inline constexpr auto fields<S> =
          field<3, &S::place, &Place::x>("x_m", wire<float>, limit(kLengthMax)),
          field<4, &S::depth>("depth", nothing_if_zero<&DepthReport::number>),
          field<5, &S::place, &Place::y>("y_m", wire<float>, limit(kLengthMax)),
-         field<6, &S::map>("map", nothing_if_zero<&MapReport::number>));
+         field<6, &S::map>("map", nothing_if_zero<&MapReport::number>),
+         field<7, &S::map_cell>("map_cell", nothing_if_zero<&MapCell::number>));
 
 template <std::same_as<WireTelegram> S>
 inline constexpr auto fields<S> =

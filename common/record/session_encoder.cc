@@ -57,7 +57,7 @@ std::vector<TopicFormat> topics_of(Role site) {
   if (surgeon) topics.push_back(format<PlantTruth>(Topic::Truth, site, "truth"));
   topics.push_back(surgeon ? format<MapArrived>(Topic::Map, site, "map")
                            : format<MapEstimate>(Topic::Map, site, "map"));
-  if (!surgeon) topics.push_back(format<MapCell>(Topic::MapCell, site, "map_cell"));
+  topics.push_back(format<MapCell>(Topic::MapCell, site, "map_cell"));
   return topics;
 }
 
@@ -117,7 +117,7 @@ std::optional<Prepared> SessionEncoder::prepare(const Record& record,
                  [&](const PlantTruth& one) { return of_site(surgeon, Topic::Truth, one); },
                  [&](const MapEstimate& one) { return of_site(!surgeon, Topic::Map, one); },
                  [&](const MapArrived& one) { return of_site(surgeon, Topic::Map, one); },
-                 [&](const MapCell& one) { return of_site(!surgeon, Topic::MapCell, one); }},
+                 [&](const MapCell& one) { return of_site(true, Topic::MapCell, one); }},
       record);
 }
 

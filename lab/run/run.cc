@@ -258,9 +258,9 @@ struct PatientEnd {
       : tissue{scenario.phantom, seeded(scenario.tissue, scenario.seed)},
         file{writer},
         recorder{digest, &file},
-        process{scenario, {tissue, recorder, contact, found}, std::move(path)},
+        process{scenario, {tissue, recorder, contact, found, cells}, std::move(path)},
         estimator{depth::with_devices(scenario.estimator, patient_devices_of(scenario)),
-                  {contact, found, recorder}} {}
+                  {contact, found, cells, recorder}} {}
 
   /// `depths`: somebody wants to know them.
   void listen(bool depths) {
@@ -274,6 +274,7 @@ struct PatientEnd {
   DigestRecorder recorder;
   SpscQueue<ContactSample> contact{kContactQueue};  // one thread is both writer and reader here
   Mailbox<Findings> found;
+  Mailbox<MapCells> cells;
   PatientProcess process;
   patient::EstimatorWorker estimator;
 };

@@ -206,7 +206,8 @@ PatientProcess::Running::Running(PatientProcess& owner)
             link,
             owner.around_.recorder,
             owner.around_.contact,
-            owner.around_.found}} {}
+            owner.around_.found,
+            owner.around_.cells}} {}
 
 PatientProcess::PatientProcess(const Scenario& scenario,
                                const Surroundings& around,

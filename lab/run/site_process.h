@@ -145,6 +145,7 @@ class PatientProcess {
     record::Recorder& recorder;
     SpscQueue<ContactSample>& contact;
     Mailbox<Findings>& found;
+    Mailbox<MapCells>& cells;
   };
   PatientProcess(const Scenario& scenario,
                  const Surroundings& around,

@@ -55,9 +55,15 @@ class TwoSites {
         surgeon_{scenario_.surgeon, {hand_, surgeon_law_, surgeon_link_, surgeon_switch_}},
         tissue_{scenario_.phantom, scenario_.tissue},
         patient_law_{coupling::make_patient_coupling(scenario.coupling).value()},
-        patient_{
-            scenario_.patient,
-            {tissue_, tissue_, patient_law_, patient_link_, patient_switch_, contact_, found_}} {
+        patient_{scenario_.patient,
+                 {tissue_,
+                  tissue_,
+                  patient_law_,
+                  patient_link_,
+                  patient_switch_,
+                  contact_,
+                  found_,
+                  cells_}} {
     surgeon_setup_.start(surgeon_link_, now);
     patient_setup_.start(patient_link_, now);
   }
@@ -97,6 +103,7 @@ class TwoSites {
   coupling::PatientCoupling patient_law_;
   SpscQueue<ContactSample> contact_{kQueue};
   Mailbox<Findings> found_;
+  Mailbox<MapCells> cells_;
   patient::PatientNode patient_;
 };
 

@@ -61,7 +61,8 @@ std::vector<Record> records() {
           DevicesTold{.at = at, .facts = {HandFacts{}, StageFacts{}, ForceSensorFacts{}}},
           PlantTruth{.at = at, .phase_place = {}, .hand = 1e-3, .tip_place = {}},
           MapEstimate{.at = at, .report = map},
-          MapArrived{.at = at, .report = map}};
+          MapArrived{.at = at, .report = map},
+          MapCell{.at = at, .number = 9, .index = 3, .count = 9, .place = {}, .stiffness = 1.5}};
 }
 
 /// A tick with all that it was given.

@@ -134,6 +134,7 @@ TEST(DeskTest, AClientIsToldWhoServesAndWhat) {
                                             "surgeon/event",
                                             "surgeon/depth",
                                             "surgeon/map",
+                                            "surgeon/map_cell",
                                             "surgeon/status",
                                             "surgeon/client",
                                             "surgeon/camera",
@@ -277,6 +278,27 @@ TEST(DeskTest, WhoComesLateIsToldWhatHappened) {
   EXPECT_TRUE(rig.desk.hear_text(client, R"({"op":"unsubscribe","subscriptionIds":[7]})", kNow));
   rig.desk.publish(event(4));
   EXPECT_EQ(rig.next(client), "");
+}
+
+TEST(DeskTest, WhoComesLateGetsTheWholeStiffnessMapAndOldEvents) {
+  Rig rig;
+  rig.desk.publish(event(1));
+  for (std::uint32_t i = 0; i < 2 * kMapCellsMax; ++i) {
+    LiveMessage cell{.topic = record::Topic::MapCell, .stamp = 10 + i, .size = 1};
+    rig.desk.publish(cell);
+  }
+  const std::uint32_t client = rig.join(Right::View);
+  const auto ask = [](record::Topic topic) {
+    return R"({"op":"subscribe","subscriptions":[{"id":)" +
+           std::to_string(static_cast<int>(topic)) + R"(,"channelId":)" +
+           std::to_string(static_cast<int>(topic) + 1) + "}]}";
+  };
+  EXPECT_TRUE(rig.desk.hear_text(client, ask(record::Topic::MapCell), kNow));
+  std::uint32_t cells = 0;
+  while (!rig.next(client).empty()) ++cells;
+  EXPECT_EQ(cells, kMapCellsMax);
+  EXPECT_TRUE(rig.desk.hear_text(client, ask(record::Topic::Event), kNow));
+  EXPECT_FALSE(rig.next(client).empty()) << "cells crowd out no event";
 }
 
 TEST(DeskTest, AStalledClientKeepsTheNewestAndDisturbsNoOther) {

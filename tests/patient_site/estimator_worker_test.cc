@@ -22,8 +22,9 @@ class ListRecorder final : public record::Recorder {
 struct Bench {
   SpscQueue<ContactSample> contact{4096};
   Mailbox<Findings> found;
+  Mailbox<MapCells> cells;
   ListRecorder recorder;
-  EstimatorWorker worker{{}, {contact, found, recorder}};
+  EstimatorWorker worker{{}, {contact, found, cells, recorder}};
 
   void press() {
     const auto phantom = make_phantom("paper-10mm");
@@ -72,6 +73,10 @@ TEST(EstimatorWorkerTest, StrokesAtThreePlacesMakeAMapBesideTheDepths) {
   EXPECT_GT(cells, 50U);
   const auto& last = std::get<MapCell>(bench.recorder.records.back());
   EXPECT_EQ(last.number, 3U);
+  const MapCells& told = bench.cells.get();
+  ASSERT_EQ(told.count, cells);
+  EXPECT_EQ(last.count, cells);
+  for (std::uint32_t i = 0; i < told.count; ++i) EXPECT_EQ(told.all.at(i).index, i);
   EXPECT_EQ(last.at, std::get<DepthEstimate>(bench.recorder.records[2]).stroke_ended_at);
   const auto& map = std::get<MapEstimate>(bench.recorder.records[3]);
   EXPECT_EQ(map.report.number, 3U);

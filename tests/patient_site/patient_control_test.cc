@@ -1,5 +1,7 @@
 #include "patient_site/patient_control.h"
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/fake_recorder.h"
@@ -155,6 +157,26 @@ TEST(PatientControlTest, TheMapRidesOnOneTelegramOfTwenty) {
   }
   EXPECT_EQ(told, 5);
   EXPECT_EQ(bench.control.status().map, bench.in.found.map);
+}
+
+TEST(PatientControlTest, TheCellsOfTheMapRideByTurnsBesideIt) {
+  Bench bench;
+  const std::array<MapCell, 3> cells{MapCell{.number = 9, .index = 0, .count = 3},
+                                     MapCell{.number = 9, .index = 1, .count = 3},
+                                     MapCell{.number = 9, .index = 2, .count = 3}};
+  bench.in.map_cells = cells;
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(bench.engaged_tick(0).to_peer.site.map_cell.number, 0U) << "of no map";
+  }
+  bench.in.found.map = {.number = 9, .places = 5};
+  std::array<int, 3> told{};
+  for (int i = 0; i < 120; ++i) {
+    const SiteReport site = bench.engaged_tick(0).to_peer.site;
+    if (site.map_cell.number == 0) continue;
+    ++told.at(site.map_cell.index);
+    EXPECT_EQ(site.map.number, 0U) << "not both in one telegram";
+  }
+  EXPECT_EQ(told, (std::array{10, 10, 10}));
 }
 
 TEST(PatientControlTest, WhatAnEarlierSessionFoundIsNotSaidAgain) {

@@ -241,7 +241,7 @@ TEST(PatientNodeTest, CountsThePeriodsItMissed) {
 TEST(PatientNodeTest, ATapGivesADepthAtTheSurgeons) {
   World world;
   palp::test::KeepingRecorder stroke_recorder;
-  EstimatorWorker worker{{}, {world.contact, world.found, stroke_recorder}};
+  EstimatorWorker worker{{}, {world.contact, world.found, world.cells, stroke_recorder}};
   world.engage();
   world.say.site.place = kSiteB;
   world.move(-3e-3, milliseconds{500});

@@ -79,7 +79,8 @@ struct World {
   palp::test::KeepingRecorder recorder;
   SpscQueue<ContactSample> contact{1 << 15};
   Mailbox<Findings> found;
-  PatientNode node{{}, {site, site, law, patient_link, recorder, contact, found}};
+  Mailbox<MapCells> cells;
+  PatientNode node{{}, {site, site, law, patient_link, recorder, contact, found, cells}};
   Telegram say;  ///< the surgeon's
   link::Arrivals heard;
   TimePoint now{};

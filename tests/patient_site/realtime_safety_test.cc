@@ -79,6 +79,7 @@ TEST(PatientRealtimeTest, ATickNeitherAllocatesNorWaits) {
   CountingRecorder recorder;
   SpscQueue<ContactSample> contact{64};
   Mailbox<Findings> found;
+  Mailbox<MapCells> cells;
   TimePoint now{};
   const auto hand_over = [](Lane& out, Lane& in, std::uint32_t send, std::uint32_t receive) {
     return link::LinkUpdate{.transport = std::make_unique<LaneEnd>(out, in),
@@ -89,7 +90,7 @@ TEST(PatientRealtimeTest, ATickNeitherAllocatesNorWaits) {
   };
   (void)surgeon.adopt(hand_over(up, down, 3, 2), now);
   (void)patient.adopt(hand_over(down, up, 2, 3), now);
-  PatientNode node{{}, {site, site, law, patient, recorder, contact, found}};
+  PatientNode node{{}, {site, site, law, patient, recorder, contact, found, cells}};
 
   Telegram say;
   RealtimeGuard guard;

@@ -178,6 +178,17 @@ TEST(ReplayTest, MapsComeAgainTooAndReachTheSurgeon) {
   EXPECT_NEAR(arrived.back().report.y.median, 4e-3, 1e-3);
   EXPECT_NEAR(arrived.back().report.depth.median, 5e-3, 1e-3);
   EXPECT_NEAR(arrived.back().report.radius.high, maps.back().report.radius.high, 1e-8);
+  const auto there = all<MapCell>(files.patient.bytes());
+  const auto here = all<MapCell>(files.surgeon.bytes());
+  std::size_t of_last = 0;
+  for (const MapCell& cell : here) {
+    if (cell.number != there.back().number) continue;
+    ++of_last;
+    const MapCell& sent = there.at(there.size() - cell.count + cell.index);
+    EXPECT_NEAR(cell.stiffness, sent.stiffness, 1e-6);
+    EXPECT_NEAR(cell.place.x, sent.place.x, 1e-8);
+  }
+  EXPECT_EQ(of_last, there.back().count) << "the last map came whole";
 }
 
 /// The file once more, each record as `change` wants it.

@@ -11,15 +11,17 @@ using std::chrono_literals::operator""ms;
 
 /// A site whose inputs a test makes up.
 struct Bench {
-  void hear(std::uint64_t session, const MapReport& map) {
+  void hear(std::uint64_t session, const MapReport& map, const MapCell& cell = {}) {
     in.now += 1ms;
     in.hand.sampled_at = in.now;
     in.link.state = LinkState::Live;
     in.link.session_id = session;
     in.arrived.peer_heard = true;
     in.arrived.peer.map = map;
+    in.arrived.peer.map_cell = cell;
     (void)control.step(in);
   }
+  [[nodiscard]] std::vector<MapCell> cells() const { return recorder.all<MapCell>(); }
   [[nodiscard]] std::vector<MapArrived> maps() const { return recorder.all<MapArrived>(); }
 
   coupling::SurgeonCoupling law{coupling::DirectSurgeon{{}}};
@@ -40,6 +42,25 @@ TEST(SurgeonControlTest, EachMapIsRecordedOnceAndStaysUntilTheNext) {
   ASSERT_EQ(bench.maps().size(), 2U);
   EXPECT_EQ(bench.maps()[0].report, three);
   EXPECT_EQ(bench.maps()[1].report.places, 4U);
+}
+
+TEST(SurgeonControlTest, EachCellOfAMapIsRecordedOnce) {
+  Bench bench;
+  for (int round = 0; round < 3; ++round) {
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      bench.hear(1, {}, {.number = 3, .index = i, .count = 4, .stiffness = 1.0 + i});
+      bench.hear(1, {});
+    }
+  }
+  ASSERT_EQ(bench.cells().size(), 4U);
+  EXPECT_EQ(bench.cells()[2].stiffness, 3);
+  EXPECT_EQ(bench.cells()[2].at, TimePoint{5ms}) << "as it arrived";
+  bench.hear(1, {}, {.number = 4, .index = 2, .count = 4});
+  EXPECT_EQ(bench.cells().size(), 5U) << "of another map";
+  bench.hear(2, {}, {.number = 4, .index = 2, .count = 4});
+  EXPECT_EQ(bench.cells().size(), 6U) << "of another session";
+  bench.hear(2, {}, {.number = 4, .index = kMapCellsMax, .count = 4});
+  EXPECT_EQ(bench.cells().size(), 6U) << "of no map's";
 }
 
 TEST(SurgeonControlTest, AMapOfAnEarlierSessionIsForgotten) {

@@ -7,8 +7,21 @@ const [program, url, name, until, click] = process.argv.slice(2);
 const sizes = { desktop: [1440, 900], tablet: [1024, 768], phone: [390, 844, true] };
 const shots = process.env.PALP_SHOTS;
 /** The first value that is drawn beyond its card; empty: none. */
-const BEYOND = `[...document.querySelectorAll('.card dd')].find(dd =>
+const BEYOND = `[...document.querySelectorAll('.card dd, .plane-legend li')].find(dd =>
   dd.getBoundingClientRect().right > dd.closest('.card').getBoundingClientRect().right - 4)?.innerText ?? ''`;
+
+/** What is wrong with a map, which is read by keys; empty: nothing, or there is none. */
+async function mapFault(page) {
+  if (!await page.eval("!!document.querySelector('.plane svg')")) return '';
+  const high = await page.eval("document.querySelector('.plane svg').getBoundingClientRect().height");
+  if (high < 150) return `the map is ${high.toFixed(0)} pixels high`;
+  await page.eval("document.querySelector('.plane').focus()");
+  await page.key('keyDown', 'ArrowLeft');
+  await page.key('keyUp', 'ArrowLeft');
+  const words = await page.eval("document.querySelector('.plane-readout').innerText");
+  await page.eval("document.querySelector('.plane').blur()");
+  return /times plain tissue, . \d+ %/.test(words) ? '' : `a cell of the map is read as "${words}"`;
+}
 
 const browser = await Browser.start(program);
 let fault = '';
@@ -28,6 +41,8 @@ try {
       if (wide > width) fault ||= `${name} on a ${size} is ${wide} pixels wide instead of ${width}`;
       const beyond = await page.eval(BEYOND);
       if (beyond) fault ||= `${name} on a ${size}: "${beyond}" reaches beyond its card`;
+      const map = await mapFault(page);
+      if (map) fault ||= `${name} on a ${size}: ${map}`;
       if (shots) await page.picture(`${shots}/${name}-${size}-${light ? 'light' : 'dark'}.png`);
     }
   }

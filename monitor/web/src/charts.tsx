@@ -5,7 +5,7 @@ import 'uplot/dist/uPlot.min.css';
 import { color } from './look';
 import type { Model, Trace } from './model';
 
-const SPAN_S = 12, FRAME_MS = 67;
+const SPAN_S = 12, FRAME_MS = 100;
 
 interface Line { label: string; ink: string; value: keyof Trace; band?: [keyof Trace, keyof Trace] }
 

@@ -3,7 +3,8 @@ import { useEffect, useState } from 'preact/hooks';
 import { ForceStrip, PlaceStrip } from './charts';
 import { Camera } from './camera';
 import { Client } from './client';
-import { Model, type Status } from './model';
+import { MapCard } from './map';
+import { Model, type Depth, type Status, type TissueMap } from './model';
 import { Picture } from './picture';
 import { Pilot } from './pilot';
 import { Section } from './section';
@@ -80,8 +81,8 @@ addEventListener('keydown', e => {
   else if (key === 's') sound.toggle();
 });
 
-function Row({ name, id, unit, tone, children }: { name: string; id?: string; unit?: string; tone?: string; children: ComponentChildren }) {
-  return <div class="row"><dt>{name}</dt><dd class={tone} id={id}>{children}{unit && <small> {unit}</small>}</dd></div>;
+function Row({ name, id, unit, tone, kind, children }: { name: string; id?: string; unit?: string; tone?: string; kind?: string; children: ComponentChildren }) {
+  return <div class={'row ' + (kind ?? '')}><dt>{name}</dt><dd class={tone} id={id}>{children}{unit && <small> {unit}</small>}</dd></div>;
 }
 
 function Gauge({ force }: { force: number }) {
@@ -89,7 +90,11 @@ function Gauge({ force }: { force: number }) {
   return <div class="gauge" role="meter" aria-valuemin={0} aria-valuemax={FORCE_LIMIT_N} aria-valuenow={+force.toFixed(2)} aria-label="Contact force in newtons"><i style={{ width: `${share}%` }} /></div>;
 }
 
-const clock = (at: number): string => new Date(at).toLocaleTimeString('en-GB');
+const two = (n: number): string => String(n).padStart(2, '0');
+function clock(at: number): string {
+  const date = new Date(at);
+  return `${two(date.getHours())}:${two(date.getMinutes())}:${two(date.getSeconds())}`;
+}
 
 function Touch({ s }: { s: Status | undefined }) {
   const last = model.strokes.find(one => one.stiffness > 0);
@@ -99,35 +104,50 @@ function Touch({ s }: { s: Status | undefined }) {
     <Gauge force={s ? model.contact(s) : 0} />
     <dl>
       <Row name="Indentation" id="indentation" unit="mm">{s ? Math.max(0, model.tip(s)).toFixed(1) : '-'}</Row>
-      {!model.patient && <Row name="Felt by the hand" unit="N">{s ? (Math.round(s.force_n * 100) / 100 || 0).toFixed(2) : '-'}</Row>}
+      {!model.patient && <Row name="Felt by the hand" unit="N" kind="spare">{s ? (Math.round(s.force_n * 100) / 100 || 0).toFixed(2) : '-'}</Row>}
       <Row name="Stiffness, last stroke" id="stiffness" unit="N/m">{last ? last.stiffness.toFixed(0) : '-'}</Row>
     </dl>
   </section>;
 }
 
+/** What the newest stroke says, or all of them where they were at three places or more. */
 function Inclusion() {
-  const d = model.depth;
-  let big = <p class="big none"><span id="depth">-</span></p>, text = 'Tap once: press 3 mm or more, and lift again.', verdict = 'no stroke yet', sign = '○';
-  if (d?.verdict === 'FOUND') {
-    big = <p class="big found"><span id="depth">{d.depth.toFixed(1)}</span> mm</p>;
-    text = d.high > d.low ? `between ${d.low.toFixed(1)} and ${d.high.toFixed(1)} mm, 95 %` : 'this estimator tells no interval';
-    [sign, verdict] = ['✓', 'found'];
-  } else if (d?.verdict === 'NONE') {
-    big = <p class="big none"><span id="depth">none</span></p>;
-    text = d.low > 0 ? `nothing of 5 mm radius or more above ${d.low.toFixed(1)} mm` : 'nothing is excluded';
-    verdict = 'no inclusion';
-  } else if (d) {
-    big = <p class="big none"><span id="depth">?</span></p>;
-    text = `No statement: ${model.why(d)}.`;
-    [sign, verdict] = ['▲', 'not trusted'];
-  }
+  const map = model.map, d = model.depth;
+  const [sign, verdict, tone] = map ? (map.doubts.length > 0 ? ['▲', 'not trusted', 'warn'] : map.ball ? ['✓', 'found', 'ok'] : ['○', 'no inclusion', ''])
+    : !d ? ['○', 'no stroke yet', ''] : d.verdict === 'FOUND' ? ['✓', 'found', 'ok'] : d.verdict === 'NONE' ? ['○', 'no inclusion', ''] : ['▲', 'not trusted', 'warn'];
   return <section class="card inclusion">
-    <header><h2>Inclusion</h2><span class="unit">below the surface</span></header>
-    {big}
-    <p class="interval" id="interval">{text}</p>
-    <dl><Row name="Verdict" id="verdict" tone={d?.verdict === 'FOUND' ? 'ok' : d?.verdict === 'INVALID' ? 'warn' : ''}><b aria-hidden="true">{sign}</b> {verdict}</Row>
-      <Row name="Strokes" id="stroke-count">{model.strokes.length}</Row></dl>
+    <header><h2>Inclusion</h2><span class="unit">{map ? `from all ${map.places} places` : 'below the surface'}</span></header>
+    {map ? <OfMap map={map} /> : <OfStroke d={d} />}
+    <dl><Row name="Verdict" id="verdict" tone={tone}><b aria-hidden="true">{sign}</b> {verdict}</Row>
+      {map?.ball && <Row name="Axis at x, y" unit="mm">{place(map.ball.x.median, map.ball.y.median)}</Row>}
+      {map?.ball && <Row name="Radius" unit="mm">{map.ball.radius.median.toFixed(1)}</Row>}
+      {map && <Row name="Next tap" id="next-tap" unit={map.next && 'mm'}>{map.next ? place(map.next.x, map.next.y) : 'enough'}</Row>}
+      <Row name="Strokes" id="stroke-count" kind="spare">{model.strokes.length}</Row></dl>
   </section>;
+}
+
+const place = (x: number, y: number): string => `${x.toFixed(0)}, ${y.toFixed(0)}`.replaceAll('-', '\u2212');
+
+function Answer({ kind, big, unit, text }: { kind: string; big: string; unit?: string; text: string }) {
+  return <><p class={'big ' + kind}><span id="depth">{big}</span>{unit && ` ${unit}`}</p><p class="interval" id="interval">{text}</p></>;
+}
+
+function OfMap({ map }: { map: TissueMap }) {
+  const doubt = map.doubts[0], { ball } = map;
+  const interval = ball && `top between ${ball.depth.low.toFixed(1)} and ${ball.depth.high.toFixed(1)} mm, 95 %`;
+  const why = doubt && `${doubt.charAt(0).toUpperCase()}${doubt.slice(1)}.`;
+  return ball ? <Answer kind={why ? 'none' : 'found'} big={ball.depth.median.toFixed(1)} unit="mm" text={why ?? interval!} />
+    : <Answer kind="none" big="none" text={why ?? `none found at ${map.places} places`} />;
+}
+
+function OfStroke({ d }: { d: Depth | undefined }) {
+  if (!d) return <Answer kind="none" big="-" text="Tap once: press 3 mm or more, and lift again." />;
+  if (d.verdict === 'FOUND') {
+    return <Answer kind="found" big={d.depth.toFixed(1)} unit="mm"
+      text={d.high > d.low ? `between ${d.low.toFixed(1)} and ${d.high.toFixed(1)} mm, 95 %` : 'this estimator tells no interval'} />;
+  }
+  if (d.verdict === 'NONE') return <Answer kind="none" big="none" text={d.low > 0 ? `nothing of 5 mm radius or more above ${d.low.toFixed(1)} mm` : 'nothing is excluded'} />;
+  return <Answer kind="none" big="?" text={`No statement: ${model.why(d)}.`} />;
 }
 
 function Strokes() {
@@ -219,7 +239,7 @@ function Page() {
     <main>
       <div class="left">
         <Section model={model} pilot={pilot} control={model.hasPointer} />
-        <div class="pair"><Touch s={s} /><Inclusion /></div>
+        <div class="pair"><MapCard model={model} /><div class="stack"><Touch s={s} /><Inclusion /></div></div>
       </div>
       <div class="middle">{client.tells('camera') && <Picture model={model} camera={camera} now={performance.now()} />}<ForceStrip model={model} /><PlaceStrip model={model} /><Strokes /></div>
       <aside class="right"><LinkCard s={s} stale={stale} />{camera.shown && <VideoCard />}<Session s={s} /><Events /></aside>
@@ -231,6 +251,7 @@ function Page() {
 Object.assign(window, {
   palpStrokes: () => model.strokes.map(one => ({ ...one, verdict: one.depth?.verdict ?? '' })),
   palpPicture: () => ({ shown: camera.shown, drawn: camera.drawn, resets: camera.resets, video: model.video, behind: camera.shown ? model.behindTouch(camera.shown.age) : 0 }),
+  palpMap: () => ({ map: model.map, cells: model.cells }),
   palpWay: () => model.way,
   palpTip: () => { const s = model.status!; return { x: model.tipX(s), y: model.tipY(s), tip: model.tip(s) }; },
 });

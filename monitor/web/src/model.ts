@@ -1,5 +1,6 @@
 // All that the page knows of the session, and what it makes of it. Numbers in mm, N and ms.
 import type { Greeting } from './client';
+import type { Ball, Cell, Plane, Span, Spot } from './plane';
 import type { Message } from './schema';
 
 export interface Status {
@@ -16,6 +17,8 @@ export interface Status {
 /** How the camera's pictures come. */
 export interface Video { sending: boolean; state: string; age_ms: number; kbps: number; fps: number; standing_ms: number; delivered: number; repaired: number; not_shown: number }
 export interface Depth { number: number; verdict: string; reason: string; depth: number; low: number; high: number; x: number; y: number }
+/** What the strokes at three places or more say together of one round inclusion. */
+export interface TissueMap { number: number; places: number; ball: Ball | undefined; doubts: string[]; next: Spot | undefined }
 export interface Stroke { began: number; ended: number; x: number; y: number; press: number; force: number; stiffness: number; depth: Depth | undefined }
 export interface Happening { at: number; text: string; tone: '' | 'warn' | 'bad' }
 /** At the tissue and at the hand, newest last; extremes where the site told them. */
@@ -32,6 +35,13 @@ const REASONS: Record<string, string> = {
   FORCE_SATURATED: 'the force sensor was saturated', HASH_OUT_OF_RANGE: 'outside the range of the formula',
   TOO_NOISY: 'the force is too noisy',
 };
+/** What is wrong with a map, and what helps; in the order of the bits. */
+const DOUBTS = [
+  'the force at a place grows as in no tissue that was assumed: tap slower',
+  'one ball does not explain the stiffness at every place: touch between those that differ',
+  'it may lie at either of two places: touch beside the line of the touches',
+  'it may lie beyond the touched places: touch farther out on the stiff side',
+];
 const number = (value: unknown): number => typeof value === 'number' ? value : 0;
 
 export class Model {
@@ -44,10 +54,14 @@ export class Model {
   depth: Depth | undefined;
   strokes: Stroke[] = [];  // newest first
   happenings: Happening[] = [];  // newest first
+  map: TissueMap | undefined;
+  cells: Cell[] = [];  // of the newest stiffness map that came whole
   trace: Trace = { t: [], tip: [], hand: [], contact: [], contactMin: [], contactMax: [], felt: [] };
   refused = false;
   private onset: { stroke: Stroke; tip: number; force: number } | undefined;
   private lastDepth = 0;
+  private coming: { number: number; cells: Cell[]; told: number } = { number: 0, cells: [], told: 0 };
+  private session = '';
   private leads: { at: number; lead: number }[] = [];  // page time - the site's, of late
 
   get patient(): boolean { return this.greeting?.metadata.site === 'patient'; }
@@ -93,6 +107,7 @@ export class Model {
     // The site tells again what happened before.
     this.happenings = [];
     this.lastDepth = 0;
+    this.forgetMap();
     this.roundTrip = 0;
     this.greeting = greeting;
     this.refused = false;
@@ -104,10 +119,15 @@ export class Model {
     else if (topic === 'link') this.link = message;
     else if (topic === 'video') this.video = message as unknown as Video;
     else if (topic === 'depth') this.hearDepth(message, stamp);
+    else if (topic === 'map') this.hearMap(message);
+    else if (topic === 'map_cell') this.hearCell(message);
     else if (topic === 'event') this.hearEvent(message, stamp);
   }
 
   private hearStatus(s: Status, stamp: number, now: number): void {
+    // Another session: perhaps another tissue.
+    if (this.session && s.session !== this.session) this.forgetMap();
+    this.session = s.session;
     this.status = s;
     this.heardAt = now;
     this.leads.push({ at: now, lead: now - stamp });
@@ -163,6 +183,42 @@ export class Model {
   }
 
   why(depth: Depth): string { return REASONS[depth.reason] ?? depth.reason.toLowerCase().replaceAll('_', ' '); }
+
+  private forgetMap(): void {
+    this.map = undefined;
+    this.cells = [];
+    this.coming = { number: 0, cells: [], told: 0 };
+  }
+
+  private hearMap(m: Message): void {
+    const mm = (name: string) => number(m[name]) * 1e3;
+    const span = (of: string): Span => ({ median: mm(`${of}_m`), low: mm(`${of}_low_m`), high: mm(`${of}_high_m`) });
+    const doubts = DOUBTS.filter((_, bit) => number(m.doubts) >> bit & 1);
+    const found = m.verdict === 'FOUND';
+    this.map = {
+      number: number(m.number), places: number(m.places), doubts,
+      ball: found ? { x: span('x'), y: span('y'), depth: span('depth'), radius: span('radius'), trusted: doubts.length === 0 } : undefined,
+      next: m.stop === 'GO_ON' ? { x: mm('next_x_m'), y: mm('next_y_m') } : undefined,
+    };
+  }
+
+  /** A map is shown when all of it is here: its cells come one by one, and lost ones later. */
+  private hearCell(m: Message): void {
+    const index = number(m.index), count = number(m.count);
+    if (this.coming.number !== m.number) this.coming = { number: number(m.number), cells: [], told: 0 };
+    const { cells } = this.coming;
+    if (index >= count || cells[index]) return;
+    cells[index] = { x: number(m.x_m) * 1e3, y: number(m.y_m) * 1e3, stiffness: number(m.stiffness), stddev: number(m.stiffness_stddev), inclusion: number(m.inclusion) };
+    if (++this.coming.told === count) this.cells = cells;
+  }
+
+  /** The tissue from above; nothing before its first map came. */
+  get plane(): Omit<Plane, 'says'> | undefined {
+    if (!this.map || this.cells.length === 0) return undefined;
+    const touches: Spot[] = [];
+    for (const one of this.strokes) if (!touches.some(other => Math.hypot(one.x - other.x, one.y - other.y) < 1)) touches.push({ x: one.x, y: one.y });
+    return { cells: this.cells, touches, ball: this.map.ball, next: this.map.next };
+  }
 
   private hearEvent(m: Message, stamp: number): void {
     const state = (value: unknown) => String(value).toLowerCase();

@@ -3,10 +3,11 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { cividis, color } from './look';
 import type { Model, Stroke } from './model';
+import type { Span } from './plane';
 import type { Pilot } from './pilot';
 
 const SPAN_MM = 52, ABOVE_MM = 9;
-const FRAME_MS = 33;
+const FRAME_MS = 50;
 
 /** Least and most stiffness felt [N/m]; a little apart at least. */
 export function stiffnessRange(strokes: Stroke[]): [number, number] {
@@ -21,16 +22,14 @@ export function Section({ model, pilot, control }: { model: Model; pilot: Pilot;
   const scale = useRef(0.1);  // [mm/px]
   useEffect(() => {
     const view = { left: -16 };
-    let drawnAt = 0, id = requestAnimationFrame(function frame(now) {
-      id = requestAnimationFrame(frame);
-      if (now - drawnAt < FRAME_MS) return;
-      drawnAt = now;
+    // No animation frames: asking for them makes a browser without a GPU make all 60 a second.
+    const timer = setInterval(() => {
       const { clientWidth: w, clientHeight: h } = pad.current!;
-      if (w < 20 || h < 20) return;
+      if (w < 20 || h < 20 || document.hidden) return;
       scale.current = SPAN_MM / w;
       draw(model, pilot, control, view, under.current!, over.current!, w, h);
-    });
-    return () => cancelAnimationFrame(id);
+    }, FRAME_MS);
+    return () => clearInterval(timer);
   }, [control]);
   const [low, high] = stiffnessRange(model.strokes);
   return <section class="card section">
@@ -72,14 +71,19 @@ function draw(model: Model, pilot: Pilot, control: boolean, view: { left: number
   // The window follows a tip that comes near its edge.
   view.left += Math.max(0, tipX - (view.left + SPAN_MM - 8)) - Math.max(0, view.left + 8 - tipX);
   const X = (x: number) => (x - view.left) * mm, Y = (y: number) => (y + ABOVE_MM) * mm;
-  const stamp = [w, h, view.left, model.strokes.length, model.strokes[0]?.stiffness, model.strokes[0]?.force, model.depth?.number, color('--air')].join(' ');
+  const stamp = [w, h, view.left, model.strokes.length, model.strokes[0]?.stiffness, model.strokes[0]?.force, model.depth?.number, model.map?.number, color('--air')].join(' ');
   if (under.dataset.stamp !== stamp) {
     under.dataset.stamp = stamp;
     tissue(prepare(under, w, h), model, X, Y, w, h, view.left, mm);
   }
+  // Nor is what moves, while it stands still.
+  const f = pilot.finger, old = model.stale(performance.now());
+  const moves = s && [model.tip(s).toFixed(2), tipX.toFixed(2), s.peer_sampled, old, f && [f.x, f.into, s.state, s.force_n.toFixed(2)]].join(' ');
+  if (over.dataset.stamp === `${stamp} ${moves}`) return;
+  over.dataset.stamp = `${stamp} ${moves}`;
   const g = prepare(over, w, h);
   if (!s) return;
-  const tip = model.tip(s), known = model.patient || s.peer_sampled, tx = X(tipX), old = model.stale(performance.now());
+  const tip = model.tip(s), known = model.patient || s.peer_sampled, tx = X(tipX);
   const dent = known ? Math.max(0, tip) : 0;
   g.strokeStyle = color('--text');
   g.lineWidth = 2;
@@ -91,7 +95,7 @@ function draw(model: Model, pilot: Pilot, control: boolean, view: { left: number
   g.stroke();
   if (!known) return;
   indenter(g, tx, Y(Math.max(-ABOVE_MM + 1, tip)), mm, old);
-  const f = pilot.finger;
+  if (model.map?.next) nextTap(g, X(model.map.next.x), Y(0), model.map.next.y, w);
   if (f && control) {
     const engaged = s.state === 'ENGAGED' || s.state === 'HOLD';
     spring(g, tx, Y(tip), X(pilot.from.x + f.x), Y(pilot.from.tip + f.into) + 16, engaged ? Math.max(0, s.force_n) : 0, engaged);
@@ -145,20 +149,42 @@ function tissue(g: CanvasRenderingContext2D, model: Model, X: (x: number) => num
     const place = Math.round(one.x / 2);
     if (one.depth && !newest.has(place)) newest.set(place, one);
   }
-  for (const one of newest.values()) inclusion(g, one, X, Y, w, mm);
+  const ball = model.map?.ball;
+  if (ball) inclusion(g, X(ball.x.median), ball.depth, ball.radius.median, ball.trusted ? 'sized' : 'doubted', Y, w, mm);
+  else if (!model.map) for (const { x, depth: d } of newest.values()) {
+    if (d?.verdict === 'FOUND') inclusion(g, X(x), { median: d.depth, low: d.low, high: d.high }, 5, 'open', Y, w, mm);
+  }
 }
 
-function inclusion(g: CanvasRenderingContext2D, stroke: Stroke, X: (x: number) => number, Y: (y: number) => number, w: number, mm: number): void {
-  const d = stroke.depth!;
-  if (d.verdict !== 'FOUND') return;
-  const x = X(stroke.x), bar = x + 5.6 * mm;
+/** Where the next tap tells most: a ring on the surface, which only the map shows whole. */
+function nextTap(g: CanvasRenderingContext2D, x: number, y: number, across: number, w: number): void {
+  const at = Math.min(w - 12, Math.max(12, x)), label = `next tap, y ${across.toFixed(0).replace('-', '\u2212')} mm`;
+  g.strokeStyle = g.fillStyle = color('--text');
+  g.lineWidth = 2;
+  g.beginPath();
+  g.arc(at, y, 8, 0, 7);
+  for (const side of [-1, 1]) { g.moveTo(at + side * 4, y); g.lineTo(at + side * 12, y); }
+  g.stroke();
+  g.font = '600 12px system-ui';
+  const right = at + 18 + g.measureText(label).width < w;
+  g.textAlign = right ? 'left' : 'right';
+  g.lineWidth = 4;
+  g.strokeStyle = color('--air');
+  g.strokeText(label, right ? at + 16 : at - 16, y - 8);
+  g.fillText(label, right ? at + 16 : at - 16, y - 8);
+  g.textAlign = 'left';
+}
+
+/** `open`: only its top is known; else its size is, and the circle is closed. */
+function inclusion(g: CanvasRenderingContext2D, x: number, d: Span, radius: number, kind: 'open' | 'sized' | 'doubted', Y: (y: number) => number, w: number, mm: number): void {
+  const whole = kind !== 'open', bar = whole ? x : x + 5.6 * mm;
   g.fillStyle = 'rgba(255,255,255,.16)';
   g.strokeStyle = 'rgba(255,255,255,.8)';
   g.lineWidth = 1.25;
   g.setLineDash([5, 4]);
-  // Its top is what was found; how far down it goes nobody knows.
+  // Its top is what was found; how far down it goes one place alone does not tell.
   g.beginPath();
-  g.arc(x, Y(d.depth + 5), 5 * mm, Math.PI, 2 * Math.PI);
+  g.arc(x, Y(d.median + radius), radius * mm, Math.PI, whole ? 3 * Math.PI : 2 * Math.PI);
   g.fill();
   g.stroke();
   g.setLineDash([]);
@@ -170,9 +196,9 @@ function inclusion(g: CanvasRenderingContext2D, stroke: Stroke, X: (x: number) =
   g.lineTo(bar, Y(d.high));
   g.stroke();
   g.font = '600 13px system-ui';
-  const label = `${d.depth.toFixed(1)} mm`, fits = bar + 16 + g.measureText(label).width < w;
+  const label = `${kind === 'doubted' ? '? ' : ''}${d.median.toFixed(1)} mm`, fits = bar + 16 + g.measureText(label).width < w;
   g.textAlign = fits ? 'left' : 'right';
-  g.fillText(label, fits ? bar + 10 : x - 5.6 * mm, Y(d.depth) + 4);
+  g.fillText(label, fits ? bar + 10 : Math.min(x - 5.6 * mm, bar - 10), (whole ? Y(d.high) + 18 : Y(d.median) + 4));
   g.textAlign = 'left';
 }
 

@@ -1,5 +1,6 @@
 // What a state means for whoever looks at it, and what to do next.
-import { OLD_MS, type Model } from './model';
+import { OLD_MS, type Model, type TissueMap } from './model';
+import { ballWords } from './plane';
 
 export interface Words { icon: string; word: string; tone: 'live' | 'idle' | 'warn' | 'bad'; text: string }
 
@@ -27,6 +28,13 @@ export function wordsOf(m: Model, stale: boolean, finger: boolean): Words {
       return { icon: '■', word: 'Stopped', tone: 'bad', text: `${sentence(s.reason)}${m.mayControl ? 'Reset there, then here (R).' : 'It must be reset at both sites.'}` };
   }
   return { icon: '?', word: s.state, tone: 'idle', text: '' };
+}
+
+/** What all touches together say, in a sentence or two. */
+export function mapWords(map: TissueMap): string {
+  const doubts = map.doubts.length > 0 ? ` Not trusted: ${map.doubts.join('; ')}.` : '';
+  const next = map.next ? ` Next tap: ${map.next.x.toFixed(0)}, ${map.next.y.toFixed(0)} mm.`.replaceAll('-', '\u2212') : ' Enough taps.';
+  return `${map.ball ? ballWords(map.ball) : `No inclusion found at ${map.places} places`}.${doubts}${next}`;
 }
 
 function oldText(m: Model): string {

@@ -96,6 +96,8 @@ class SchemaDraw {
   /// The acknowledgement's numbers have limits of their own, mostly kept.
   std::uint64_t whole() { return defect() ? draw_.bits() : draw_.bits() >> (12 + draw_.below(50)); }
 
+  std::uint64_t cell() { return defect() ? draw_.bits() : draw_.below(kMapCellsMax); }
+
   void add(const FieldDescriptor& field, Bytes& out) {
     constexpr unsigned kVarint = 0;
     constexpr unsigned kFixed64 = 1;
@@ -110,7 +112,7 @@ class SchemaDraw {
     switch (field.cpp_type()) {
       case FieldDescriptor::CPPTYPE_FLOAT:
         tag(kFixed32);
-        return fixed(static_cast<float>(real()), out);
+        return fixed(static_cast<float>(field.name() == "inclusion" ? real() / 10 : real()), out);
       case FieldDescriptor::CPPTYPE_DOUBLE:
         tag(kFixed64);
         return fixed(real(), out);
@@ -130,6 +132,7 @@ class SchemaDraw {
           return fixed(static_cast<std::uint32_t>(draw_.bits()), out);
         }
         tag(kVarint);
+        if (field.name() == "index" || field.name() == "count") return varint(cell(), out);
         return varint(field.name() == "hold_us" ? whole() >> 26U : whole(), out);
     }
   }

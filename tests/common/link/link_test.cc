@@ -199,6 +199,29 @@ TEST(LinkTest, SamplesBeforeAnEngagementInTheSameTickAreDropped) {
   EXPECT_EQ(couple.patient.link.health(couple.now).old_epoch, 3U);
 }
 
+TEST(LinkTest, WhatOneOfSeveralTelegramsSaysOfAMapIsNotLost) {
+  Couple couple;
+  couple.connect();
+  couple.run(20ms);
+  Telegram& said = couple.patient.telegram;
+  const auto send = [&] { couple.patient.link.send(said, couple.now); };
+  said.site.map = {.number = 7, .places = 4};
+  send();
+  said.site.map = {};
+  said.site.map_cell = {.number = 7, .index = 2, .count = 9};
+  send();
+  said.site.map_cell = {};
+  send();
+  const Arrivals at_once = couple.surgeon.link.receive(couple.now);
+  EXPECT_GE(at_once.accepted, 3U);
+  EXPECT_EQ(at_once.peer.map.number, 7U);
+  EXPECT_EQ(at_once.peer.map_cell.index, 2U);
+  send();
+  const Arrivals next = couple.surgeon.link.receive(couple.now);
+  EXPECT_EQ(next.peer.map.number, 0U) << "of this tick alone";
+  EXPECT_EQ(next.peer.map_cell.number, 0U);
+}
+
 TEST(LinkTest, RoundTripIsThatOfThePipe) {
   Couple couple;
   couple.pipe.up->outcome = after(30ms);

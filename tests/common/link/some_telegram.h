@@ -25,6 +25,7 @@ inline WireTelegram some_telegram(std::uint64_t seed) {
 
 inline WireTelegram rounded_as_on_wire(WireTelegram wire) {
   message::round_as_on_wire(wire);
+  wire.telegram.site.map_cell.at = {};  // an instant of its site's own
   return wire;
 }
 

@@ -32,7 +32,7 @@ Record any_record(Role site) {
     return one;
   };
   const bool surgeon = site == Role::Surgeon;
-  switch (draw.below(12)) {
+  switch (draw.below(13)) {
     case 0:
       return any(SiteTick{});
     case 1:
@@ -55,6 +55,8 @@ Record any_record(Role site) {
       return any(DevicesTold{});
     case 10:
       return surgeon ? any(MapArrived{}) : any(MapEstimate{});
+    case 11:
+      return any(MapCell{});
     default:
       if (surgeon) return any(PlantTruth{});
       return any(ForceReading{});

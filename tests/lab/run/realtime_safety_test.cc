@@ -240,11 +240,18 @@ class WarmUp {
   coupling::PatientCoupling patient_law_{*coupling::make_patient_coupling(scenario_.coupling)};
   SpscQueue<ContactSample> contact_{kContactQueue};
   Mailbox<Findings> found_;
-  patient::PatientNode patient_{
-      scenario_.patient,
-      {tissue_, tissue_, patient_law_, patient_link_, patient_desk_.recorder(), contact_, found_}};
+  Mailbox<MapCells> cells_;
+  patient::PatientNode patient_{scenario_.patient,
+                                {tissue_,
+                                 tissue_,
+                                 patient_law_,
+                                 patient_link_,
+                                 patient_desk_.recorder(),
+                                 contact_,
+                                 found_,
+                                 cells_}};
   record::QueueRecorder estimates_;
-  patient::EstimatorWorker estimator_{scenario_.estimator, {contact_, found_, estimates_}};
+  patient::EstimatorWorker estimator_{scenario_.estimator, {contact_, found_, cells_, estimates_}};
   double contact_force_max_{};  ///< [N]
 };
 
