@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "common/core/device_facts.h"
+#include "common/coupling/self_oscillation.h"
 
 namespace palp::coupling {
 
@@ -28,19 +29,23 @@ class LateDevice {
   /// [N s/m].
   [[nodiscard]] double damping_most() const noexcept { return damping_most_; }
   /// [-], of the tissue's stiffness. How stiff a late spring may be depends on the hand that holds
-  /// it, which nobody knows; that it drives this one shows in an energy tank that is overdrawn.
+  /// it, which nobody knows. That it drives this one shows in swings that do not die out, and in an
+  /// energy tank that is overdrawn.
   [[nodiscard]] double share() const noexcept { return share_; }
-  /// `tank` [J], after `passed` [s] more.
-  void look(double tank, double passed) noexcept {
+  /// Once a tick. `position` [m] of the hand, `pressed`: against a spring; `tank` [J]; `passed` [s]
+  /// since the last one.
+  void look(double position, bool pressed, double tank, double passed) noexcept {
     if (!late_) return;
     if (tank < 0) {
       share_ *= std::exp(-passed / kFall);
     } else {
       share_ += (1 - share_) * -std::expm1(-passed / kRise);
     }
+    if (oscillation_.step(position, pressed, passed)) share_ *= kSofter;
   }
 
  private:
+  static constexpr double kSofter = 0.6;         // [-], by a swing that does not die out
   static constexpr double kReadingsInSpeed = 6;  // [-]
   static constexpr double kMassLeast = 0.06;     // [kg], a handle and the lightest hand
   static constexpr double kFall = 0.1;           // [s]
@@ -50,6 +55,7 @@ class LateDevice {
   double velocity_cut_off_;                                       ///< [Hz]
   double damping_most_{std::numeric_limits<double>::infinity()};  ///< [N s/m]
   double share_{1};                                               ///< [-]
+  SelfOscillation oscillation_;
 };
 
 }  // namespace palp::coupling

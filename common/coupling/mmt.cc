@@ -249,7 +249,7 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexc
   const double moved = energy_now();
   const double force_before = force_now();
   tank_ = std::min(config_.tank_max, tank_ + work - (moved - stored_));
-  device_.look(tank_, seconds(lapse.passed()));
+  device_.look(in.position, force_before > 0, tank_, seconds(lapse.passed()));
 
   approach_candidate(in.position, depth_before, lapse);
   const double rise_max = slew_for(in.position, in.round_trip) * span;
