@@ -128,6 +128,7 @@ const std::vector<Arrow>& arrows() {
       {"surgeon_site/devices_command.*",
        {"surgeon_site/devices", "common/config", "common/io/*", "site_program"}},
       {"surgeon_site/master_check.*", {"surgeon_site/devices", "common/io/device", "site_program"}},
+      {"surgeon_site/session_end.*", {"common/config", "common/record", "site_program"}},
       {"surgeon_site/settings_devices.*",
        {"surgeon_site/devices", "common/io/device", "common/config", "common/settings"}},
       {"surgeon_site/settings.*",
