@@ -37,7 +37,7 @@ Account run_loop(bool estimating) {
   const io::SteadyClock clock;
   TwoSites sites{standard_scenario("mmt"), clock.now()};
   NoRecorder recorder;
-  patient::EstimatorWorker worker{{}, {sites.contact(), sites.found(), recorder}};
+  patient::EstimatorWorker worker{{}, {sites.contact(), sites.found(), sites.cells(), recorder}};
   Account account;
   std::uint64_t strokes = 0;
   io::BackgroundLoop listening{

@@ -51,7 +51,7 @@ void telegrams(int rounds) {
   model.surface = model.depth_max = model.residual = 1e-3;
   telegram.telegram.port = {.position = 1e-3, .velocity = 0.1, .force = 0.2, .payload = model};
   WireCodec codec;
-  std::array<std::byte, 1024> bytes{};
+  std::array<std::byte, message::kTelegramSizeMax> bytes{};
   std::size_t size = 0;
   bench::report("telegram written", rounds, [&](int i) {
     telegram.hold_us = static_cast<std::uint32_t>(i & 1023);

@@ -79,6 +79,7 @@ class TwoSites {
   }
   [[nodiscard]] SpscQueue<ContactSample>& contact() { return contact_; }
   [[nodiscard]] Mailbox<Findings>& found() { return found_; }
+  [[nodiscard]] Mailbox<MapCells>& cells() { return cells_; }
   /// Thread: who else would read contact().
   void drop_contact() {
     ContactSample sample;
