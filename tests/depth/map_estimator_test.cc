@@ -74,7 +74,7 @@ TEST(MapEstimatorTest, TheMapIsStiffOverTheBallAndPlainFarFromIt) {
   EXPECT_TRUE(hand.estimator().map_cells().empty());
   hand.raster(*phantom, 10e-3);
   const auto cells = hand.estimator().map_cells();
-  ASSERT_EQ(cells.size(), kMapCellsMax * kMapCellsMax);
+  ASSERT_EQ(cells.size(), kMapCellsMax);
   const auto cell_near = [&](const Place& place) {
     return *std::min_element(cells.begin(), cells.end(), [&](const MapCell& a, const MapCell& b) {
       return distance(a.place, place) < distance(b.place, place);

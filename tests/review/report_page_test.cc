@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string_view>
+
 #include "review/demo_report.h"
 #include "tests/review/lab_files.h"
 
@@ -24,11 +26,15 @@ std::string page_of(const std::string& outcome) {
 
 TEST(ReportPageTest, NeedsNothingFromOutside) {
   const std::string page = page_of("completed");
-  for (const char* place : {"/*DATA*/", "/*UPLOT-CODE*/", "/*UPLOT-STYLE*/"}) {
+  for (const char* place : {"/*DATA*/", "/*UPLOT-CODE*/", "/*UPLOT-STYLE*/", "/*PLANE-CODE*/"}) {
     EXPECT_EQ(page.find(place), std::string::npos) << place << " was filled in";
   }
-  for (const char* outside : {"src=", "<link", "@import", "url("}) {
+  for (const char* outside : {"src=", "<link", "@import"}) {
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+  }
+  constexpr std::string_view kAddress = "url(";
+  for (auto at = page.find(kAddress); at != std::string::npos; at = page.find(kAddress, at + 1)) {
+    EXPECT_EQ(page[at + kAddress.size()], '#') << "a pattern of the page itself";
   }
   EXPECT_NE(page.find("Copyright"), std::string::npos) << "of the library";
   EXPECT_LT(page.size(), 3'000'000U);
