@@ -1,8 +1,8 @@
 #include "review/report_page.h"
 
-#include <gtest/gtest.h>
-
 #include <string_view>
+
+#include <gtest/gtest.h>
 
 #include "review/demo_report.h"
 #include "tests/review/lab_files.h"
