@@ -10,7 +10,9 @@ namespace {
 
 constexpr std::uint64_t kPeople = 0x70656f706c650000;  // streams apart from those of schedules
 constexpr std::uint64_t kAnswers = 0x616e737765720000;
-enum : std::uint64_t { kResponse, kYes, kWrong };
+constexpr std::uint64_t kResponse = 0;
+constexpr std::uint64_t kYes = 1;
+constexpr std::uint64_t kWrong = 2;
 
 constexpr Duration kTick = std::chrono::milliseconds{1};
 constexpr Duration kTap = std::chrono::milliseconds{600};  // of a tap, half of it in the tissue

@@ -17,8 +17,15 @@ constexpr std::size_t kRunMax = 4;
 constexpr std::size_t kDecoys = 4;
 
 // Streams of one study: some for all, then kStreams for each block of each participant.
-enum : std::uint64_t { kCodes = 1, kBlocks = 16, kStreams = 16 };
-enum : std::uint64_t { kSides, kPracticeSides, kTracks, kCatches, kPlaces, kLevels };
+constexpr std::uint64_t kCodes = 1;
+constexpr std::uint64_t kBlocks = 16;
+constexpr std::uint64_t kStreams = 16;
+constexpr std::uint64_t kSides = 0;
+constexpr std::uint64_t kPracticeSides = 1;
+constexpr std::uint64_t kTracks = 2;
+constexpr std::uint64_t kCatches = 3;
+constexpr std::uint64_t kPlaces = 4;
+constexpr std::uint64_t kLevels = 5;
 
 std::uint64_t stream_of(std::size_t participant, std::size_t condition, std::uint64_t what) {
   return kBlocks + (participant * kConditionsMax + condition) * kStreams + what;

@@ -28,45 +28,43 @@ std::optional<TrialKind> kind_of(std::string_view text) {
 }
 
 // Places of the columns in a line.
-enum Cell : std::size_t {
-  kOnset,
-  kDuration,
-  kKind,
-  kResponseTime,
-  kBlock,
-  kTrial,
-  kTrack,
-  kCondition,
-  kLevel,
-  kInterval,
-  kResponse,
-  kCorrect,
-  kMean,
-  kSd,
-  kTaps,
-  kForce,
-  kContact,
-  kWho,
-  kCount
-};
+constexpr std::size_t kOnset = 0;
+constexpr std::size_t kDuration = 1;
+constexpr std::size_t kKind = 2;
+constexpr std::size_t kResponseTime = 3;
+constexpr std::size_t kBlock = 4;
+constexpr std::size_t kTrial = 5;
+constexpr std::size_t kTrack = 6;
+constexpr std::size_t kCondition = 7;
+constexpr std::size_t kLevel = 8;
+constexpr std::size_t kInterval = 9;
+constexpr std::size_t kResponse = 10;
+constexpr std::size_t kCorrect = 11;
+constexpr std::size_t kMean = 12;
+constexpr std::size_t kSd = 13;
+constexpr std::size_t kTaps = 14;
+constexpr std::size_t kForce = 15;
+constexpr std::size_t kContact = 16;
+constexpr std::size_t kWho = 17;
+constexpr std::size_t kCount = 18;
 
 Result<TrialRow> row_of(const std::vector<std::string_view>& cells, const Task& task) {
   std::array<double, kCount> number{};
-  for (const Cell at : {kOnset,
-                        kDuration,
-                        kResponseTime,
-                        kBlock,
-                        kTrial,
-                        kTrack,
-                        kLevel,
-                        kInterval,
-                        kResponse,
-                        kCorrect,
-                        kMean,
-                        kSd,
-                        kTaps,
-                        kForce,
-                        kContact}) {
+  for (const std::size_t at : {kOnset,
+                               kDuration,
+                               kResponseTime,
+                               kBlock,
+                               kTrial,
+                               kTrack,
+                               kLevel,
+                               kInterval,
+                               kResponse,
+                               kCorrect,
+                               kMean,
+                               kSd,
+                               kTaps,
+                               kForce,
+                               kContact}) {
     const auto value = config::parse_number(cells[at]);
     if (!value || std::abs(*value) > kNumberMax) {
       return fail(std::string{row_columns()[at].name} + " is \"" + printable(cells[at]) +
@@ -75,11 +73,11 @@ Result<TrialRow> row_of(const std::vector<std::string_view>& cells, const Task& 
     number[at] = *value;
   }
   const auto kind = kind_of(cells[kKind]);
-  const auto whole = [&](Cell at) { return static_cast<std::size_t>(number[at]); };
+  const auto whole = [&](std::size_t at) { return static_cast<std::size_t>(number[at]); };
   if (!kind || number[kBlock] < 1 || number[kTrial] < 1 || number[kTrack] < 0) {
     return fail("trial_type, block, trial or track is none");
   }
-  for (const Cell at : {kInterval, kResponse}) {
+  for (const std::size_t at : {kInterval, kResponse}) {
     if (number[at] < 1 || number[at] > task.intervals) {
       return fail(std::string{row_columns()[at].name} + " is none of the trial's");
     }

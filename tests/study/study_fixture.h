@@ -50,8 +50,9 @@ class PlannedFolder {
   [[nodiscard]] const config::ExitStatus& planned() const { return planned_; }
 
   /// Everybody, or until an observer throws.
-  config::ExitStatus run(const MakeObserver& make = formula(),
-                         std::optional<std::uint64_t> participant = std::nullopt) const {
+  [[nodiscard]] config::ExitStatus run(
+      const MakeObserver& make = formula(),
+      std::optional<std::uint64_t> participant = std::nullopt) const {
     return run_run({.folder = folder(), .participant = participant},
                    make,
                    one_after_the_other,
