@@ -28,43 +28,47 @@ std::optional<TrialKind> kind_of(std::string_view text) {
 }
 
 // Places of the columns in a line.
-constexpr std::size_t kOnset = 0;
-constexpr std::size_t kDuration = 1;
-constexpr std::size_t kKind = 2;
-constexpr std::size_t kResponseTime = 3;
-constexpr std::size_t kBlock = 4;
-constexpr std::size_t kTrial = 5;
-constexpr std::size_t kTrack = 6;
-constexpr std::size_t kCondition = 7;
-constexpr std::size_t kLevel = 8;
-constexpr std::size_t kInterval = 9;
-constexpr std::size_t kResponse = 10;
-constexpr std::size_t kCorrect = 11;
-constexpr std::size_t kMean = 12;
-constexpr std::size_t kSd = 13;
-constexpr std::size_t kTaps = 14;
-constexpr std::size_t kForce = 15;
-constexpr std::size_t kContact = 16;
-constexpr std::size_t kWho = 17;
-constexpr std::size_t kCount = 18;
+struct Cell {
+  enum Place : std::size_t {
+    Onset,
+    Duration,
+    Kind,
+    ResponseTime,
+    Block,
+    Trial,
+    Track,
+    Condition,
+    Level,
+    Interval,
+    Response,
+    Correct,
+    Mean,
+    Sd,
+    Taps,
+    Force,
+    Contact,
+    Who,
+    Count
+  };
+};
 
 Result<TrialRow> row_of(const std::vector<std::string_view>& cells, const Task& task) {
-  std::array<double, kCount> number{};
-  for (const std::size_t at : {kOnset,
-                               kDuration,
-                               kResponseTime,
-                               kBlock,
-                               kTrial,
-                               kTrack,
-                               kLevel,
-                               kInterval,
-                               kResponse,
-                               kCorrect,
-                               kMean,
-                               kSd,
-                               kTaps,
-                               kForce,
-                               kContact}) {
+  std::array<double, Cell::Count> number{};
+  for (const Cell::Place at : {Cell::Onset,
+                               Cell::Duration,
+                               Cell::ResponseTime,
+                               Cell::Block,
+                               Cell::Trial,
+                               Cell::Track,
+                               Cell::Level,
+                               Cell::Interval,
+                               Cell::Response,
+                               Cell::Correct,
+                               Cell::Mean,
+                               Cell::Sd,
+                               Cell::Taps,
+                               Cell::Force,
+                               Cell::Contact}) {
     const auto value = config::parse_number(cells[at]);
     if (!value || std::abs(*value) > kNumberMax) {
       return fail(std::string{row_columns()[at].name} + " is \"" + printable(cells[at]) +
@@ -72,36 +76,36 @@ Result<TrialRow> row_of(const std::vector<std::string_view>& cells, const Task& 
     }
     number[at] = *value;
   }
-  const auto kind = kind_of(cells[kKind]);
-  const auto whole = [&](std::size_t at) { return static_cast<std::size_t>(number[at]); };
-  if (!kind || number[kBlock] < 1 || number[kTrial] < 1 || number[kTrack] < 0) {
+  const auto kind = kind_of(cells[Cell::Kind]);
+  const auto whole = [&](Cell::Place at) { return static_cast<std::size_t>(number[at]); };
+  if (!kind || number[Cell::Block] < 1 || number[Cell::Trial] < 1 || number[Cell::Track] < 0) {
     return fail("trial_type, block, trial or track is none");
   }
-  for (const std::size_t at : {kInterval, kResponse}) {
+  for (const Cell::Place at : {Cell::Interval, Cell::Response}) {
     if (number[at] < 1 || number[at] > task.intervals) {
       return fail(std::string{row_columns()[at].name} + " is none of the trial's");
     }
   }
   TrialRow row{.ask = {.kind = *kind,
-                       .number = whole(kTrial) - 1,
-                       .track = whole(kTrack),
-                       .level = number[kLevel],
-                       .stronger = whole(kInterval) - 1,
+                       .number = whole(Cell::Trial) - 1,
+                       .track = whole(Cell::Track),
+                       .level = number[Cell::Level],
+                       .stronger = whole(Cell::Interval) - 1,
                        .decoy = 0},
-               .outcome = {.chosen = whole(kResponse) - 1,
-                           .onset = number[kOnset],
-                           .duration = number[kDuration],
-                           .response_time = number[kResponseTime],
-                           .taps = static_cast<int>(number[kTaps]),
-                           .force_max = number[kForce],
-                           .contact = number[kContact]},
-               .condition = std::string{cells[kCondition]},
-               .block = whole(kBlock),
-               .kind = std::string{cells[kWho]},
-               .believed_mean = number[kMean],
-               .believed_sd = number[kSd],
+               .outcome = {.chosen = whole(Cell::Response) - 1,
+                           .onset = number[Cell::Onset],
+                           .duration = number[Cell::Duration],
+                           .response_time = number[Cell::ResponseTime],
+                           .taps = static_cast<int>(number[Cell::Taps]),
+                           .force_max = number[Cell::Force],
+                           .contact = number[Cell::Contact]},
+               .condition = std::string{cells[Cell::Condition]},
+               .block = whole(Cell::Block),
+               .kind = std::string{cells[Cell::Who]},
+               .believed_mean = number[Cell::Mean],
+               .believed_sd = number[Cell::Sd],
                .two_sided = task.two_sided};
-  if (number[kCorrect] != (row.yes() ? 1 : 0)) {
+  if (number[Cell::Correct] != (row.yes() ? 1 : 0)) {
     return fail("correct does not follow from interval and response");
   }
   return row;
@@ -146,24 +150,24 @@ std::string row_header() {
 }
 
 std::string row_text(const TrialRow& row) {
-  const std::array<std::string, kCount> cells{digits(row.outcome.onset),
-                                              digits(row.outcome.duration),
-                                              std::string{to_string(row.ask.kind)},
-                                              digits(row.outcome.response_time),
-                                              std::to_string(row.block),
-                                              std::to_string(row.ask.number + 1),
-                                              std::to_string(row.ask.track),
-                                              row.condition,
-                                              digits(row.ask.level),
-                                              std::to_string(row.ask.stronger + 1),
-                                              std::to_string(row.outcome.chosen + 1),
-                                              row.yes() ? "1" : "0",
-                                              digits(row.believed_mean),
-                                              digits(row.believed_sd),
-                                              std::to_string(row.outcome.taps),
-                                              digits(row.outcome.force_max),
-                                              digits(row.outcome.contact),
-                                              row.kind};
+  const std::array<std::string, Cell::Count> cells{digits(row.outcome.onset),
+                                                   digits(row.outcome.duration),
+                                                   std::string{to_string(row.ask.kind)},
+                                                   digits(row.outcome.response_time),
+                                                   std::to_string(row.block),
+                                                   std::to_string(row.ask.number + 1),
+                                                   std::to_string(row.ask.track),
+                                                   row.condition,
+                                                   digits(row.ask.level),
+                                                   std::to_string(row.ask.stronger + 1),
+                                                   std::to_string(row.outcome.chosen + 1),
+                                                   row.yes() ? "1" : "0",
+                                                   digits(row.believed_mean),
+                                                   digits(row.believed_sd),
+                                                   std::to_string(row.outcome.taps),
+                                                   digits(row.outcome.force_max),
+                                                   digits(row.outcome.contact),
+                                                   row.kind};
   std::string text;
   for (const std::string& cell : cells) text += (text.empty() ? "" : "\t") + cell;
   return text + '\n';
@@ -183,7 +187,7 @@ Result<RowsFile> parse_rows(std::string_view text, const std::string& name, cons
     } else {
       const std::string where = name + ", line " + std::to_string(number);
       const auto cells = tab_cells(line);
-      if (cells.size() != kCount) return fail(where + " has another number of cells");
+      if (cells.size() != Cell::Count) return fail(where + " has another number of cells");
       auto row = row_of(cells, task);
       if (!row) return fail(where, row.error());
       out.rows.push_back(std::move(*row));
