@@ -2,6 +2,7 @@
 // as JavaScript. A decoder that does what the test says.
 import assert from 'node:assert/strict';
 import { pathToFileURL } from 'node:url';
+import { check } from './page_check.mjs';
 
 let now = 0, decoders = [];
 class Decoder {
@@ -108,11 +109,4 @@ const tests = {
   },
 };
 
-for (const [name, test] of Object.entries(tests)) {
-  try {
-    test();
-  } catch (error) {
-    console.log(`${name}: ${error.message}`);
-    process.exitCode = 1;
-  }
-}
+check(tests);

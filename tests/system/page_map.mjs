@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { register } from 'node:module';
 import { pathToFileURL } from 'node:url';
+import { check } from './page_check.mjs';
 
 // Its parts name each other without an ending, as the bundler has it.
 const ENDED = 'export const resolve = (name, context, next) => next(/^[.][/][a-z]+$/.test(name) ? name + ".js" : name, context);';
@@ -66,11 +67,4 @@ const tests = {
   },
 };
 
-for (const [name, test] of Object.entries(tests)) {
-  try {
-    test();
-  } catch (error) {
-    console.log(`${name}: ${error.message}`);
-    process.exitCode = 1;
-  }
-}
+check(tests);

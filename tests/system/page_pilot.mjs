@@ -2,6 +2,7 @@
 // pilot.ts and model.ts as JavaScript. A page of nothing but events and a clock.
 import assert from 'node:assert/strict';
 import { pathToFileURL } from 'node:url';
+import { check } from './page_check.mjs';
 
 const folder = process.argv[2];
 const load = async name => import(pathToFileURL(`${folder}/${name}.js`).href);
@@ -105,11 +106,4 @@ const tests = {
   },
 };
 
-for (const [name, test] of Object.entries(tests)) {
-  try {
-    test();
-  } catch (error) {
-    console.log(`${name}: ${error.message}`);
-    process.exitCode = 1;
-  }
-}
+check(tests);
