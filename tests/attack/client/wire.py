@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from dataclasses import dataclass, field
 
@@ -9,8 +10,11 @@ from cryptography.exceptions import InvalidTag
 from cryptography.hazmat.primitives.ciphers import Cipher, algorithms, modes
 from cryptography.hazmat.primitives.ciphers.aead import AESGCM
 
-PROTOCOL_VERSION = 9
-PROTOCOL_NAME = b"palp/9"
+from client.schema import PROTO
+
+_PAGE = (PROTO / "WIRE.md").read_text()
+PROTOCOL_VERSION = int(re.search(r"`protocol_version` in `Hello` is (\d+)", _PAGE)[1])
+PROTOCOL_NAME = f"palp/{PROTOCOL_VERSION}".encode()
 EXPORTER_LABEL = b"EXPORTER-palp-session"
 
 DATA, CONTROL, PATH, CLOSE = range(4)

@@ -1,8 +1,13 @@
 #include "common/link/codec_control.h"
 
+#include <fstream>
+#include <iterator>
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "common/message/limits.h"
 #include "proto/link.pb.h"
 
 namespace palp::link {
@@ -24,6 +29,19 @@ Hello some_hello() {
           .devices = {.hand = {},
                       .stage = StageFacts{3, -0.1, 0.2, 0.3, 0.4, 5, 600, 0.07, true},
                       .sensor = ForceSensorFacts{8, 0.09, 10, 0.011, 1200, 0.013}}};
+}
+
+TEST(CodecControlTest, ThePageOfTheWireNamesThisVersionAndItsSizes) {
+  std::ifstream in{PALP_TREE "/proto/WIRE.md"};
+  const std::string page{std::istreambuf_iterator<char>{in}, {}};
+  const std::string version = std::to_string(kProtocolVersion);
+  EXPECT_THAT(page, testing::HasSubstr("`protocol_version` in `Hello` is " + version + "."));
+  EXPECT_THAT(page, testing::HasSubstr("`palp/" + version + "`"));
+  std::string telegram = std::to_string(message::kTelegramSizeMax);
+  if (telegram.size() > 3) telegram.insert(telegram.size() - 3, ",");
+  EXPECT_THAT(page,
+              testing::HasSubstr("| telegram / control message | " + telegram + " / " +
+                                 std::to_string(kControlSizeMax) + " bytes |"));
 }
 
 TEST(CodecControlTest, HelloComesBack) {
