@@ -5,6 +5,8 @@
 #include <numbers>
 #include <optional>
 
+#include "depth/quick_exp.h"
+
 namespace palp::depth {
 namespace {
 
@@ -174,9 +176,11 @@ NodalCurve BallField::Ball::ratio(double offset) const noexcept {
   NodalCurve out{};
   for (std::size_t m = 0; m < kCurveNodes; ++m) {
     const double fall = fall_[first][m] + share * (fall_[first + 1][m] - fall_[first][m]);
-    out[m] = std::exp(excess_[m] * far * std::exp(-fall * inside * inside));
+    out[m] = -fall * inside * inside;
   }
-  return out;
+  out = quick_exp(out);
+  for (std::size_t m = 0; m < kCurveNodes; ++m) out[m] *= excess_[m] * far;
+  return quick_exp(out);
 }
 
 }  // namespace palp::depth

@@ -11,10 +11,13 @@ namespace {
 constexpr double kScanStep = 4e-3;  // [m], of the places where a ball is first looked for
 constexpr std::size_t kScanDepths = 6;
 constexpr std::size_t kScanRadii = 3;
-constexpr double kScanRatio = 0.6;      // [-], of the logarithm's range
-constexpr double kModeApart = 6e-3;     // [m]
-constexpr double kModeReach = 42;       // [-], log-likelihood below the best, roughly: no mode
-constexpr std::size_t kFirstRadii = 3;  // cells to begin with
+constexpr std::size_t kScanNode = 3;       // of a curve: 2.3 mm
+constexpr double kScanOffset = 0.5e-3;     // [m]
+constexpr std::size_t kScanOffsets = 160;  // 80 mm, beyond which a ball has no effect
+constexpr double kScanRatio = 0.6;         // [-], of the logarithm's range
+constexpr double kModeApart = 6e-3;        // [m]
+constexpr double kModeReach = 42;          // [-], log-likelihood below the best, roughly: no mode
+constexpr std::size_t kFirstRadii = 3;     // cells to begin with
 constexpr std::size_t kFirstRatios = 2;
 constexpr std::size_t kCellsMax = 40;
 constexpr double kFineReach = 0.7;  // [-], standard deviations to a cell's edge: fine enough
@@ -42,9 +45,14 @@ class CellMaker {
  private:
   /// A ball of some depth and radius, looked for everywhere.
   struct Kind {
-    BallField::Ball seen;
+    std::vector<double> told;  ///< [-], ln of the force over plain tissue, by steps of the offset
     double log_depth{};
     double radius{};
+  };
+  /// Where an offset lies in that table.
+  struct Step {
+    std::size_t first{};
+    double share{};  ///< [-], of the one after
   };
   [[nodiscard]] std::vector<Kind> kinds_of_ball(double log_ratio) const {
     std::vector<Kind> kinds;
@@ -55,8 +63,13 @@ class CellMaker {
                                          (static_cast<double>(i) + 0.5) / kScanDepths;
         const double radius = prior_.given().ball.radius_min +
                               prior_.radius_width() * (static_cast<double>(j) + 0.5) / kScanRadii;
-        kinds.push_back(
-            {field_.at(log_depth, radius, effect_of(std::exp(log_ratio))), log_depth, radius});
+        Kind kind{.told = {}, .log_depth = log_depth, .radius = radius};
+        const auto ball = field_.at(log_depth, radius, effect_of(std::exp(log_ratio)));
+        for (std::size_t step = 0; step <= kScanOffsets; ++step) {
+          const double offset = static_cast<double>(step) * kScanOffset;
+          kind.told.push_back(std::log(ball.ratio(offset)[kScanNode]));
+        }
+        kinds.push_back(std::move(kind));
       }
     }
     return kinds;
@@ -92,9 +105,10 @@ class CellMaker {
         const Place place{0.5 * (left + right) + (column - 0.5 * (columns - 1)) * kScanStep,
                           0.5 * (low + high) + (row - 0.5 * (rows - 1)) * kScanStep};
         if (prior_.covering(place) == 0) continue;
+        const std::vector<Step> steps = steps_from(place);
         Start best{-std::numeric_limits<double>::infinity(), {}};
         for (const Kind& kind : kinds) {
-          const double value = rough(kind.seen, place);
+          const double value = rough(kind, steps);
           if (value > best.value) best = {value, {place, kind.log_depth, kind.radius, log_ratio}};
         }
         found.push_back(best);
@@ -120,21 +134,31 @@ class CellMaker {
     return out;
   }
 
+  [[nodiscard]] std::vector<Step> steps_from(const Place& axis) const {
+    std::vector<Step> steps;
+    steps.reserve(likelihood_.places().size());
+    for (const PlaceData& touched : likelihood_.places()) {
+      constexpr double kLast = kScanOffsets - 1;
+      const double at = distance(touched.place, axis) / kScanOffset;
+      const auto first = static_cast<std::size_t>(std::min(at, kLast));
+      steps.push_back({first, std::min(at - static_cast<double>(first), 1.0)});
+    }
+    return steps;
+  }
+
   /// Log-likelihood of the places' excess, one number each, over a common tissue.
-  [[nodiscard]] double rough(const BallField::Ball& seen, const Place& place) const noexcept {
-    constexpr std::size_t kMiddle = 3;
+  [[nodiscard]] double rough(const Kind& kind, const std::vector<Step>& steps) const noexcept {
     double weights = 0;
     double sum = 0;
     double squares = 0;
     const auto& excess = likelihood_.excess();
     for (std::size_t i = 0; i < excess.size(); ++i) {
-      const double told =
-          excess[i].value -
-          std::log(seen.ratio(distance(likelihood_.places()[i].place, place))[kMiddle]);
+      const double* told = &kind.told[steps[i].first];
+      const double left = excess[i].value - told[0] - steps[i].share * (told[1] - told[0]);
       const double weight = 1 / (excess[i].stddev * excess[i].stddev);
       weights += weight;
-      sum += weight * told;
-      squares += weight * told * told;
+      sum += weight * left;
+      squares += weight * left * left;
     }
     return -0.5 * (squares - sum * sum / (weights + 100));
   }
@@ -344,8 +368,8 @@ double BallCell::log_density(const MapBall& ball) const noexcept {
     square += z[i] * z[i];
   }
   // Gamma(7/2) / (Gamma(2) (4 pi)^(3/2)), over sqrt(det) = exp(volume) / (2 pi)^(3/2).
-  static const double kAtMiddle = std::log(std::tgamma(3.5) / std::pow(2.0, 1.5));
-  return kAtMiddle - 3.5 * std::log1p(square / (4 * kInflation * kInflation)) -
+  static const double at_middle = std::log(std::tgamma(3.5) / std::pow(2.0, 1.5));
+  return at_middle - 3.5 * std::log1p(square / (4 * kInflation * kInflation)) -
          3 * std::log(kInflation) - volume - std::log(radius_width * ratio_width);
 }
 

@@ -17,6 +17,15 @@ Located located(const Estimated& one) noexcept {
 
 }  // namespace
 
+MapStop map_stop(const MapPosterior& posterior,
+                 const MapVerdict& verdict,
+                 const std::optional<NextTouch>& next,
+                 const MapEstimatorConfig& config) noexcept {
+  const double widest = std::max({posterior.x.stddev, posterior.y.stddev, posterior.depth.stddev});
+  if (verdict.found && verdict.doubts.empty() && widest <= config.known) return MapStop::Known;
+  return next && next->gain >= config.news ? MapStop::GoOn : MapStop::NoMoreNews;
+}
+
 MapEstimator::Parts::Parts(const DepthDatabase& database, const DepthPrior& ball)
     : prior{.ball = ball, .block_height = database.grid().block.height},
       field{database, ball, lateral_share(database)} {}
@@ -78,15 +87,6 @@ std::vector<MapCell> MapEstimator::cells() const {
   return cells;
 }
 
-MapStop MapEstimator::stop() const {
-  const MapPosterior& posterior = answer_->posterior;
-  const double widest = std::max({posterior.x.stddev, posterior.y.stddev, posterior.depth.stddev});
-  const MapVerdict& verdict = answer_->verdict;
-  if (verdict.found && verdict.doubts.empty() && widest <= config_.known) return MapStop::Known;
-  const bool news = answer_->next && answer_->next->gain >= config_.news;
-  return news ? MapStop::GoOn : MapStop::NoMoreNews;
-}
-
 MapReport MapEstimator::report() const {
   const MapVerdict& verdict = answer_->verdict;
   const MapPosterior& posterior = answer_->posterior;
@@ -95,7 +95,7 @@ MapReport MapEstimator::report() const {
                 .verdict = verdict.found ? DepthVerdict::Found : DepthVerdict::None,
                 .log_odds = posterior.log_evidence,
                 .place_spread = config_.place_spread,
-                .stop = stop()};
+                .stop = map_stop(posterior, verdict, answer_->next, config_)};
   for (const MapDoubt one : verdict.doubts) out.doubts |= doubts_of(one);
   if (verdict.found) {
     out.x = located(posterior.x);

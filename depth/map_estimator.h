@@ -18,11 +18,17 @@ namespace palp::depth {
 
 struct MapEstimatorConfig {
   double place_spread{0.05};  ///< [-], of the tissue's stiffness from place to place
-  double travel{30e-3};       ///< [m], no touch is proposed farther from the middle, along x and y
+  double travel{45e-3};       ///< [m], no touch is proposed farther from the middle, along x and y
   double known{1e-3};         ///< [m], standard deviation of x, y and depth that is good enough
   double news{0.03};          ///< [nat], a touch that tells less is not worth it
   MapVerdictConfig verdict;
 };
+
+/// Whether one more touch is worth it.
+[[nodiscard]] MapStop map_stop(const MapPosterior& posterior,
+                               const MapVerdict& verdict,
+                               const std::optional<NextTouch>& next,
+                               const MapEstimatorConfig& config) noexcept;
 
 /// Fewer places say nothing of where a ball lies: the single place has an estimator of its own.
 inline constexpr std::size_t kMapPlacesMin = 3;
@@ -73,7 +79,6 @@ class MapEstimator {
     PlaceData data;
   };
   [[nodiscard]] MapReport report() const;
-  [[nodiscard]] MapStop stop() const;
 
   std::unique_ptr<const DepthDatabase> database_;  ///< stands still: the field refers to it
   DepthPrior ball_;

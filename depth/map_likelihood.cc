@@ -2,32 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/core/median.h"
 #include "common/core/small_solver.h"
+#include "depth/elimination.h"
 
 namespace palp::depth {
 namespace {
 
-constexpr std::array kSpreadShares{0.06, 0.3, 1.0};     // of the spread given,
-constexpr std::array kSpreadWeights{0.01, 0.04, 0.95};  // [-], so likely
-constexpr double kSpreadLeast = 1e-3;                   // [-]
-constexpr std::size_t kMiddle = 3;                      // a node: 2.3 mm
+constexpr std::size_t kMiddle = 3;  // a node: 2.3 mm
 constexpr int kTissuePasses = 3;
 constexpr double kStepOffset = 10e-6;  // [m], for slopes
 constexpr double kStepDepth = 1e-3;    // [-], of the logarithm
 constexpr double kStepRadius = 20e-6;  // [m]
 constexpr double kStepRatio = 5e-3;    // [-], of the logarithm
-
-double log_mean(const std::array<double, kSpreadWeights.size()>& values) noexcept {
-  const double most = *std::max_element(values.begin(), values.end());
-  double sum = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    sum += kSpreadWeights[i] * std::exp(values[i] - most);
-  }
-  return most + std::log(sum);
-}
 
 NodalCurve scaled(const NodalCurve& curve, double factor) noexcept {
   NodalCurve out = curve;
@@ -41,31 +29,11 @@ NodalCurve product(const NodalCurve& one, const NodalCurve& other) noexcept {
   return out;
 }
 
-/// Lower triangle and right side, solved in place: the unknown's logarithm of the determinant and
-/// what it explains.
-template <std::size_t N>
-struct Solved {
-  double explained{};
-  double log_determinant{};
-};
-template <std::size_t N>
-Solved<N> eliminate(std::array<std::array<double, N>, N>& m,
-                    std::array<double, N>& y,
-                    std::size_t count) noexcept {
-  Solved<N> out;
-  for (std::size_t r = 0; r < count; ++r) {
-    const double pivot = std::max(m[r][r], std::numeric_limits<double>::min());
-    const double inverse = 1 / pivot;
-    out.explained += y[r] * y[r] * inverse;
-    out.log_determinant += std::log(pivot);
-    for (std::size_t below = r + 1; below < N; ++below) {
-      const double factor = m[below][r] * inverse;
-      for (std::size_t k = r + 1; k <= below; ++k) m[below][k] -= factor * m[k][r];
-      y[below] -= factor * y[r];
-    }
-  }
-  return out;
-}
+constexpr NodalCurve kOnes = [] {
+  NodalCurve ones{};
+  ones.fill(1);
+  return ones;
+}();
 
 }  // namespace
 
@@ -77,26 +45,24 @@ MapLikelihood::MapLikelihood(const BallField& field,
   std::sort(places_.begin(), places_.end(), [](const PlaceData& a, const PlaceData& b) {
     return a.place.x != b.place.x ? a.place.x < b.place.x : a.place.y < b.place.y;
   });
-  for (std::size_t i = 0; i < kSpreads; ++i) {
-    spreads_[i] = std::max(kSpreadLeast, kSpreadShares[i] * prior.place_spread);
-  }
+  std::vector<Place> touched;
+  for (const PlaceData& one : places_) touched.push_back(one.place);
+  differs_ = StiffnessField{std::move(touched), prior.place_spread};
   find_tissue();
-  plain_ = log_mean(spread_values([](const PlaceData&) {
-    NodalCurve one{};
-    one.fill(1);
-    return one;
-  }));
+  const auto gathered = gather_all([](const PlaceData&) { return kOnes; });
+  plain_ = mean_of(values_of(gathered, whiten(differs_, gathered)));
   find_excess();
 }
 
 /// A place's share of the normal equations of what is unknown: `curves` (of the force, the first
 /// one the force itself) and the rate factor, last. How much stiffer the place is than the rest has
-/// the force as its column, and goes.
+/// the force as its column. What the place says of that goes into a row, and what is left of the
+/// equations says nothing of it.
 template <std::size_t N>
 void MapLikelihood::gather(const PlaceData& place,
                            const std::array<NodalCurve, N>& curves,
                            double middle,
-                           std::array<Normal<N + 1>, kSpreads>& to) const noexcept {
+                           Gathered<N + 1>& to) const {
   constexpr std::size_t kAll = N + 1;
   constexpr std::size_t kRate = PlaceData::kSize - 1;
   std::array<std::array<double, kAll>, kAll> h{};
@@ -118,22 +84,40 @@ void MapLikelihood::gather(const PlaceData& place,
   }
   h[N][N] = place.information[kRate][kRate];
   b[N] = place.pull[kRate];
-  const double square = place.square + h[0][0] - 2 * b[0];
   std::array<double, kAll> gradient{};
   for (std::size_t i = 0; i < kAll; ++i) gradient[i] = b[i] - h[i][0];
+  const double noise = 1 / h[0][0];  // of its stiffness, relative
   const double model = prior_.model_error * middle;
-  for (std::size_t s = 0; s < kSpreads; ++s) {
-    const double variance = spreads_[s] * spreads_[s] + model * model;
-    const double away = 1 / (h[0][0] + 1 / variance);
-    Normal<kAll>& sum = to[s];
-    sum.square += square - gradient[0] * gradient[0] * away;
-    sum.log_determinant -= std::log(away / variance);
-    for (std::size_t i = 0; i < kAll; ++i) {
-      const double left = h[i][0] * away;
-      sum.right[i] += gradient[i] - left * gradient[0];
-      for (std::size_t j = 0; j <= i; ++j) sum.matrix[i][j] += h[i][j] - left * h[j][0];
-    }
+  to.own.push_back(noise + model * model);
+  Normal<kAll>& sum = to.equations;
+  sum.square += place.square + h[0][0] - 2 * b[0] - gradient[0] * gradient[0] * noise;
+  sum.log_determinant -= std::log(noise);
+  for (std::size_t i = 0; i < kAll; ++i) {
+    const double left = h[i][0] * noise;
+    to.rows.push_back(left);
+    sum.right[i] += gradient[i] - left * gradient[0];
+    for (std::size_t j = 0; j <= i; ++j) sum.matrix[i][j] += h[i][j] - left * h[j][0];
   }
+  to.rows.push_back(gradient[0] * noise);
+}
+
+/// The normal equations where the places' own stiffness is integrated out.
+template <std::size_t N>
+auto MapLikelihood::under(std::size_t guess,
+                          const Gathered<N>& gathered,
+                          const StiffnessField::Whitened& whitened) -> Normal<N> {
+  Normal<N> out = gathered.equations;
+  out.log_determinant += whitened.log_determinant[guess];
+  const std::span<const double> rows = whitened.of(guess);
+  for (std::size_t at = 0; at < rows.size(); at += N + 1) {
+    const double* row = &rows[at];
+    for (std::size_t i = 0; i < N; ++i) {
+      out.right[i] += row[i] * row[N];
+      for (std::size_t j = 0; j <= i; ++j) out.matrix[i][j] += row[i] * row[j];
+    }
+    out.square += row[N] * row[N];
+  }
+  return out;
 }
 
 double MapLikelihood::middle_of(const NodalCurve& ratio) noexcept {
@@ -144,7 +128,7 @@ double MapLikelihood::middle_of(const NodalCurve& ratio) noexcept {
 std::array<NodalCurve, MapLikelihood::kTissue - 1> MapLikelihood::columns(
     const NodalCurve& ratio) const noexcept {
   const NodalCurve force = scaled(ratio, scale_);
-  std::array<NodalCurve, kTissue - 1> out;
+  std::array<NodalCurve, kTissue - 1> out{};
   out[0] = product(force, curve_);
   for (std::size_t m = 0; m < kTissueShapes; ++m) out[m + 1] = product(force, tissue_shapes()[m]);
   return out;
@@ -171,34 +155,60 @@ void MapLikelihood::add_prior(Normal<kTissue>& to) const noexcept {
 }
 
 template <class Ratio>
-auto MapLikelihood::spread_values(const Ratio& ratio) const noexcept
-    -> std::array<double, kSpreads> {
-  std::array<Normal<kTissue>, kSpreads> sums{};
+auto MapLikelihood::gather_all(const Ratio& ratio) const -> Gathered<kTissue> {
+  Gathered<kTissue> out;
   for (const PlaceData& place : places_) {
-    const NodalCurve force = ratio(place);
-    gather(place, columns(force), middle_of(force), sums);
+    const NodalCurve seen = ratio(place);
+    gather(place, columns(seen), middle_of(seen), out);
   }
-  std::array<double, kSpreads> values{};
-  for (std::size_t s = 0; s < kSpreads; ++s) {
-    Normal<kTissue>& sum = sums[s];
+  return out;
+}
+
+/// By guess of the field.
+auto MapLikelihood::values_of(const Gathered<kTissue>& gathered,
+                              const StiffnessField::Whitened& whitened) const -> ByGuess {
+  ByGuess values{};
+  for (std::size_t guess = 0; guess < values.size(); ++guess) {
+    Normal<kTissue> sum = under(guess, gathered, whitened);
     add_prior(sum);
     const auto solved = eliminate(sum.matrix, sum.right, kTissue);
-    values[s] =
+    values[guess] =
         -0.5 * (sum.square - solved.explained + sum.log_determinant + solved.log_determinant);
   }
   return values;
 }
 
-double MapLikelihood::at(const MapBall& ball) const noexcept {
+double MapLikelihood::mean_of(const ByGuess& values) const noexcept {
+  const double most = *std::max_element(values.begin(), values.end());
+  double sum = 0;
+  for (std::size_t guess = 0; guess < values.size(); ++guess) {
+    sum += differs_.guess(guess).share * std::exp(values[guess] - most);
+  }
+  return most + std::log(sum);
+}
+
+auto MapLikelihood::values_at(const MapBall& ball) const -> ByGuess {
   const BallField::Ball seen =
       field_->at(ball.log_depth, ball.radius, effect_of(std::exp(ball.log_ratio)));
-  return log_mean(spread_values(
-      [&](const PlaceData& place) { return seen.ratio(distance(place.place, ball.place)); }));
+  const auto gathered = gather_all(
+      [&](const PlaceData& place) { return seen.ratio(distance(place.place, ball.place)); });
+  return values_of(gathered, whiten(differs_, gathered));
+}
+
+double MapLikelihood::at(const MapBall& ball) const { return mean_of(values_at(ball)); }
+
+StiffnessField::ByGuess MapLikelihood::guesses(const MapBall& ball) const {
+  ByGuess out = values_at(ball);
+  const double all = mean_of(out);
+  for (std::size_t guess = 0; guess < out.size(); ++guess) {
+    out[guess] = differs_.guess(guess).share * std::exp(out[guess] - all);
+  }
+  return out;
 }
 
 /// All places' normal equations, the tissue's unknowns first (the rate factor last of all).
-auto MapLikelihood::gather_around(const MapBall& ball) const noexcept
-    -> std::array<Normal<kTissue + kBallCoordinates>, kSpreads> {
+auto MapLikelihood::gather_around(const MapBall& ball) const
+    -> Gathered<kTissue + kBallCoordinates> {
   constexpr std::size_t kCurves = kTissue - 1 + kBallCoordinates;
   const auto seen = [&](double depth, double radius, double ratio) {
     return field_->at(
@@ -208,7 +218,7 @@ auto MapLikelihood::gather_around(const MapBall& ball) const noexcept
   const std::array<BallField::Ball, 3> beside{
       seen(kStepDepth, 0, 0), seen(0, -kStepRadius, 0), seen(0, 0, -kStepRatio)};
   constexpr std::array kSteps{kStepDepth, -kStepRadius, -kStepRatio};
-  std::array<Normal<kCurves + 1>, kSpreads> sums{};
+  Gathered<kCurves + 1> all;
   for (const PlaceData& place : places_) {
     const double offset = distance(place.place, ball.place);
     const NodalCurve ratio = here.ratio(offset);
@@ -229,18 +239,19 @@ auto MapLikelihood::gather_around(const MapBall& ball) const noexcept
     for (std::size_t i = 0; i < 3; ++i) {
       curves[kTissue + 1 + i] = slope(beside[i].ratio(offset), kSteps[i]);
     }
-    gather(place, curves, middle_of(ratio), sums);
+    gather(place, curves, middle_of(ratio), all);
   }
-  return sums;
+  return all;
 }
 
-MapLikelihood::Local MapLikelihood::around(const MapBall& ball) const noexcept {
+MapLikelihood::Local MapLikelihood::around(const MapBall& ball) const {
   constexpr std::size_t kCurves = kTissue - 1 + kBallCoordinates;
   constexpr std::size_t kAll = kCurves + 1;
-  auto sums = gather_around(ball);
-  std::array<double, kSpreads> values{};
-  std::array<Local, kSpreads> locals{};
-  for (std::size_t s = 0; s < kSpreads; ++s) {
+  const Gathered<kAll> gathered = gather_around(ball);
+  const auto whitened = whiten(differs_, gathered);
+  ByGuess values{};
+  std::array<Local, StiffnessField::kGuesses> locals{};
+  for (std::size_t s = 0; s < values.size(); ++s) {
     // The tissue's unknowns first: they are eliminated, the ball's stay.
     constexpr auto kOrder = [] {
       std::array<std::size_t, kAll> order{};
@@ -252,7 +263,7 @@ MapLikelihood::Local MapLikelihood::around(const MapBall& ball) const noexcept {
     }();
     Normal<kTissue> prior;
     add_prior(prior);
-    Normal<kAll>& sum = sums[s];
+    const Normal<kAll> sum = under(s, gathered, whitened);
     std::array<std::array<double, kAll>, kAll> matrix{};
     std::array<double, kAll> right{};
     for (std::size_t i = 0; i < kAll; ++i) {
@@ -278,9 +289,9 @@ MapLikelihood::Local MapLikelihood::around(const MapBall& ball) const noexcept {
     }
   }
   Local out;
-  out.value = log_mean(values);
-  for (std::size_t s = 0; s < kSpreads; ++s) {
-    const double share = kSpreadWeights[s] * std::exp(values[s] - out.value);
+  out.value = mean_of(values);
+  for (std::size_t s = 0; s < values.size(); ++s) {
+    const double share = differs_.guess(s).share * std::exp(values[s] - out.value);
     for (std::size_t i = 0; i < kBallCoordinates; ++i) {
       out.slope[i] += share * locals[s].slope[i];
       for (std::size_t j = 0; j < kBallCoordinates; ++j) {
@@ -298,20 +309,24 @@ void MapLikelihood::find_tissue() {
   for (const PlaceData& place : places_) scales.push_back(place.scale);
   const double typical = median(scales).value_or(1);
   scale_ = typical > 0 ? typical : 1;
+  std::vector<PlaceData> soft;
+  std::vector<Place> touched;
+  for (const PlaceData& place : places_) {
+    if (place.scale > typical) continue;
+    soft.push_back(place);
+    touched.push_back(place.place);
+  }
+  const StiffnessField differs{std::move(touched), prior_.place_spread};
   for (int pass = 0; pass < kTissuePasses; ++pass) {
-    NodalCurve one{};
-    one.fill(1);
-    std::array<Normal<kTissue>, kSpreads> sums{};
-    for (const PlaceData& place : places_) {
-      if (place.scale <= typical) gather(place, columns(one), 0, sums);
-    }
-    Normal<kTissue>& sum = sums.back();
+    Gathered<kTissue> gathered;
+    for (const PlaceData& place : soft) gather(place, columns(kOnes), 0, gathered);
+    Normal<kTissue> sum = under(StiffnessField::kIndependent, gathered, whiten(differs, gathered));
     add_prior(sum);
     SmallSystem<kTissue> system{.matrix = sum.matrix, .right = sum.right};
     const auto solution = solve(system);
     if (!solution.regular) return;
     for (std::size_t m = 0; m < kTissueShapes; ++m) shapes_[m] += solution.x[m + 1];
-    NodalCurve curve = one;
+    NodalCurve curve = kOnes;
     for (std::size_t n = 0; n < kCurveNodes; ++n) {
       for (std::size_t m = 0; m < kTissueShapes; ++m) {
         curve[n] += shapes_[m] * tissue_shapes()[m][n];
@@ -323,47 +338,34 @@ void MapLikelihood::find_tissue() {
 }
 
 void MapLikelihood::find_excess() {
-  NodalCurve one{};
-  one.fill(1);
-  const NodalCurve force = columns(one)[0];
+  const NodalCurve force = columns(kOnes)[0];
   for (const PlaceData& place : places_) {
-    double information = 0;
-    double pull = 0;
-    for (std::size_t a = 0; a < kCurveNodes; ++a) {
-      for (std::size_t b = 0; b < kCurveNodes; ++b) {
-        information += force[a] * place.information[a][b] * force[b];
-      }
-      pull += force[a] * place.pull[a];
-    }
-    const double ratio = pull / information;
+    const FactorTold told = factor_told(place, force, 0);
+    const double ratio = told.pull / told.information;
     excess_.push_back({.value = std::log(std::max(ratio, 0.1)),
-                       .stddev = std::hypot(1 / std::sqrt(information), spreads_.back())});
+                       .stddev = std::hypot(1 / std::sqrt(told.information), prior_.place_spread)});
   }
 }
 
 MapLikelihood::Rest MapLikelihood::rest(const MapBall* ball) const {
   const auto ratio = [&](const PlaceData& place) {
-    NodalCurve one{};
-    one.fill(1);
-    if (ball == nullptr) return one;
+    if (ball == nullptr) return kOnes;
     return field_->at(ball->log_depth, ball->radius, effect_of(std::exp(ball->log_ratio)))
         .ratio(distance(place.place, ball->place));
   };
-  const auto values = spread_values(ratio);
-  const auto likeliest =
+  Gathered<kTissue> gathered = gather_all(ratio);
+  const auto whitened = whiten(differs_, gathered);
+  const auto values = values_of(gathered, whitened);
+  Rest out;
+  out.guess =
       static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
-  std::array<Normal<kTissue>, kSpreads> sums{};
-  for (const PlaceData& place : places_) {
-    const NodalCurve force = ratio(place);
-    gather(place, columns(force), middle_of(force), sums);
-  }
-  Normal<kTissue>& sum = sums[likeliest];
+  Normal<kTissue> sum = under(out.guess, gathered, whitened);
   add_prior(sum);
   const auto solution = solve(SmallSystem<kTissue>{.matrix = sum.matrix, .right = sum.right});
-  Rest out;
   out.scale = scale_ * (1 + solution.x[0]);
   out.rate_factor = prior_.stiffness.rate_factor + solution.x[kTissue - 1];
-  out.spread = spreads_[likeliest];
+  out.spread = differs_.guess(out.guess).spread;
+  out.own = std::move(gathered.own);
   for (const PlaceData& place : places_) {
     const NodalCurve seen = ratio(place);
     const auto curves = columns(seen);
@@ -373,19 +375,10 @@ MapLikelihood::Rest MapLikelihood::rest(const MapBall* ball) const {
       for (std::size_t m = 0; m < kTissueShapes; ++m)
         force[n] += solution.x[m + 1] * curves[m + 1][n];
     }
-    double information = 0;
-    double pull = 0;
-    for (std::size_t a = 0; a < kCurveNodes; ++a) {
-      double row = solution.x[kTissue - 1] * place.information[a][PlaceData::kSize - 1];
-      for (std::size_t b = 0; b < kCurveNodes; ++b) row += place.information[a][b] * force[b];
-      pull += force[a] * (place.pull[a] - row);
-      for (std::size_t b = 0; b < kCurveNodes; ++b) {
-        information += force[a] * place.information[a][b] * force[b];
-      }
-    }
-    const double model = prior_.model_error * middle_of(seen);
-    out.deviations.push_back(pull / information /
-                             std::sqrt(1 / information + out.spread * out.spread + model * model));
+    const FactorTold told = factor_told(place, force, solution.x[kTissue - 1]);
+    out.shown.push_back(told.pull / told.information - 1);
+    const double all = out.own[out.shown.size() - 1] + out.spread * out.spread;
+    out.deviations.push_back(out.shown.back() / std::sqrt(all));
   }
   return out;
 }

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t kDrawsPrior = 240;
 constexpr std::size_t kDrawsFirst = 500;   // by the cells' own masses
-constexpr std::size_t kDrawsLater = 1100;  // and by what these said of them
+constexpr std::size_t kDrawsLater = 1100;  // at most, by what these said of them
+constexpr double kWorth = 500;             // [-], of even draws: enough
 constexpr double kFirstShare = 0.25;       // [-], of the later draws, by the cells' own masses
 /// Outside of an interval, by side, and on the lower side where the interval reaches the upper end.
 struct Tails {
@@ -55,6 +56,7 @@ class Sampler {
     for (const BallCell& cell : cells_) masses.push_back(cell.mass);
     draw_cells(kDrawsFirst, masses);
     const std::vector<double> found = weigh_cells();
+    const double wanted = (kWorth / worth() - 1) * static_cast<double>(drawn_.size());
     const double before = total(masses);
     const double now = total(found);
     for (std::size_t c = 0; c < cells_.size(); ++c) {
@@ -62,7 +64,7 @@ class Sampler {
           kFirstShare * std::exp(masses[c] - before) + (1 - kFirstShare) * std::exp(found[c] - now);
       masses[c] = std::log(share + 1e-9);
     }
-    draw_cells(kDrawsLater, masses);
+    draw_cells(static_cast<std::size_t>(std::clamp<double>(wanted, 0, kDrawsLater)), masses);
     for (Drawn& one : drawn_) measure(one);
     return std::move(drawn_);
   }
@@ -119,6 +121,20 @@ class Sampler {
       one.mode = cells_[c].mode;
     }
     one.density = std::log(sum);
+  }
+
+  /// So many even draws say as much as the weighed ones so far.
+  [[nodiscard]] double worth() const noexcept {
+    double most = kNone;
+    for (const Drawn& one : drawn_) most = std::max(most, one.value - one.density);
+    double sum = 0;
+    double squares = 0;
+    for (const Drawn& one : drawn_) {
+      const double share = std::exp(one.value - one.density - most);
+      sum += share;
+      squares += share * share;
+    }
+    return sum * sum / squares;
   }
 
   /// What the draws so far say of each cell's mass.

@@ -13,9 +13,10 @@ struct NextTouch {
   double gain{};  ///< [nat], expected information about the ball; >= 0
 };
 
-/// What a touch there is expected to tell: half the logarithm of how much the balls that may be
-/// disagree about its force, over what one touch leaves open (one tap of 4 mm, its surface
-/// unknown, and the tissue's spread). [nat]
+/// What a touch there is expected to tell of the ball: the mutual information of the two. Each ball
+/// that may be foretells the force under each guess of the tissue's own stiffness, as likely as the
+/// touches make it. A touch beside the ball tells too where only even tissue leaves that ball in
+/// doubt. 0 where it was touched before: what the ball's model is off there, it is off again. [nat]
 [[nodiscard]] double touch_gain(const MapLikelihood& likelihood,
                                 const BallField& field,
                                 const MapPosterior& posterior,

@@ -8,7 +8,7 @@
 namespace palp::depth {
 namespace {
 
-constexpr int kPasses = 3;            // the steps' bias needs the force, and that the surface
+constexpr int kFitPasses = 3;         // the steps' bias needs the force, and that the surface
 constexpr double kScaleSpread = 0.7;  // [-], of the fit to one place: anything
 constexpr double kCurveSpread = 0.3;  // [-], of its shape: an inclusion is in it
 constexpr std::size_t kFitted = 3 + kTissueShapes;
@@ -182,7 +182,7 @@ std::optional<PlaceData> place_data(const PlaceReadings& readings, const CurveBa
   best.curve.fill(readings.stiffness.scale);
   best.scale = readings.stiffness.scale;
   NormalEquations sums{surface};
-  for (int pass = 0; pass < kPasses; ++pass) {
+  for (int pass = 0; pass < kFitPasses; ++pass) {
     sums = NormalEquations{surface};
     for (const Touch& touch : readings.touches) {
       sums.add(touch,
@@ -207,6 +207,20 @@ std::optional<PlaceData> place_data(const PlaceReadings& readings, const CurveBa
                 .misfit = best.misfit,
                 .samples = sums.samples()};
   reduce(sums, best, readings.surface - surface, out);
+  return out;
+}
+
+FactorTold factor_told(const PlaceData& place,
+                       const NodalCurve& force,
+                       double rate_factor) noexcept {
+  FactorTold out;
+  for (std::size_t a = 0; a < kCurveNodes; ++a) {
+    const double rate = rate_factor * place.information[a][PlaceData::kSize - 1];
+    out.pull += force[a] * (place.pull[a] - rate);
+    for (std::size_t b = 0; b < kCurveNodes; ++b) {
+      out.information += force[a] * place.information[a][b] * force[b];
+    }
+  }
   return out;
 }
 

@@ -37,6 +37,16 @@ struct PlaceData {
   double samples{};  ///< [-]
 };
 
+/// What a place says of a factor on a force.
+struct FactorTold {
+  double information{};  ///< [-]
+  double pull{};         ///< [-], that times the factor
+};
+/// `force` [-]: over that of the plain block of the database; `rate_factor` [s/m].
+[[nodiscard]] FactorTold factor_told(const PlaceData& place,
+                                     const NodalCurve& force,
+                                     double rate_factor) noexcept;
+
 /// What is known of a place before.
 struct PlaceReadings {
   Place place;

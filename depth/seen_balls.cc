@@ -6,12 +6,12 @@ namespace palp::depth {
 namespace {
 
 constexpr std::size_t kBalls = 200;
-constexpr std::size_t kMiddle = 3;  // a node of the curve
+constexpr std::size_t kJudgedNode = 3;  // a node of the curve
 
 }  // namespace
 
 double SeenBall::log_ratio(const Place& place) const noexcept {
-  return std::log(ball.ratio(distance(axis, place))[kMiddle]);
+  return std::log(effect.ratio(distance(ball.place, place))[kJudgedNode]);
 }
 
 std::vector<SeenBall> seen_balls(const BallField& field, const MapPosterior& posterior) {
@@ -23,9 +23,8 @@ std::vector<SeenBall> seen_balls(const BallField& field, const MapPosterior& pos
     for (; next < sum && out.size() < kBalls; next += 1.0 / kBalls) {
       const MapBall& ball = one.ball;
       out.push_back(
-          {.ball = field.at(ball.log_depth, ball.radius, effect_of(std::exp(ball.log_ratio))),
-           .axis = ball.place,
-           .radius = ball.radius});
+          {.ball = ball,
+           .effect = field.at(ball.log_depth, ball.radius, effect_of(std::exp(ball.log_ratio)))});
     }
   }
   return out;

@@ -9,9 +9,8 @@ namespace palp::depth {
 
 /// A ball that may be, as the forces above it see it.
 struct SeenBall {
-  BallField::Ball ball;
-  Place axis;
-  double radius{};  ///< [m]
+  MapBall ball;
+  BallField::Ball effect;
 
   /// ln of the force at a place over that of plain tissue, 2.3 mm deep. [-]
   [[nodiscard]] double log_ratio(const Place& place) const noexcept;

@@ -8,7 +8,7 @@
 namespace palp::depth {
 namespace {
 
-constexpr double kRound = 12e-3;    // [m], about the touched places
+constexpr double kBorder = 12e-3;   // [m], about the touched places
 constexpr double kPitchMin = 2e-3;  // [m]
 
 /// Along one coordinate.
@@ -19,31 +19,31 @@ struct Axis {
 };
 
 Axis axis_over(double low, double high) {
-  const double length = high - low + 2 * kRound;
+  const double length = high - low + 2 * kBorder;
   const double pitch = std::max(kPitchMin, length / (kMapSideMax - 1));
   const int count = 1 + static_cast<int>(length / pitch + 1e-6);
-  return {low - kRound, pitch, std::min(count, static_cast<int>(kMapSideMax))};
+  return {low - kBorder, pitch, std::min(count, static_cast<int>(kMapSideMax))};
 }
 
 MapCell cell_at(const Place& place,
                 const std::vector<SeenBall>& balls,
                 double probability,
-                double spread) {
+                const FieldTold& own) {
   double mean = 0;
   double square = 0;
   double below = 0;
-  for (const SeenBall& ball : balls) {
-    const double told = ball.log_ratio(place);
+  for (const SeenBall& seen : balls) {
+    const double told = seen.log_ratio(place);
     mean += told;
     square += told * told;
-    if (distance(ball.axis, place) < ball.radius) ++below;
+    if (distance(seen.ball.place, place) < seen.ball.radius) ++below;
   }
   const auto count = static_cast<double>(std::max<std::size_t>(balls.size(), 1));
   mean *= probability / count;
   square *= probability / count;
   return {.place = place,
-          .stiffness = std::exp(mean),
-          .stiffness_stddev = std::sqrt(std::max(0.0, square - mean * mean) + spread * spread),
+          .stiffness = std::exp(mean + own.mean),
+          .stiffness_stddev = std::sqrt(std::max(0.0, square - mean * mean) + own.variance),
           .inclusion = probability * below / count};
 }
 
@@ -62,13 +62,17 @@ std::vector<MapCell> stiffness_map(const MapLikelihood& likelihood,
   const Axis y = axis_over(low.y, high.y);
   const std::vector<SeenBall> balls = seen_balls(field, posterior);
   const double probability = 1 / (1 + std::exp(-posterior.log_evidence));
-  const double spread = likelihood.rest(&posterior.best).spread;
-  std::vector<MapCell> cells;
+  std::vector<Place> places;
   for (int row = 0; row < y.count; ++row) {
     for (int column = 0; column < x.count; ++column) {
-      const Place place{x.first + column * x.pitch, y.first + row * y.pitch};
-      cells.push_back(cell_at(place, balls, probability, spread));
+      places.push_back({x.first + column * x.pitch, y.first + row * y.pitch});
     }
+  }
+  const auto rest = likelihood.rest(probability > 0.5 ? &posterior.best : nullptr);
+  const std::vector<FieldTold> own = likelihood.told(rest, places);
+  std::vector<MapCell> cells;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    cells.push_back(cell_at(places[i], balls, probability, own[i]));
   }
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
     cells[i].index = i;

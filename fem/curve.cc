@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <string>
 
 #include "common/core/conventions.h"
+#include "fem/figure_text.h"
 #include "fem/finite_contact.h"
 #include "fem/linear_contact.h"
 
@@ -18,26 +18,23 @@ namespace {
 constexpr double kErrorOfCoarse = 0.6;
 constexpr double kErrorOfNormal = 0.4;
 
-std::string mm(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g mm", value / kMillimetre);
-  return text;
-}
-
 Result<void> check_indentation(const CurveRequest& request, double indentation) {
   const Specimen& specimen = request.specimen;
   const auto refuse = [&](const std::string& limit, const std::string& why) {
-    return fail("the indentation is " + mm(indentation) + ", expected " + limit + ": " + why);
+    return fail("the indentation is " + length_text(indentation) + ", expected " + limit + ": " +
+                why);
   };
   if (!(indentation >= 0)) return refuse("0 or more", "the tip presses into the block");
   const double tip = specimen.indenter.radius * (request.model == Model::Linear ? 1.5 : 1.2);
-  if (indentation > tip) return refuse("at most " + mm(tip), "beyond it the tip is no sphere");
+  if (indentation > tip)
+    return refuse("at most " + length_text(tip), "beyond it the tip is no sphere");
   const double block = 0.8 * specimen.block.height;
-  if (indentation > block) return refuse("at most " + mm(block), "the base is near");
+  if (indentation > block) return refuse("at most " + length_text(block), "the base is near");
   const Inclusion& inclusion = specimen.inclusion;
   if (inclusion.shape != InclusionShape::None && inclusion.ratio > 1 &&
       !(indentation < inclusion.depth)) {
-    return refuse("below " + mm(inclusion.depth), "the tip would reach the stiff inclusion");
+    return refuse("below " + length_text(inclusion.depth),
+                  "the tip would reach the stiff inclusion");
   }
   return {};
 }

@@ -10,6 +10,7 @@
 #include "common/core/conventions.h"
 #include "common/core/printable.h"
 #include "fem/database_builder.h"
+#include "fem/figure_text.h"
 
 namespace palp::fem {
 namespace {
@@ -52,12 +53,6 @@ double widest_step(const std::vector<double>& axis, const std::vector<double>& u
     return step;
   };
   return widest(axis) / widest(usual);
-}
-
-std::string mm(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g mm", value / kMillimetre);
-  return text;
 }
 
 }  // namespace
@@ -141,21 +136,22 @@ Result<void> check(const DepthGrid& grid) {
   }
   if (grid.depths.size() < 2 || grid.radii.size() < 2 || grid.ratios.size() < 2 ||
       grid.indentations.size() < 2) {
-    return fail("a block of height " + mm(grid.block.height) + " and half width " +
-                mm(grid.block.half_width) +
+    return fail("a block of height " + length_text(grid.block.height) + " and half width " +
+                length_text(grid.block.half_width) +
                 " holds too few of the grid's inclusions: give smaller ones with --grid");
   }
   if (!(grid.ratios.front() > 1)) return fail("a stiffness ratio is not above 1");
   const double deepest = 1.2 * grid.indenter_radius;
   if (grid.indentations.back() > deepest) {
-    return fail("an indentation is " + mm(grid.indentations.back()) + ", expected at most " +
-                mm(deepest) + " with such a tip");
+    return fail("an indentation is " + length_text(grid.indentations.back()) +
+                ", expected at most " + length_text(deepest) + " with such a tip");
   }
   for (const double radius : grid.radii) {
     if (depths_for(grid, radius) >= kFitsLeast) continue;
-    return fail("an inclusion of radius " + mm(radius) + " fits at fewer than two depths whose " +
-                "cover takes an indentation of " + mm(grid.indentations.back()) +
-                " in a block of height " + mm(grid.block.height));
+    return fail("an inclusion of radius " + length_text(radius) +
+                " fits at fewer than two depths whose " + "cover takes an indentation of " +
+                length_text(grid.indentations.back()) + " in a block of height " +
+                length_text(grid.block.height));
   }
   return {};
 }

@@ -14,8 +14,8 @@
 namespace palp::fem {
 namespace {
 
-constexpr int kMappingPassesMax = 30;  // of Newton's method
-constexpr double kTolerance = 1e-13;   // of the residual, relative to the largest reaction
+constexpr int kMappingPassesMax = 30;   // of Newton's method
+constexpr double kResidualMax = 1e-13;  // of the residual, relative to the largest reaction
 
 }  // namespace
 
@@ -146,7 +146,7 @@ MappedBody::Solution MappedBody::solve(Strain strain) const {
     }
     out.residuals.push_back(right.norm());
     const double scale = std::max(out.reaction.norm(), load_.norm());
-    if (right.norm() <= kTolerance * scale || (strain == Strain::Small && pass == 1)) {
+    if (right.norm() <= kResidualMax * scale || (strain == Strain::Small && pass == 1)) {
       out.solved = true;
       break;
     }

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <string>
 
 #include "common/core/conventions.h"
+#include "fem/figure_text.h"
 #include "fem/off_axis_contact.h"
 
 namespace palp::fem {
@@ -18,13 +18,7 @@ constexpr double kBlockMin = 5;                           // tip radii, of its h
 constexpr double kLastShareMax = 1e-3;                    // of the harmonics that are left out
 constexpr double kNoExcess = 1e-9;                        // ln F of a ball as soft as the block
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-std::string in_mm(double length) { return number(length / kMillimetre) + " mm"; }
-std::string in_deg(double angle) { return number(angle * 180 / std::numbers::pi) + " deg"; }
+std::string in_deg(double angle) { return figure_text(angle * 180 / std::numbers::pi) + " deg"; }
 
 double walked(const Approach& approach, double indentation) {
   return std::abs(approach.offset + indentation * std::sin(approach.tilt));
@@ -44,24 +38,24 @@ Result<void> check_approach(const CurveRequest& request, const Approach& approac
   const double radius = specimen.indenter.radius;
   const double smaller = std::min(specimen.block.height, specimen.block.half_width);
   if (!(smaller >= kBlockMin * radius)) {
-    return fail("the block's height or half width is " + in_mm(smaller) + ", expected at least " +
-                in_mm(kBlockMin * radius) + " beside the axis");
+    return fail("the block's height or half width is " + length_text(smaller) +
+                ", expected at least " + length_text(kBlockMin * radius) + " beside the axis");
   }
   if (!(std::abs(approach.tilt) <= kTiltMax * (1 + 1e-9))) {
     return fail("the tilt is " + in_deg(approach.tilt) + ", expected at most " + in_deg(kTiltMax) +
                 " either way");
   }
   if (!(std::abs(approach.surface_curvature) <= kCurvatureMax / radius * (1 + 1e-9))) {
-    return fail("the surface's radius is " + in_mm(1 / approach.surface_curvature) +
-                ", expected at least " + in_mm(radius / kCurvatureMax) + " either way");
+    return fail("the surface's radius is " + length_text(1 / approach.surface_curvature) +
+                ", expected at least " + length_text(radius / kCurvatureMax) + " either way");
   }
   double farthest = std::abs(approach.offset);
   for (const double indentation : request.indentations) {
     farthest = std::max(farthest, walked(approach, indentation));
   }
   if (!(farthest <= offset_limit(specimen))) {
-    return fail("the tip is " + in_mm(farthest) + " beside the axis, expected at most " +
-                in_mm(offset_limit(specimen)));
+    return fail("the tip is " + length_text(farthest) + " beside the axis, expected at most " +
+                length_text(offset_limit(specimen)));
   }
   return {};
 }
@@ -113,8 +107,8 @@ Result<std::vector<CurveRow>> solve_off_axis_curve(const CurveRequest& request,
   for (const double d : request.indentations) farthest = std::max(farthest, walked(approach, d));
   OffAxisContact contact{request.specimen, farthest, request.accuracy};
   if (contact.last_share() > kLastShareMax) {
-    return fail("a ball of radius " + in_mm(request.specimen.inclusion.radius) + " is " +
-                in_mm(request.specimen.inclusion.depth) +
+    return fail("a ball of radius " + length_text(request.specimen.inclusion.radius) + " is " +
+                length_text(request.specimen.inclusion.depth) +
                 " below the surface, expected deeper: its harmonics do not settle");
   }
   std::vector<CurveRow> rows;

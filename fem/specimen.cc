@@ -1,11 +1,11 @@
 #include "fem/specimen.h"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 
 #include "common/core/conventions.h"
+#include "fem/figure_text.h"
 
 namespace palp::fem {
 namespace {
@@ -14,51 +14,46 @@ namespace {
 // mesh there would be slivers.
 constexpr double kCoverMin = 0.004;
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-std::string mm(double value) { return number(value / kMillimetre) + " mm"; }
-
 /// `value` in [low, high], shown in `scale`.
 Result<void> in_range(
     const std::string& name, double value, double low, double high, const std::string& unit) {
   if (value >= low && value <= high) return {};
-  return fail(name + " is " + number(value) + ", expected " + number(low) + " to " + number(high) +
-              (unit.empty() ? "" : " " + unit));
+  return fail(name + " is " + figure_text(value) + ", expected " + figure_text(low) + " to " +
+              figure_text(high) + (unit.empty() ? "" : " " + unit));
 }
 
 Result<void> check_poisson(const std::string& name, double poisson) {
   // Beyond 0.49999 the mixed form is still stable, but the condition number eats the digits.
   if (poisson >= 0 && poisson <= 0.49999) return {};
-  return fail(name + " is " + number(poisson) + ", expected 0 to 0.49999 (below 0.5)");
+  return fail(name + " is " + figure_text(poisson) + ", expected 0 to 0.49999 (below 0.5)");
 }
 
 Result<void> check_inclusion(const Block& block, const Inclusion& inclusion) {
   if (inclusion.shape == InclusionShape::None) return {};
   const double cover = kCoverMin * block.height;
   if (!(inclusion.depth >= cover)) {
-    return fail("the depth of the inclusion's top is " + mm(inclusion.depth) +
-                ", expected at least " + mm(cover));
+    return fail("the depth of the inclusion's top is " + length_text(inclusion.depth) +
+                ", expected at least " + length_text(cover));
   }
   if (!(inclusion.radius > 0)) {
-    return fail("the inclusion's radius is " + mm(inclusion.radius) + ", expected above 0");
+    return fail("the inclusion's radius is " + length_text(inclusion.radius) +
+                ", expected above 0");
   }
   const double wide = block.half_width * (1 - 0.02);
   if (!(inclusion.radius <= wide)) {
-    return fail("the inclusion's radius is " + mm(inclusion.radius) + ", expected at most " +
-                mm(wide) + " in a block of half width " + mm(block.half_width));
+    return fail("the inclusion's radius is " + length_text(inclusion.radius) +
+                ", expected at most " + length_text(wide) + " in a block of half width " +
+                length_text(block.half_width));
   }
   if (inclusion.shape == InclusionShape::Cylinder && !(inclusion.height > 0)) {
-    return fail("the cylinder's height is " + mm(inclusion.height) + ", expected above 0");
+    return fail("the cylinder's height is " + length_text(inclusion.height) + ", expected above 0");
   }
   const double low = block.height - cover;
   const double bottom = inclusion.bottom(block.height);
   if (inclusion.shape == InclusionShape::Column ? !(inclusion.depth <= low) : !(bottom <= low)) {
-    return fail("the inclusion reaches " + mm(std::max(bottom, inclusion.depth)) +
-                " below the surface, expected at most " + mm(low) + " in a block of height " +
-                mm(block.height));
+    return fail("the inclusion reaches " + length_text(std::max(bottom, inclusion.depth)) +
+                " below the surface, expected at most " + length_text(low) +
+                " in a block of height " + length_text(block.height));
   }
   if (auto ok = in_range("the stiffness ratio", inclusion.ratio, 1e-3, 1e5, ""); !ok) return ok;
   return check_poisson("the inclusion's Poisson's ratio", inclusion.poisson);

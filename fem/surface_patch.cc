@@ -2,23 +2,17 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <numbers>
 #include <string>
 
 #include "common/core/conventions.h"
 #include "fem/dense_solver.h"
+#include "fem/figure_text.h"
 
 namespace palp::fem {
 namespace {
 
 constexpr int kPatchPassesMax = 60;  // of the active set; a handful is usual
-
-std::string length_text(double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g mm", length / kMillimetre);
-  return text;
-}
 
 }  // namespace
 

@@ -3,9 +3,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 
 #include "common/core/conventions.h"
+#include "common/core/formatted.h"
 #include "fem/element.h"
 #include "fem/linear_contact.h"
 
@@ -16,11 +16,7 @@ constexpr int kBiquadraticQuad = 28;  // VTK's number of a nine-node quadrilater
 /// Its order of nodes: corners, middles of the sides, centre.
 constexpr std::array<std::size_t, 9> kVtkOrder{0, 2, 8, 6, 1, 5, 7, 3, 4};
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
+std::string digits(double value) { return formatted("%.9g", value); }
 
 /// Equivalent of the Cauchy stress's deviator at F: from the isochoric part alone. Small strain
 /// takes F = 1 + grad u to first order.
@@ -75,13 +71,13 @@ void add_point_data(std::string& out, const Curve& curve, const Specimen& specim
   out += "      <PointData Vectors=\"displacement_mm\">\n";
   open_array(out, "Float64", "displacement_mm", 3);
   for (std::size_t i = 0; i < curve.mesh.nodes.size(); ++i) {
-    out += number(curve.field[2 * i] / kMillimetre) + ' ' +
-           number(curve.field[2 * i + 1] / kMillimetre) + " 0\n";
+    out += digits(curve.field[2 * i] / kMillimetre) + ' ' +
+           digits(curve.field[2 * i + 1] / kMillimetre) + " 0\n";
   }
   out += kCloseArray;
   open_array(out, "Float64", "von_mises_kpa", 1);
   for (const double stress : node_stress(curve, specimen, model))
-    out += number(stress / 1e3) + '\n';
+    out += digits(stress / 1e3) + '\n';
   out += kCloseArray;
   out += "      </PointData>\n";
 }
@@ -122,7 +118,7 @@ std::string vtu_text(const Curve& curve, const Specimen& specimen, Model model) 
   out += "      </CellData>\n      <Points>\n";
   open_array(out, "Float64", "Points", 3);
   for (const Node& node : mesh.nodes) {
-    out += number(node.r / kMillimetre) + ' ' + number(node.z / kMillimetre) + " 0\n";
+    out += digits(node.r / kMillimetre) + ' ' + digits(node.z / kMillimetre) + " 0\n";
   }
   out += kCloseArray;
   out += "      </Points>\n";

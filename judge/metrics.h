@@ -7,12 +7,13 @@
 
 #include "common/core/place.h"
 #include "judge/felt_stiffness.h"
+#include "judge/first_press.h"
 
 /// Judges a run from the plant's true states: how stiff the tissue felt, how much energy came out
 /// of the operator's port, what drifted. Pure functions of the recorded ticks.
 namespace palp::judge {
 
-enum class PhaseKind : std::uint8_t { Other, FreeAir, Tap, PressHold, LiftHold };
+enum class PhaseKind : std::uint8_t { Other, FreeAir, Tap, PressHold, LiftHold, Drag };
 
 /// Where in the script a tick lies.
 struct PhaseTag {
@@ -50,6 +51,7 @@ struct MetricsConfig {
   double own_swing{};  ///< [m], of the same hand at the tissue with its own finger
   double stiffest{std::numeric_limits<double>::infinity()};  ///< [N/m], most that may be shown
   double round_trip{};                                       ///< [s], mean, of the path
+  EnergyBound bound;  ///< of the law, and the hand that it is held to
   /// Of the blackout and 2 s after it, in seconds of the recorded ticks; equal: there was none.
   double blackout_from{};  ///< [s]
   double blackout_to{};    ///< [s]
@@ -89,9 +91,16 @@ struct ContactMetrics {
   double force_direct{kUndefined};
   /// [-], felt over true force 2.5 s after the first contact of a site, where the hand stayed.
   double first_press_share[2]{kUndefined, kUndefined};
+  /// [-], most that it could be by the energy that the hand may be given; see FirstPress.
+  double first_press_permitted[2]{kUndefined, kUndefined};
   // Where a law can know the tissue, see KnownTouch.
   double known_tap_error[2]{kUndefined, kUndefined};  ///< [-]
   double held_error[2]{kUndefined, kUndefined};       ///< [-] >= 0
+  // Of a drag over something hard, see DragBump.
+  double drag_error{kUndefined};   ///< [-], felt by the hand over touched by the tip, - 1
+  double drag_shift{kUndefined};   ///< [s]
+  double drag_felt{kUndefined};    ///< [N], most of it
+  double drag_direct{kUndefined};  ///< [N], of the same hand's finger; whoever made the ticks knows
 };
 
 /// Errors are rendered/true - 1 [-]; NaN: undefined.

@@ -12,7 +12,7 @@ class PauseProbe {
  public:
   struct Look {
     bool held{};          ///< the surgeon's process stands still: the device holds its force
-    bool resumed{};       ///< a process of either site stood still at the last look
+    bool resumed{};       ///< a process of either site stood still at the last look, or lies
     bool guarded{};       ///< the force is the site's own: alive, and the pedal down
     double force{};       ///< [N], on the hand
     double force_true{};  ///< [N], of the tissue, had the hand pressed it

@@ -77,6 +77,7 @@ void PhaseAccount::look(const RunTick& tick) {
   add(stiffness_, tick);
   if (phase.elapsed >= 0.5 * phase.duration) {
     hand_.look(tick.hand + tick.surface);
+    tip_.look(tick.tip + tick.surface);
     surface_.look(tick.surface);
   }
   if (phase.elapsed >= 0.6 * phase.duration) {
@@ -110,6 +111,9 @@ void RunJudge::look(const RunTick& tick) {
   look_at_stability(tick);
   look_at_forces(tick);
   look_at_blackout(tick);
+  if (tick.counted) {
+    drag_.look(tick.at, tick.phase.kind == PhaseKind::Drag, tick.hand_force, tick.contact_force);
+  }
   look_at_learning(tick, Site::A);
   look_at_learning(tick, Site::B);
   energy_operator_min_ = tick.energy_operator_min;
@@ -142,6 +146,7 @@ void RunJudge::end_phase() {
   const PhaseTag& tag = phase_.tag();
   const bool held = tag.kind == PhaseKind::PressHold || tag.kind == PhaseKind::LiftHold;
   if (held && phase_.swing() >= kUnstableSwing) swings_ = true;
+  if (held && phase_.tip_swing() >= kUnstableSwing) tip_swings_ = true;
   const auto site = static_cast<std::size_t>(tag.site);
   if (tag.kind == PhaseKind::Tap) {
     metrics_.taps.push_back(phase_.tap());
@@ -189,7 +194,11 @@ void RunJudge::look_at_learning(const RunTick& tick, Site site) {
   Learning& learning = learning_[static_cast<std::size_t>(site)];
   const bool here = tick.phase.site == site && tick.phase.kind != PhaseKind::FreeAir;
   if (here && tick.counted) {
-    first_press_[static_cast<std::size_t>(site)].look(tick.at, tick.hand_force, tick.force_true);
+    first_press_[static_cast<std::size_t>(site)].look({.at = tick.at,
+                                                       .felt = tick.hand_force,
+                                                       .truth = tick.force_true,
+                                                       .position = tick.hand,
+                                                       .work = tick.energy_operator});
     known_[static_cast<std::size_t>(site)].look(tick.at, tick.tip, tick.contact_force);
   }
   if (!here || !tick.counted || !std::isnan(learning.took)) return;
@@ -243,6 +252,7 @@ RunMetrics RunJudge::metrics() const {
 
 void RunJudge::sum_up() {
   if (ticks_ == 0) return;
+  call_unstable(metrics_, tip_swings_, "the tip swings by 1 mm or more under a hand that holds");
   call_unstable(metrics_, swings_, "the hand swings by 1 mm or more in a hold");
   metrics_.contact.hand_swing = hand_swing_.largest();
   metrics_.contact.tip_swing = tip_swing_.largest();
@@ -269,12 +279,15 @@ void RunJudge::sum_up() {
   metrics_.energy_operator = std::max(0.0, -energy_operator_min_);
   metrics_.energy_net = std::max(0.0, -energy_net_min_);
   metrics_.force_rms = std::sqrt(tap_square_ / tap_count_);
-  metrics_.contact.first_press_share[0] = first_press_[0].share();
-  metrics_.contact.first_press_share[1] = first_press_[1].share();
   for (std::size_t site = 0; site < known_.size(); ++site) {
+    metrics_.contact.first_press_share[site] = first_press_[site].share();
+    metrics_.contact.first_press_permitted[site] = first_press_[site].permitted();
     metrics_.contact.known_tap_error[site] = known_[site].tap_error();
     metrics_.contact.held_error[site] = known_[site].held_error();
   }
+  metrics_.contact.drag_error = drag_.error();
+  metrics_.contact.drag_shift = drag_.shift();
+  metrics_.contact.drag_felt = drag_.felt();
   metrics_.learning[0] = learning_[0].took;
   metrics_.learning[1] = learning_[1].took;
   // Asked for, and nothing of it was seen.

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 
+#include "judge/drag_bump.h"
 #include "judge/first_press.h"
 #include "judge/known_touch.h"
 #include "judge/metrics.h"
@@ -36,6 +37,10 @@ class PhaseAccount {
   /// Of x_m to and fro in the second half [m], less that of a surface that breathes: a soft hand
   /// on stiff tissue is carried along.
   [[nodiscard]] double swing() const noexcept { return hand_.size() - surface_.size(); }
+  /// The same of the tip, less what the hand does too: a tip that follows is no loop.
+  [[nodiscard]] double tip_swing() const noexcept {
+    return tip_.size() - surface_.size() - hand_.size();
+  }
 
  private:
   PhaseTag tag_;
@@ -43,6 +48,7 @@ class PhaseAccount {
   double ended_at_{};  ///< [s]
   double hand_max_{};  ///< [m]
   Reversal hand_;
+  Reversal tip_;
   Reversal surface_;
   FeltStiffness stiffness_;
   HoldMeans sums_;
@@ -55,7 +61,9 @@ class PhaseAccount {
 class RunJudge {
  public:
   explicit RunJudge(const MetricsConfig& config)
-      : config_{config}, known_{KnownTouch{config}, KnownTouch{config}} {}
+      : config_{config},
+        first_press_{FirstPress{config.bound}, FirstPress{config.bound}},
+        known_{KnownTouch{config}, KnownTouch{config}} {}
 
   /// In order of time.
   void look(const RunTick& tick);
@@ -92,7 +100,8 @@ class RunJudge {
   PhaseAccount phase_;
   std::array<FeltStiffness, 2> pooled_;  ///< of taps 2 and later
   std::array<std::array<PhaseAccount::HoldMeans, 2>, 2> holds_;
-  bool swings_{};
+  bool swings_{};      ///< the hand, in a hold
+  bool tip_swings_{};  ///< the tip, likewise
   SwingFinder hand_swing_;
   SwingFinder tip_swing_;
   bool ran_away_{};
@@ -106,6 +115,7 @@ class RunJudge {
   std::array<Learning, 2> learning_;
   std::array<FirstPress, 2> first_press_;
   std::array<KnownTouch, 2> known_;
+  DragBump drag_;
   double energy_operator_min_{};  ///< [J], of the newest tick
   double energy_net_min_{};       ///< [J]
 };

@@ -11,7 +11,7 @@ constexpr Duration kBlackout = std::chrono::seconds{2};
 constexpr double kAfterBlackout = 2;  ///< [s], still judged with it
 
 PhaseTag tag_of(const PlantTruth& truth) {
-  const bool known = truth.phase_kind <= static_cast<std::uint32_t>(PhaseKind::LiftHold);
+  const bool known = truth.phase_kind <= static_cast<std::uint32_t>(PhaseKind::Drag);
   return {.kind = known ? static_cast<PhaseKind>(truth.phase_kind) : PhaseKind::Other,
           .site = site_at(truth.phase_place),
           .place = truth.phase_place,

@@ -15,6 +15,10 @@ namespace palp::lab {
 using config::ExitCode;
 using config::ExitStatus;
 
+namespace {
+constexpr double kLengthLeastMm = 2;  // as the words of a tissue have it
+}  // namespace
+
 void declare_locate(config::CommandLine& line, LocateFlags& flags) {
   line.whole("--count", flags.count, {.min = 1, .max = 100'000}, "random phantoms, and plain ones");
   line.whole("--seed", flags.seed, {.min = 0, .max = 9007199254740991}, "of everything random");
@@ -25,6 +29,10 @@ void declare_locate(config::CommandLine& line, LocateFlags& flags) {
               flags.spread,
               {.min = 0, .max = 0.3},
               "share by which the tissue's stiffness varies from place to place");
+  line.number("--stiffness-length-mm",
+              flags.length_mm,
+              {.min = 0, .max = 200, .unit = "mm"},
+              "over which it varies; 0: anew at each place of a pattern");
   line.number("--assumed-spread",
               flags.assumed_spread,
               {.min = 0, .max = 0.3},
@@ -41,6 +49,11 @@ void declare_locate(config::CommandLine& line, LocateFlags& flags) {
               flags.set,
               {"mismatch"},
               "worlds that are not as the estimator assumes, instead of phantoms as it does");
+  line.choice("--next-tap",
+              flags.rule,
+              {"search", "gp", "raster"},
+              "a field of 50 x 50 mm tap by tap: as a site proposes, by a Gaussian process, or row "
+              "by row");
   line.choice("--session",
               flags.script,
               {"map", "search"},
@@ -60,12 +73,26 @@ ExitStatus run_locate(const LocateFlags& flags, const Machine& machine) {
                     .rows = static_cast<std::uint32_t>(flags.rows),
                     .pitch = flags.pitch_mm * kMillimetre,
                     .spread = flags.spread,
+                    .length = flags.length_mm * kMillimetre,
                     .assumed_spread = flags.assumed_spread,
                     .depth_max = flags.depth_max_mm * kMillimetre,
                     .mismatch = flags.set == "mismatch",
                     .script = flags.script,
                     .round_trip = 1e-3 * flags.round_trip_ms,
                     .loss = flags.loss};
+  for (std::size_t i = 0; i < kTapRuleNames.size(); ++i) {
+    if (flags.rule == kTapRuleNames[i]) study.rule = static_cast<TapRule>(i);
+  }
+  if (study.rule && (study.mismatch || !study.script.empty())) {
+    const Result<void> both = fail("--next-tap goes neither with --set nor with --session");
+    return config::refusal("palp-lab", both.error());
+  }
+  const bool pattern = !study.rule && study.script.empty();
+  if (flags.length_mm < kLengthLeastMm && !(pattern && flags.length_mm == 0)) {
+    const Result<void> short_length =
+        fail("--stiffness-length-mm is 2 or more, or 0 where the places are those of a pattern");
+    return config::refusal("palp-lab", short_length.error());
+  }
   if (!flags.ball.empty()) {
     if (const auto ball = take_ball(flags.ball, study); !ball) {
       return config::refusal("palp-lab", ball.error());

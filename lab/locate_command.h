@@ -15,11 +15,13 @@ struct LocateFlags {
   std::uint64_t seed{1};
   std::uint64_t rows{3};
   double pitch_mm{7.5};
-  double spread{};              ///< [-]
+  double spread{};  ///< [-]
+  double length_mm{10};
   double assumed_spread{0.05};  ///< [-]
   double depth_max_mm{27};
   std::string ball{};
   std::string set{};
+  std::string rule{};
   std::string script{};
   double round_trip_ms{};
   double loss{};          ///< [-]

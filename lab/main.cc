@@ -46,8 +46,6 @@ struct Arguments {
   bool bare{};
 };
 
-ExitStatus refusal(const Error& fault) { return config::refusal("palp-lab", fault); }
-
 Result<Scenario> scenario_of(const Arguments& arguments) {
   auto document = load_scenario(arguments.scenario);
   if (!document) return tl::unexpected(document.error());

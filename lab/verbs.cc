@@ -32,8 +32,6 @@ using config::ExitStatus;
 
 constexpr std::uint64_t kSeedMax = 9007199254740991;  // what a JSON number holds exactly
 
-ExitStatus refusal(const Error& fault) { return config::refusal("palp-lab", fault); }
-
 /// Writes what was asked for; the error, if any.
 std::optional<ExitStatus> write_files(const std::vector<std::pair<std::string, std::string>>& files,
                                       const plot::Figure& figure,

@@ -26,6 +26,11 @@ struct Machine {
   std::string made_by{};                            ///< program and processor
 };
 
+/// What ends this program, said in one sentence.
+[[nodiscard]] inline config::ExitStatus refusal(const Error& fault) {
+  return config::refusal("palp-lab", fault);
+}
+
 /// One line that is written over, for a person: how far, how fast, how long still. Null where
 /// nobody watches; `machine` outlives it.
 [[nodiscard]] Progress shown_progress(const Machine& machine);

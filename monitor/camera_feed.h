@@ -23,6 +23,7 @@ struct VideoShown {
   double kbps{};              ///< [kbit/s], of frames, in the last second
   double fps{};               ///< [1/s], likewise
   Duration standing{};        ///< of the force telegrams in queues: video yields to it
+  Duration touch_held{};      ///< touch is held back for the picture so long; 0: it is not
   std::uint64_t delivered{};  ///< frames
   std::uint64_t repaired{};   ///< of these, by parity
   std::uint64_t not_shown{};  ///< lost, or without what they refer to

@@ -6,6 +6,7 @@
 #include "common/core/pointer_report.h"
 #include "common/core/spsc_queue.h"
 #include "monitor/camera_feed.h"
+#include "monitor/study_screen.h"
 
 namespace palp::monitor {
 
@@ -23,6 +24,7 @@ struct Controls {
   Mailbox<std::uint32_t>* stops{};    ///< reader: rt; one more: stop now
   Mailbox<PointerReport>* pointer{};  ///< reader: rt
   CameraFeed* camera{};               ///< pictures, and who wants them
+  StudyScreen* study{};               ///< what a participant is shown, and answers; reader: main
 };
 
 }  // namespace palp::monitor

@@ -1,10 +1,10 @@
 #include "monitor/desk.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "common/config/json.h"
+#include "monitor/offers.h"
 #include "monitor/status_json.h"
 
 namespace palp::monitor {
@@ -13,80 +13,13 @@ namespace {
 using config::Json;
 using record::Topic;
 
-/// What a screen can take: 50 Hz and slower. The 1 kHz topics are in the file alone.
-constexpr std::array kLive{
-    Topic::TickView, Topic::Link, Topic::Event, Topic::Depth, Topic::Map, Topic::MapCell};
-constexpr std::uint32_t kStatusChannel = 100;
-constexpr std::uint32_t kClientChannel = 101;
-constexpr std::uint32_t kCameraChannel = 102;
-constexpr std::uint32_t kJpegChannel = 103;
-constexpr std::uint32_t kVideoChannel = 104;
 constexpr Duration kTellWayStep = std::chrono::milliseconds{100};  ///< of an answer waited for
 constexpr std::size_t kKeptMax = 200;
 constexpr std::size_t kSubscriptionsMax = 64;
 constexpr std::string_view kPointerTopic = "monitor/pointer";
 
-// Numbers of services.
-constexpr std::uint32_t kMark = 1;
-constexpr std::uint32_t kStop = 2;
-constexpr std::uint32_t kReset = 3;
-constexpr std::uint32_t kEnd = 4;
-constexpr std::uint32_t kTake = 5;
-constexpr std::uint32_t kGive = 6;
-
-std::uint32_t channel_id(Topic topic) noexcept { return static_cast<std::uint32_t>(topic) + 1; }
-
 bool is_camera(std::uint32_t channel) noexcept {
   return channel == kCameraChannel || channel == kJpegChannel;
-}
-
-Channel camera_channel(link::Role site, bool jpeg) {
-  const video::CameraFormat format = video::camera_format(jpeg);
-  Channel channel = channel_of({.topic = {},
-                                .name = std::string{record::site_name(site)} + "/" + format.topic,
-                                .schema = format.schema,
-                                .descriptors = format.descriptors});
-  channel.id = jpeg ? kJpegChannel : kCameraChannel;
-  return channel;
-}
-
-void add_camera(link::Role site, std::vector<Channel>& channels) {
-  channels.push_back(camera_channel(site, false));
-  channels.push_back(camera_channel(site, true));
-  channels.push_back({.id = kVideoChannel,
-                      .topic = std::string{record::site_name(site)} + "/video",
-                      .encoding = "json",
-                      .schema_name = "palp.monitor.Video",
-                      .schema = video_schema()});
-}
-
-std::vector<Channel> channels_of(link::Role site) {
-  std::vector<Channel> channels;
-  for (const record::TopicFormat& format : record::topics_of(site)) {
-    if (std::ranges::find(kLive, format.topic) == kLive.end()) continue;
-    channels.push_back(channel_of(format));
-  }
-  channels.push_back({.id = kStatusChannel,
-                      .topic = std::string{record::site_name(site)} + "/status",
-                      .encoding = "json",
-                      .schema_name = "palp.monitor.Status",
-                      .schema = status_schema()});
-  channels.push_back({.id = kClientChannel,
-                      .topic = std::string{record::site_name(site)} + "/client",
-                      .encoding = "json",
-                      .schema_name = "palp.monitor.Client",
-                      .schema = client_schema()});
-  return channels;
-}
-
-std::vector<Service> services_of(const Controls& controls) {
-  if (controls.requests == nullptr) return {};
-  std::vector<Service> services{
-      {kMark, "mark"}, {kStop, "stop"}, {kReset, "reset"}, {kEnd, "end_session"}};
-  if (controls.pointer == nullptr) return services;
-  services.push_back({kTake, "pointer/take"});
-  services.push_back({kGive, "pointer/give"});
-  return services;
 }
 
 }  // namespace
@@ -94,10 +27,8 @@ std::vector<Service> services_of(const Controls& controls) {
 Desk::Desk(const DeskConfig& config, Controls controls)
     : config_{config},
       controls_{controls},
-      channels_{channels_of(config.site)},
-      services_{services_of(controls)} {
-  if (controls_.camera != nullptr) add_camera(config.site, channels_);
-}
+      channels_{channels_of(config.site, controls)},
+      services_{services_of(controls)} {}
 
 std::uint32_t Desk::join(Right right, TimePoint now) {
   if (right == Right::None || clients_.size() >= kClientsMax) return 0;
@@ -114,6 +45,7 @@ std::uint32_t Desk::join(Right right, TimePoint now) {
   greeting.facts.emplace_back("client", std::to_string(number));
   greeting.facts.emplace_back("right", controllable ? "control" : "view");
   greeting.facts.emplace_back("pointer", controls_.pointer != nullptr ? "yes" : "no");
+  greeting.facts.emplace_back("study", controls_.study != nullptr ? "yes" : "no");
   client.outbox.push({.text = true, .passing = false, .body = greeting_text(greeting)});
   client.outbox.push({.text = true, .passing = false, .body = advertise_text(channels_)});
   if (controllable) {
@@ -219,6 +151,9 @@ void Desk::subscribe(Client& client, const ClientText::Subscription& wanted) {
     return tell(client, Level::Warning, "this subscription exists");
   }
   if (is_camera(wanted.channel)) want_key(client);
+  if (wanted.channel == kStudyChannel && !study_.empty()) {
+    send(client, kStudyChannel, told_, std::as_bytes(std::span{study_}));
+  }
   for (const auto* kept : {&kept_, &cells_}) {
     for (const Kept& one : *kept) {
       if (one.channel != wanted.channel) continue;
@@ -305,9 +240,27 @@ std::string Desk::serve(std::uint32_t number, const ClientBytes& call, TimePoint
       controls_.pointer->put(pilot_.let_go(now));
       (void)ask(Request::Kind::PilotGave, number);
       return {};
+    case kAnswer:
+      return answer_study(call, now);
     default:
       return "there is no such service";
   }
+}
+
+/// Whether it was the time for an answer, the study knows.
+std::string Desk::answer_study(const ClientBytes& call, TimePoint now) {
+  const auto said = is_shallow(call.payload) ? Json::parse(call.payload) : Json{};
+  const auto trial = said.at_or_null("trial").number();
+  const auto choice = said.at_or_null("choice").number();
+  const auto counts = [](const std::optional<double>& number) {
+    return number && *number >= 1 && *number <= 1e9;
+  };
+  if (!counts(trial) || !counts(choice)) return "this answer names no trial or no choice";
+  const StudyAnswer answer{.trial = static_cast<std::uint32_t>(*trial),
+                           .choice = static_cast<std::uint32_t>(*choice),
+                           .at = now};
+  if (controls_.study->answers.try_enqueue(answer)) return {};
+  return "the study has not taken the answers before this one";
 }
 
 std::string Desk::ask(Request::Kind kind, std::uint32_t client) {
@@ -350,6 +303,13 @@ void Desk::publish(const LiveMessage& message) {
     keep(message, cells_, kMapCellsMax);
   }
   send(channel, message.stamp, message.payload());
+}
+
+void Desk::publish_study() {
+  if (controls_.study == nullptr) return;
+  while (controls_.study->shown.try_dequeue(study_)) {
+    send(kStudyChannel, told_, std::as_bytes(std::span{study_}));
+  }
 }
 
 void Desk::publish(const LiveStatus& status) {

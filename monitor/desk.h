@@ -57,6 +57,8 @@ class Desk {
   /// `stamp`: of the capture, ns since 1970.
   void publish(const video::CameraFrame& frame, std::uint64_t stamp);
   void publish(const VideoShown& shown, std::uint64_t stamp);
+  /// What a study shows by now, where there is one; who comes late is told it too.
+  void publish_study();
 
  private:
   struct Client {
@@ -83,6 +85,7 @@ class Desk {
   void answer_call(std::uint32_t number, Client& client, const ClientBytes& call, TimePoint now);
   /// Empty: done. Else why not.
   [[nodiscard]] std::string serve(std::uint32_t number, const ClientBytes& call, TimePoint now);
+  [[nodiscard]] std::string answer_study(const ClientBytes& call, TimePoint now);
   /// Empty: the program will hear of it. Else why not.
   [[nodiscard]] std::string ask(Request::Kind kind, std::uint32_t client);
   void want_pictures();
@@ -108,6 +111,7 @@ class Desk {
   std::deque<Kept> cells_;  ///< of the newest stiffness map, likewise
   std::uint64_t told_{};    ///< stamp of the newest status
   CameraWish wish_;
+  std::string study_;  ///< what a study shows, JSON; empty: nothing yet
 };
 
 }  // namespace palp::monitor

@@ -7,6 +7,7 @@ namespace palp::monitor {
 void LiveSource::publish_all(Desk& desk) {
   while (feed_.next(message_)) desk.publish(message_);
   desk.publish(feed_.status());
+  desk.publish_study();
   publish_camera(desk);
 }
 

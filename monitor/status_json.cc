@@ -84,6 +84,7 @@ std::string video_json(const VideoShown& shown) {
   json["kbps"] = shown.kbps;
   json["fps"] = shown.fps;
   json["standing_ms"] = seconds(shown.standing) * 1e3;
+  json["touch_held_ms"] = seconds(shown.touch_held) * 1e3;
   json["delivered"] = shown.delivered;
   json["repaired"] = shown.repaired;
   json["not_shown"] = shown.not_shown;

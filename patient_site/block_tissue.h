@@ -11,6 +11,9 @@
 /// A block with inclusions whose force is known everywhere on its surface.
 namespace palp::patient {
 
+inline constexpr double kPaperRadius = 15e-3;  ///< [m], of the ball that reproduces Table I
+inline constexpr double kPaperRatio = 13.1e6 / 15.3e3;  ///< [-], paper II.B: 13.1 MPa in 15.3 kPa
+
 /// An inclusion and the place of the surface above it.
 struct PlacedInclusion {
   depth::DepthDatabase::Query body;

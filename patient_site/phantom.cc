@@ -20,9 +20,7 @@
 namespace palp::patient {
 namespace {
 
-constexpr double kPaperRadius = 15e-3;  // [m], the ball that reproduces the paper's Table I
-constexpr double kPaperRatio = 13.1e6 / 15.3e3;  // paper II.B: 13.1 MPa in 15.3 kPa
-constexpr double kPaperTip = 5e-3;               // [m], paper II.A: 10 mm diameter round tip
+constexpr double kPaperTip = 5e-3;  // [m], paper II.A: 10 mm diameter round tip
 
 ForceTable embedded(std::string_view name) {
   Result<ForceTable> table = parse_force_table(phantom_table(name), name);

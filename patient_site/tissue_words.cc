@@ -18,8 +18,6 @@
 namespace palp::patient {
 namespace {
 
-constexpr double kPaperRadius = 15e-3;           // [m], the ball that reproduces Table I
-constexpr double kPaperRatio = 13.1e6 / 15.3e3;  // paper II.B: 13.1 MPa in 15.3 kPa
 constexpr std::array<std::string_view, 6> kParts{
     "ball", "cylinder", "block", "surface", "relaxes", "database"};
 

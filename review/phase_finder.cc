@@ -13,6 +13,8 @@ judge::PhaseKind kind_of(surgeon::StretchKind kind) {
       return judge::PhaseKind::PressHold;
     case surgeon::StretchKind::LiftHold:
       return judge::PhaseKind::LiftHold;
+    case surgeon::StretchKind::Drag:
+      return judge::PhaseKind::Drag;
     default:
       return judge::PhaseKind::Other;
   }

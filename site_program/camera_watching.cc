@@ -8,6 +8,7 @@
 #include "common/io/realtime/steady_clock.h"
 #include "video/media_seal.h"
 #include "video/receiver.h"
+#include "video/touch_hold.h"
 
 namespace palp::site_program {
 namespace {
@@ -30,11 +31,13 @@ class CameraWatching::Io {
  public:
   Io(bool records,
      io::MediaDoor& door,
+     Mailbox<Duration>* touch_hold,
      CameraRecording& recording,
      monitor::CameraFeed& feed,
      std::function<void()> arrived)
       : records_{records},
         door_{door},
+        touch_hold_{touch_hold},
         recording_{recording},
         feed_{feed},
         arrived_{std::move(arrived)} {}
@@ -66,10 +69,12 @@ class CameraWatching::Io {
 
   bool records_;
   io::MediaDoor& door_;
+  Mailbox<Duration>* touch_hold_;
   CameraRecording& recording_;
   monitor::CameraFeed& feed_;
   std::function<void()> arrived_;
   ForceSeen force_;
+  video::TouchHold step_;
   std::optional<Session> session_;
   std::unique_ptr<io::DatagramSocket> socket_;
   monitor::VideoShown shown_;
@@ -133,6 +138,7 @@ void CameraWatching::Io::show(video::ReceivedFrame&& frame, TimePoint now) {
                                  .jpeg = frame.jpeg,
                                  .bytes = std::move(frame.bytes)};
   session_->age = now - shown.captured_at;
+  if (touch_hold_ != nullptr) step_.add(session_->age, force_.way);
   const bool recorded = recording_.frames().offer(shown);
   const bool looked_at = feed_.frames.offer(shown);
   arrived_();
@@ -188,15 +194,20 @@ void CameraWatching::Io::tell(TimePoint now) {
       shown_.fps = static_cast<double>(frames) / span;
     }
   }
+  if (touch_hold_ != nullptr) {
+    shown_.touch_held = step_.wanted(now);
+    touch_hold_->put(shown_.touch_held);
+  }
   feed_.shown.put(shown_);
 }
 
 CameraWatching::CameraWatching(bool records,
                                io::MediaDoor& door,
+                               Mailbox<Duration>* touch_hold,
                                CameraRecording& recording,
                                monitor::CameraFeed& feed,
                                std::function<void()> arrived)
-    : io_{std::make_unique<Io>(records, door, recording, feed, std::move(arrived))},
+    : io_{std::make_unique<Io>(records, door, touch_hold, recording, feed, std::move(arrived))},
       loop_{std::make_unique<io::BackgroundLoop>(
           "palp-video", Duration{0}, [io = io_.get()](TimePoint now) { io->work(now); })} {}
 

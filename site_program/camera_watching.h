@@ -17,9 +17,11 @@ namespace palp::site_program {
 class CameraWatching {
  public:
   /// All outlive it. `records`: there is a session file, so pictures are wanted although nobody
-  /// looks. `arrived`: called where `feed` has one more, on the thread of the video.
+  /// looks. `touch_hold`: is told how long touch is to wait for the picture; null: it does not.
+  /// `arrived`: called where `feed` has one more, on the thread of the video.
   CameraWatching(bool records,
                  io::MediaDoor& door,
+                 Mailbox<Duration>* touch_hold,
                  CameraRecording& recording,
                  monitor::CameraFeed& feed,
                  std::function<void()> arrived);

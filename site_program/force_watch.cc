@@ -17,10 +17,12 @@ void ForceWatch::take(const Record& record) noexcept {
     }
     seen_.link = heard->state;
     seen_.round_trip = heard->round_trip;
+    if (!measured_) seen_.way = heard->round_trip / 2;
   } else if (const auto* status = std::get_if<LinkStatus>(&record)) {
     if (!status->health.peer_clock || status->health.session_id != seen_.session_id) return;
     seen_.peer_ahead = status->health.peer_clock->offset_at(status->at);
     seen_.peer_clock = measured_ = true;
+    seen_.way = status->health.delay_in;
   }
 }
 

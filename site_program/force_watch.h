@@ -18,6 +18,7 @@ struct ForceSeen {
   TimePoint began_at{};        ///< of that session, on our line
   LinkState link{};
   Duration round_trip{};  ///< 0: not known
+  Duration way{};         ///< of telegrams to this site; 0: not known
   Duration peer_ahead{};  ///< peer's time - ours, each since the session began
   bool peer_clock{};      ///< that is known
   video::StandingDelay::Reading telegrams{};

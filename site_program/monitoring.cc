@@ -49,7 +49,8 @@ Monitoring::Monitoring(const settings::MonitorSettings& settings,
     controls = {.requests = &requests_,
                 .stops = site->stops,
                 .pointer = site->pointer,
-                .camera = site->media != nullptr ? &camera_ : nullptr};
+                .camera = site->media != nullptr ? &camera_ : nullptr,
+                .study = site->study};
   }
   const std::string site_name{record::site_name(feed->site())};
   monitor::ServerConfig config{.desk = {.site = feed->site(),
@@ -67,10 +68,12 @@ Monitoring::Monitoring(const settings::MonitorSettings& settings,
     return;
   }
   if (controls.camera == nullptr) return;
-  watching_ = std::make_unique<CameraWatching>(
-      recording.has_file(), *site->media, *recording.camera(), camera_, [server = server_.get()] {
-        server->wake();
-      });
+  watching_ = std::make_unique<CameraWatching>(recording.has_file(),
+                                               *site->media,
+                                               site->touch_hold,
+                                               *recording.camera(),
+                                               camera_,
+                                               [server = server_.get()] { server->wake(); });
 }
 
 Monitoring::~Monitoring() = default;
@@ -78,9 +81,18 @@ Monitoring::~Monitoring() = default;
 void Monitoring::announce(StatusLine& line) const {
   if (!fault_.empty()) line.warn(fault_ + "; the session goes on without a page");
   if (!server_) return;
-  const std::string page = "http://127.0.0.1:" + std::to_string(server_->port()) + "/#";
-  if (!tokens_.control.empty()) line.info("monitor, with control: " + page + tokens_.control);
-  line.info("monitor, only to look: " + page + tokens_.view);
+  if (const std::string page = control_page(); !page.empty()) {
+    line.info("monitor, with control: " + page);
+  }
+  line.info("monitor, only to look: " + page_of(tokens_.view));
+}
+
+std::string Monitoring::page_of(const std::string& token) const {
+  return "http://127.0.0.1:" + std::to_string(server_->port()) + "/#" + token;
+}
+
+std::string Monitoring::control_page() const {
+  return server_ && !tokens_.control.empty() ? page_of(tokens_.control) : std::string{};
 }
 
 void Monitoring::tell_news(StatusLine& line) {

@@ -23,7 +23,9 @@ namespace palp::site_program {
 struct MonitoredSite {
   Mailbox<std::uint32_t>* stops{};
   Mailbox<PointerReport>* pointer{};
-  io::MediaDoor* media{};  ///< the patient's camera is looked through
+  io::MediaDoor* media{};           ///< the patient's camera is looked through
+  Mailbox<Duration>* touch_hold{};  ///< touch waits for the picture
+  monitor::StudyScreen* study{};    ///< a participant of a study answers on the page
 };
 
 /// The live page of a site's session, and what its clients ask of the program. A page that cannot
@@ -45,6 +47,8 @@ class Monitoring {
   /// Empty: it serves, or was not asked to.
   [[nodiscard]] const std::string& fault() const noexcept { return fault_; }
   [[nodiscard]] std::uint16_t port() const noexcept { return server_ ? server_->port() : 0; }
+  /// Of the page, with the right to control; empty: there is none.
+  [[nodiscard]] std::string control_page() const;
   /// Says where the page is and who may do what there, or why there is none.
   void announce(StatusLine& line) const;
   /// Says once where the page has gone while the session goes on.
@@ -58,6 +62,8 @@ class Monitoring {
   void stop();
 
  private:
+  [[nodiscard]] std::string page_of(const std::string& token) const;
+
   static constexpr std::size_t kRequestsMax = 256;
 
   SpscQueue<monitor::Request> requests_{kRequestsMax};  ///< writer: monitor, reader: main

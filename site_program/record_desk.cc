@@ -163,7 +163,7 @@ void RecordDesk::drain(TimePoint now) {
     });
   }
   count_dropped();
-  if (feed_ && now - fed_at_ >= kFeedEvery) {
+  if (feed_ && (closing_ || now - fed_at_ >= kFeedEvery)) {
     fed_at_ = now;
     feed_->tell(writer_ && !writer_->failed());
   }

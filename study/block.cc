@@ -10,6 +10,7 @@ namespace palp::study {
 Block::Block(const Study& study, const AnswerTable& table, const BlockPlan& plan)
     : study_{&study}, plan_{&plan} {
   Method method = study.method;
+  if (study.task.yes_no) method.constant_from = 1;  // at 0 nothing lies: the schedule says when
   method.stop = {.trials_min = study.trials, .trials_max = study.trials};
   for (std::size_t i = 0; i < study.tracks; ++i) {
     tracks_.emplace_back(table, method, study.seed, plan.stream + i);
@@ -39,7 +40,9 @@ TrialAsk Block::next() const {
                .track = slot.track,
                .level = 0,
                .stronger = slot.stronger,
-               .decoy = slot.decoy};
+               .decoy = slot.decoy,
+               .before = trials_,
+               .count = plan_->trials.size()};
   const Track& track = tracks_[slot.track];
   const AnswerTable& table = track.posterior().table();
   if (slot.kind == TrialKind::Trial) {
@@ -51,6 +54,7 @@ TrialAsk Block::next() const {
     // Easy is a level of either sign where the question is which is stiffer.
     if (study_->task.two_sided && slot.stronger == 0) ask.level = -ask.level;
   }
+  if (study_->task.yes_no && slot.stronger == 0) ask.level = 0;
   return ask;
 }
 
@@ -62,7 +66,11 @@ void Block::told(bool yes) {
   }
   if (ask.kind == TrialKind::Trial) {
     Track& track = tracks_[ask.track];
-    track.told(track.next(), yes);
+    if (study_->task.yes_no && ask.stronger == 0) {
+      track.heard(0, yes);
+    } else {
+      track.told(track.next(), yes);
+    }
   }
   ++trials_;
 }

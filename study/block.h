@@ -13,9 +13,12 @@ struct TrialAsk {
   TrialKind kind{};
   std::size_t number{};  ///< in its block, practice included, from 0
   std::size_t track{};
-  double level{};          ///< [-]
-  std::size_t stronger{};  ///< the interval that holds the stronger stimulus, from 0
-  std::size_t decoy{};     ///< place by way of which the stage travels
+  double level{};  ///< [-]
+  /// The interval that holds the stronger stimulus, from 0; yes or no: 1, there is something.
+  std::size_t stronger{};
+  std::size_t decoy{};   ///< place by way of which the stage travels
+  std::size_t before{};  ///< trials before it, without practice
+  std::size_t count{};   ///< of all of the block, likewise
 };
 
 /// Where a participant stands under one condition: a value that the schedule and the answers so far

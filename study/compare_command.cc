@@ -62,7 +62,8 @@ std::string standing(const PlannedStudy& planned, const StudyFit& fit) {
 std::string pairs_text(const std::vector<ConditionPair>& pairs,
                        const std::vector<std::string>& names,
                        bool bias) {
-  std::string text = bias ? "PSE, second less first\n" : "JND, second over first\n";
+  std::string text =
+      bias ? "PSE (detect: criterion as a level), second less first\n" : "JND, second over first\n";
   text +=
       "pair                        n   value  95 % interval      p (Holm)   p ranks       g  equal "
       "p\n";
@@ -105,14 +106,7 @@ ExitStatus run_fit_study(const std::string& folder, const std::string& report) {
     conditions.push_back(Json{{"condition", condition_codes(planned.study)[i]},
                               {"participants", blocks.size()},
                               {"ln_jnd_mean", mean}});
-    std::array<char, 128> line{};
-    std::snprintf(line.data(),
-                  line.size(),
-                  "condition %s: %zu participants, JND %.1f %% (geometric mean)\n",
-                  condition_codes(planned.study)[i].c_str(),
-                  blocks.size(),
-                  100 * std::expm1(std::exp(mean)));
-    text += line.data();
+    text += condition_text(planned.study, fit, i, condition_codes(planned.study)[i]);
   }
   for (const Exclusion& one : fit.excluded) text += one.id + " excluded: " + one.why + "\n";
   if (!report.empty()) {

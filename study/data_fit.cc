@@ -16,6 +16,15 @@ std::size_t condition_of(const Study& study, const std::string& code) {
   return static_cast<std::size_t>(std::ranges::find(codes, code) - codes.begin());
 }
 
+YesNoCounts counts_of(const std::vector<Answers>& answers) {
+  YesNoCounts counts;
+  for (const Answers& at : answers) {
+    (at.level > 0 ? counts.hits : counts.false_alarms) += at.yes;
+    (at.level > 0 ? counts.signals : counts.blanks) += at.trials;
+  }
+  return counts;
+}
+
 FittedBlock fit_block(const Study& study,
                       const AnswerTable& table,
                       std::size_t condition,
@@ -37,6 +46,7 @@ FittedBlock fit_block(const Study& study,
   out.ln_jnd = posterior.ln_jnd();
   out.pse = posterior.pse();
   out.lapse = posterior.lapse_mean();
+  if (study.task.yes_no) out.sensitivity = sensitivity(counts_of(out.answers));
   return out;
 }
 
@@ -134,7 +144,8 @@ std::string fit_table(const Study& study,
                       const std::vector<std::string>& names) {
   std::string text =
       "participant_id\tcondition\ttrials\tcomplete\texcluded\tjnd_ln\tjnd_ln_low\tjnd_ln_high\t"
-      "ln_jnd_mean\tln_jnd_sd\tpse_ln\tpse_ln_low\tpse_ln_high\tlapse_mean\n";
+      "ln_jnd_mean\tln_jnd_sd\tpse_ln\tpse_ln_low\tpse_ln_high\tlapse_mean\td_prime\t"
+      "d_prime_sd\tcriterion\tcriterion_sd\tdepth_mm\tdepth_mm_low\tdepth_mm_high\n";
   for (const FittedBlock& block : fit.blocks) {
     const auto why = std::ranges::find(fit.excluded, block.id, &Exclusion::id);
     const auto number = [&](double value) {
@@ -155,9 +166,61 @@ std::string fit_table(const Study& study,
       text += "\tn/a\tn/a\tn/a";
     }
     number(block.lapse);
+    if (const auto& found = block.sensitivity) {
+      for (const double value :
+           {found->d_prime, found->d_prime_sd, found->criterion, found->criterion_sd}) {
+        number(value);
+      }
+    } else {
+      text += "\tn/a\tn/a\tn/a\tn/a";
+    }
+    // The smaller the JND, the deeper is found what is found.
+    for (const double ln : {block.ln_jnd.median, block.ln_jnd.high, block.ln_jnd.low}) {
+      const auto depth = depth_found(study, std::exp(ln));
+      depth ? number(1e3 * *depth) : static_cast<void>(text += "\tn/a");
+    }
     text += '\n';
   }
   return text;
+}
+
+std::string condition_text(const Study& study,
+                           const StudyFit& fit,
+                           std::size_t condition,
+                           const std::string& name) {
+  const auto blocks = counted(fit, condition);
+  if (blocks.empty()) return {};
+  const auto mean_of = [&blocks](auto value) {
+    double sum = 0;
+    for (const FittedBlock& one : blocks) sum += value(one);
+    return sum / static_cast<double>(blocks.size());
+  };
+  const double jnd = std::exp(mean_of([](const FittedBlock& one) { return one.ln_jnd.mean; }));
+  std::array<char, 128> line{};
+  std::snprintf(line.data(),
+                line.size(),
+                "condition %s: %zu participants, JND %.1f %% (geometric mean)",
+                name.c_str(),
+                blocks.size(),
+                100 * std::expm1(jnd));
+  std::string text{line.data()};
+  if (!study.depths.empty()) {
+    const auto depth = depth_found(study, jnd);
+    std::snprintf(line.data(),
+                  line.size(),
+                  depth ? ", found down to %.1f mm" : ", found beyond the depths of the study",
+                  1e3 * depth.value_or(0));
+    text += line.data();
+  }
+  if (study.task.yes_no) {
+    std::snprintf(line.data(),
+                  line.size(),
+                  ", d' %.2f, criterion %.2f",
+                  mean_of([](const FittedBlock& one) { return one.sensitivity->d_prime; }),
+                  mean_of([](const FittedBlock& one) { return one.sensitivity->criterion; }));
+    text += line.data();
+  }
+  return text + '\n';
 }
 
 }  // namespace palp::study

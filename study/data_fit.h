@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "study/answer_posterior.h"
 #include "study/compare.h"
 #include "study/data_set.h"
+#include "study/signal_detection.h"
 
 /// What the answers of a study's participants say. Pure.
 namespace palp::study {
@@ -18,8 +20,9 @@ struct FittedBlock {
   bool complete{};
   Marginal ln_jnd{};
   Marginal pse{};
-  double lapse{};                  ///< [-], mean
-  std::vector<Answers> answers{};  ///< pooled, without practice
+  double lapse{};                            ///< [-], mean
+  std::optional<Sensitivity> sensitivity{};  ///< yes or no: of all that lay there against nothing
+  std::vector<Answers> answers{};            ///< pooled, without practice
 };
 
 /// Who is left out, and why.
@@ -61,6 +64,13 @@ struct ConditionPair {
 [[nodiscard]] std::string fit_table(const Study& study,
                                     const StudyFit& fit,
                                     const std::vector<std::string>& names);
+
+/// A line on a condition: JND, and of tasks of detection depth, d' and criterion, over those who
+/// count. Empty: nobody does.
+[[nodiscard]] std::string condition_text(const Study& study,
+                                         const StudyFit& fit,
+                                         std::size_t condition,
+                                         const std::string& name);
 
 /// The letters of all conditions.
 [[nodiscard]] std::vector<std::string> condition_codes(const Study& study);

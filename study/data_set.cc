@@ -18,8 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using config::Json;
 
-constexpr std::size_t kTableMax = std::size_t{64} << 20;  // [bytes]
-
 }  // namespace
 
 std::string participant_id(std::size_t participant) {
@@ -36,6 +34,10 @@ std::string DataSet::derived(const std::string& name) const {
 
 std::string DataSet::trials_folder(const std::string& id) const {
   return folder + '/' + id + "/ses-01/beh";
+}
+
+std::string DataSet::traces_folder(const std::string& id) const {
+  return folder + "/sourcedata/" + id;
 }
 
 std::string DataSet::trials(const std::string& id, std::string_view task, std::size_t block) const {

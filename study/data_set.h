@@ -12,9 +12,12 @@
 ///
 ///     dataset_description.json README participants.tsv participants.json task-TASK_beh.json
 ///     sub-01/ses-01/beh/sub-01_ses-01_task-TASK_run-01_beh.tsv     a line for each trial
+///     sourcedata/sub-01/run-01_part-1_{surgeon,patient}.mcap       traces, of real sites alone
 ///     code/study.textproto schedule.json plan.json PREREGISTRATION.md key.json
 ///     derivatives/palp-study/                                      what fit, compare, report say
 namespace palp::study {
+
+inline constexpr std::size_t kTableMax = std::size_t{64} << 20;  ///< [bytes], of any file here
 
 /// "sub-07"; `participant` from 0.
 [[nodiscard]] std::string participant_id(std::size_t participant);
@@ -26,6 +29,8 @@ struct DataSet {
   [[nodiscard]] std::string code(const std::string& name) const;
   [[nodiscard]] std::string derived(const std::string& name) const;
   [[nodiscard]] std::string trials_folder(const std::string& id) const;
+  /// Session files of a participant's real sessions.
+  [[nodiscard]] std::string traces_folder(const std::string& id) const;
   /// Of a participant's block, from 1.
   [[nodiscard]] std::string trials(const std::string& id,
                                    std::string_view task,

@@ -109,7 +109,6 @@ Json row_json(const Row& row, const Task& task) {
 }
 
 /// A Weber fraction: what the logarithm of a ratio is as a percentage.
-double per_cent(double ln_ratio) { return 100 * std::expm1(ln_ratio); }
 
 std::string row_text(const Row& row, const Task& task) {
   std::array<char, 256> line{};
@@ -119,18 +118,18 @@ std::string row_text(const Row& row, const Task& task) {
                 harmless_line(row.condition.empty() ? "all" : row.condition).c_str(),
                 row.trials,
                 100.0 * static_cast<double>(row.yes) / static_cast<double>(row.trials),
-                per_cent(std::exp(row.ln_jnd.median)),
-                per_cent(std::exp(row.ln_jnd.low)),
-                per_cent(std::exp(row.ln_jnd.high)),
+                percent_of_level(std::exp(row.ln_jnd.median)),
+                percent_of_level(std::exp(row.ln_jnd.low)),
+                percent_of_level(std::exp(row.ln_jnd.high)),
                 100 * row.lapse);
   std::string text{line.data()};
   if (task.two_sided) {
     std::snprintf(line.data(),
                   line.size(),
                   "  %8.1f  %6.1f to %-6.1f",
-                  per_cent(row.pse.median),
-                  per_cent(row.pse.low),
-                  per_cent(row.pse.high));
+                  percent_of_level(row.pse.median),
+                  percent_of_level(row.pse.low),
+                  percent_of_level(row.pse.high));
     text += line.data();
   }
   if (row.curve) {

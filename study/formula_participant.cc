@@ -14,6 +14,11 @@ constexpr std::uint64_t kResponse = 0;
 constexpr std::uint64_t kYes = 1;
 constexpr std::uint64_t kWrong = 2;
 
+constexpr double kCriterionSpread = 0.3;                 // [-], from one person to the next
+constexpr std::uint64_t kCriteria = 0x6372697465726961;  // a stream apart
+// Two intervals are compared with the noise of two judgements, one with that of one.
+constexpr double kPerJudgement = 0.707106781186547524;  // [-]
+
 constexpr Duration kTick = std::chrono::milliseconds{1};
 constexpr Duration kTap = std::chrono::milliseconds{600};  // of a tap, half of it in the tissue
 constexpr double kForce = 0.5;                             // [N], of a tap
@@ -69,12 +74,23 @@ double drawn_response_time(std::uint64_t seed,
   return 0.8 * std::exp(0.4 * random_normal(seed, trial_stream(place, trial), kResponse));
 }
 
+double drawn_criterion(std::uint64_t seed, std::size_t participant) noexcept {
+  return kCriterion + kCriterionSpread * random_normal(seed, kCriteria, participant);
+}
+
+ObserverTraits drawn_traits(const Study& study,
+                            const PeopleTraits& people,
+                            std::size_t participant) noexcept {
+  const double jnd = std::exp(drawn_ln_jnd(people, study.seed, participant));
+  const double criterion = drawn_criterion(study.seed, participant);
+  return {.jnd = study.task.yes_no ? jnd * kPerJudgement : jnd,
+          .pse = study.task.yes_no ? criterion * jnd * kPerJudgement / kQuartile : 0,
+          .lapse = people.lapse};
+}
+
 Observer formula_participants(const Study& study, const PeopleTraits& people) {
   return [study, people](const TrialPlace& place, const TrialAsk& ask) {
-    const ObserverTraits traits{
-        .jnd = std::exp(drawn_ln_jnd(people, study.seed, place.participant)),
-        .pse = 0,
-        .lapse = people.lapse};
+    const ObserverTraits traits = drawn_traits(study, people, place.participant);
     const bool yes = random_uniform(study.seed, trial_stream(place, ask.number), kYes) <
                      answer_share(study.task, traits, ask.level);
     const std::size_t stronger = study.task.two_sided ? 1 : ask.stronger;
@@ -84,10 +100,11 @@ Observer formula_participants(const Study& study, const PeopleTraits& people) {
         yes ? 0
             : 1 + random_bits(study.seed, trial_stream(place, ask.number), kWrong) %
                       (intervals - 1);
-    return live_through({intervals,
+    return live_through({study.task.yes_no ? 1 : intervals,
                          study.conditions[place.condition].taps,
                          ask.kind == TrialKind::Practice,
-                         TrialTimes{}},
+                         TrialTimes{},
+                         intervals},
                         drawn_response_time(study.seed, place, ask.number),
                         (stronger + further) % intervals);
   };

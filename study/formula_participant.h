@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 
+#include "common/core/result.h"
 #include "study/block.h"
 #include "study/study_file.h"
 #include "study/trial_row.h"
@@ -15,10 +16,10 @@ struct TrialPlace {
   std::size_t condition{};    ///< of the study file
 };
 
-/// Somebody who does a whole trial. `onset` of the outcome is the caller's. Depends on the study's
-/// seed, the place and the trial's number alone; called from several threads at once, for different
-/// participants.
-using Observer = std::function<TrialOutcome(const TrialPlace& place, const TrialAsk& ask)>;
+/// Somebody who does a whole trial, or says why it cannot be had. `onset` of the outcome is the
+/// caller's. Of simulated ones it depends on the study's seed, the place and the trial's number
+/// alone; called from several threads at once, for different participants.
+using Observer = std::function<Result<TrialOutcome>(const TrialPlace& place, const TrialAsk& ask)>;
 
 /// Of simulated people: how well they tell stiffness apart where nothing stands between hand and
 /// tissue.
@@ -32,6 +33,20 @@ struct PeopleTraits {
 [[nodiscard]] double drawn_ln_jnd(const PeopleTraits& people,
                                   std::uint64_t seed,
                                   std::size_t participant) noexcept;
+
+/// Where a cautious person begins to say yes, above what nothing feels like [standard deviations of
+/// one judgement].
+inline constexpr double kCriterion = 1;
+
+/// Where one of them begins to say yes, above what nothing feels like [standard deviations of one
+/// judgement].
+[[nodiscard]] double drawn_criterion(std::uint64_t seed, std::size_t participant) noexcept;
+
+/// What the psychometric function of one of them is like in that study. Who tells two intervals
+/// apart by the noise of two judgements finds something in one interval by that of one.
+[[nodiscard]] ObserverTraits drawn_traits(const Study& study,
+                                          const PeopleTraits& people,
+                                          std::size_t participant) noexcept;
 
 /// Time from the question to an answer [s].
 [[nodiscard]] double drawn_response_time(std::uint64_t seed,

@@ -108,7 +108,8 @@ void declare_withdraw(config::CommandLine& line, KeepFlags& flags) {
   line.argument("PARTICIPANT", flags.participant, "sub-07");
   line.required();
   line.footer(
-      "Deletes what the participant answered, and what fit, compare and report derived from all.\n"
+      "Deletes what the participant answered and the traces of it, and what fit, compare and "
+      "report derived from all.\n"
       "Exports elsewhere are yours to delete.");
 }
 
@@ -133,6 +134,7 @@ ExitStatus run_withdraw(const KeepFlags& flags) {
   if (auto added = log->add(flags.participant + '\n'); !added) return refused(added.error());
   std::error_code fault;
   fs::remove_all(flags.folder + '/' + flags.participant, fault);
+  if (!fault) fs::remove_all(planned->data.traces_folder(flags.participant), fault);
   if (!fault) fs::remove_all(planned->data.derived(""), fault);
   if (fault) return {ExitCode::CannotOpen, "palp-study: cannot delete: " + fault.message()};
   if (auto made = make_folder(planned->data.derived("")); !made) return refused(made.error());

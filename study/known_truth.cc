@@ -7,12 +7,10 @@
 namespace palp::study {
 namespace {
 
-constexpr double kBias = 0.03;                       // [-]
-constexpr double kOverBound = 1.15;                  // [-]
-constexpr double kBoundOfOne = 1.385;                // [-], of ln JND from one answer, lapses 2 %
-constexpr std::size_t kTrials = 60;                  // of each observer; yes or no: of each kind
-constexpr std::array kSensitivities{1.0, 1.5, 2.0};  // [-], d'
-constexpr double kCriterion = 0.3;                   // [-]
+constexpr double kBias = 0.03;         // [-]
+constexpr double kOverBound = 1.15;    // [-]
+constexpr double kBoundOfOne = 1.385;  // [-], of ln JND from one answer, lapses 2 %
+constexpr std::size_t kTrials = 60;    // of each observer; yes or no: of each kind
 
 Target held(const std::string& of, double share) { return {of + ": intervals", share, 0.93, 0.97}; }
 
@@ -38,8 +36,9 @@ std::vector<Target> known_truth(std::size_t observers,
     }
     out.push_back(held(name, found.held));
   }
-  for (const double d_prime : kSensitivities) {
-    const YesNoSummary found = recover_yes_no(d_prime, kCriterion, kTrials, 10 * observers, seed);
+  for (const double d_prime : kKnownSensitivities) {
+    const YesNoSummary found =
+        recover_yes_no(d_prime, kKnownCriterion, kTrials, 10 * observers, seed);
     std::array<char, 32> name{};
     std::snprintf(name.data(), name.size(), "yes-no, d' %.1f", d_prime);
     const std::string of{name.data()};

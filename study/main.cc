@@ -1,6 +1,8 @@
 /// palp-study: what observers tell apart.
 
 #include <cstdio>
+#include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -10,12 +12,14 @@
 #include "common/config/program_run.h"
 #include "common/io/process/parallel.h"
 #include "site_program/build_info.h"
+#include "study/closed_loop/contrast_command.h"
 #include "study/closed_loop/felt_observer.h"
 #include "study/closed_loop/foretell_command.h"
 #include "study/compare_command.h"
 #include "study/fit_command.h"
 #include "study/keep_command.h"
 #include "study/plan_command.h"
+#include "study/real_sites/person.h"
 #include "study/report_command.h"
 #include "study/run_command.h"
 #include "study/simulate_command.h"
@@ -29,12 +33,42 @@ void for_each_index(std::size_t count, const std::function<void(std::size_t)>& w
   io::for_each_index(count, io::processors(), work);
 }
 
+/// The folder of this program, where its sisters lie.
+std::string own_folder() {
+  std::error_code ignored;
+  return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path().string();
+}
+
+PersonSetting person_setting(const RunFlags& flags,
+                             const std::function<void(const std::string&)>& say) {
+  return {.programs = own_folder(),
+          .data = {flags.folder},
+          .hand = {.master = flags.hand.master,
+                   .devices = flags.hand.devices,
+                   .monitor_port = static_cast<std::uint16_t>(flags.hand.monitor_port)},
+          .say = say};
+}
+
 ExitStatus run(const RunFlags& flags) {
   std::mutex one_line;
+  const auto say = [&](const std::string& line) {
+    const std::lock_guard lock{one_line};
+    (void)std::fputs(line.c_str(), stdout);
+    (void)std::fflush(stdout);
+  };
   std::optional<FeltParticipants> felt;
+  std::unique_ptr<Person> person;
   return run_run(
       flags,
       [&](const Study& study) -> Result<Observer> {
+        if (flags.observer == kPerson) {
+          auto made = Person::make(study, person_setting(flags, say));
+          if (!made) return tl::unexpected(made.error());
+          person = std::move(*made);
+          return [&person](const TrialPlace& place, const TrialAsk& ask) {
+            return person->answer(place, ask);
+          };
+        }
         if (flags.observer != "felt") return formula_participants(study, flags.people);
         auto made = FeltParticipants::make(study, flags.people);
         if (!made) return tl::unexpected(made.error());
@@ -44,11 +78,7 @@ ExitStatus run(const RunFlags& flags) {
         };
       },
       for_each_index,
-      [&](const std::string& line) {
-        const std::lock_guard lock{one_line};
-        (void)std::fputs(line.c_str(), stdout);
-        (void)std::fflush(stdout);
-      });
+      say);
 }
 
 int run_program(int argc, char** argv) {
@@ -63,6 +93,8 @@ int run_program(int argc, char** argv) {
   ForetellFlags foretold;
   declare_foretell(line.verb("foretell", "what a study's conditions will do to JND and bias"),
                    foretold);
+  ContrastFlags contrast;
+  declare_contrast(line.verb("contrast", "how much stiffer balls make tissue, by depth"), contrast);
   FitFlags fit;
   declare_fit(line.verb("fit", "JND and bias from a table of trials, or of a study"), fit);
   std::string compared;
@@ -84,6 +116,7 @@ int run_program(int argc, char** argv) {
     if (verb == "plan") return run_plan(plan, made_by);
     if (verb == "run") return run(run_flags);
     if (verb == "foretell") return run_foretell(foretold, for_each_index);
+    if (verb == "contrast") return run_contrast(contrast);
     if (verb == "fit") return run_fit(fit);
     if (verb == "compare") return run_compare(compared);
     if (verb == "report") return run_report(report);

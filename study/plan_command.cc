@@ -101,8 +101,10 @@ std::string preregistration(const Study& study,
   }
   say("Conditions, all for everybody", conditions);
   say("Measure",
-      study.task.two_sided ? "PSE and ln JND"
-                           : "ln JND, " + per_cent(0.5 + 0.5 / study.task.intervals) + " right");
+      study.task.yes_no      ? "d', criterion, and the depth at d' = 1"
+      : study.task.two_sided ? "PSE and ln JND"
+                             : (study.depths.empty() ? "ln JND, " : "depth and ln JND, ") +
+                                   per_cent(0.5 + 0.5 / study.task.intervals) + " right");
   say("Primary comparison", study.primary);
   say("Participants",
       std::to_string(study.participants) + "; expected sd of differences of ln JND " +

@@ -1,6 +1,7 @@
 #include "study/psychometric.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/core/check.h"
@@ -9,26 +10,33 @@
 namespace palp::study {
 namespace {
 
-constexpr double kQuartile = 0.674489750196081743;  // 75 % of the normal distribution lie below
-constexpr double kTail = 8.5;                       // [-], standard deviations; 1e-17 lie beyond
-constexpr int kSteps = 400;                         // of the integral, even
+constexpr double kTail = 8.5;  // [-], standard deviations; 1e-17 lie beyond
+constexpr int kSteps = 400;    // of the integral, even
 
 double density(double z) noexcept { return std::exp(-0.5 * z * z) * 0.398942280401432678; }
 
 }  // namespace
 
-double forced_choice_share(double d_prime, int intervals) noexcept {
-  PALP_CHECK(intervals >= 2 && intervals <= 8, "a forced choice has 2 to 8 intervals");
-  if (intervals == 2) return normal_cdf(d_prime / std::sqrt(2.0));
+double forced_choice_share(std::span<const double> d_primes) noexcept {
+  PALP_CHECK(!d_primes.empty() && d_primes.size() <= 7, "a forced choice has 2 to 8 intervals");
+  if (d_primes.size() == 1) return normal_cdf(d_primes.front() / std::sqrt(2.0));
   // Simpson's rule over the stronger stimulus.
   const double step = 2 * kTail / kSteps;
   double sum = 0;
   for (int i = 0; i <= kSteps; ++i) {
     const double z = -kTail + step * i;
-    const double weight = i == 0 || i == kSteps ? 1 : i % 2 == 1 ? 4 : 2;
-    sum += weight * density(z) * std::pow(normal_cdf(z + d_prime), intervals - 1);
+    double told = density(z) * (i == 0 || i == kSteps ? 1 : i % 2 == 1 ? 4 : 2);
+    for (const double d_prime : d_primes) told *= normal_cdf(z + d_prime);
+    sum += told;
   }
   return sum * step / 3;
+}
+
+double forced_choice_share(double d_prime, int intervals) noexcept {
+  PALP_CHECK(intervals >= 2 && intervals <= 8, "a forced choice has 2 to 8 intervals");
+  std::array<double, 7> d_primes{};
+  d_primes.fill(d_prime);
+  return forced_choice_share(std::span{d_primes}.first(static_cast<std::size_t>(intervals - 1)));
 }
 
 double d_prime_of_share(double share, int intervals) noexcept {

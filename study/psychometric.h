@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -8,12 +9,25 @@
 /// 0.14 is 15 % stiffer. All functions are pure.
 namespace palp::study {
 
+/// [-], standard deviations: 75 % of the normal distribution lie below. One JND in a two-sided
+/// task.
+inline constexpr double kQuartile = 0.674489750196081743;
+
+/// A level as people say it: 0.14 is 15 [%].
+[[nodiscard]] inline double percent_of_level(double level) noexcept {
+  return 100 * std::expm1(level);
+}
+
 /// What is asked.
 struct Task {
   /// Intervals of a forced choice, 2 to 8; one of them holds the stronger stimulus.
   int intervals{2};
   /// Levels have both signs and the question is "is the second stiffer?": measures bias as well.
   bool two_sided{};
+  /// One interval, and the question is "is there something?": two_sided, with levels from 0, where
+  /// there is nothing. The JND is then 0.674 of the level at d' = 1, the PSE the observer's
+  /// criterion as a level.
+  bool yes_no{};
 };
 
 /// Of one observer in one condition.
@@ -34,6 +48,8 @@ struct Answers {
 /// above the others, each of which is seen with noise of its own (Green and Swets 1966): the
 /// integral of phi(u - d') Phi(u)^(m-1). 2 <= intervals <= 8; exact for 2, else within 1e-10.
 [[nodiscard]] double forced_choice_share(double d_prime, int intervals) noexcept;
+/// The same where it stands that far above each of the others, 1 to 7 of them.
+[[nodiscard]] double forced_choice_share(std::span<const double> d_primes) noexcept;
 
 /// The inverse: d' >= 0 for a share from 1/m to below 1.
 [[nodiscard]] double d_prime_of_share(double share, int intervals) noexcept;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -68,6 +69,8 @@ struct GroupSummary {
                                         const ForEachIndex& for_each_index);
 
 /// Yes or no, with known d' and criterion.
+inline constexpr std::array kKnownSensitivities{1.0, 1.5, 2.0};  ///< [-], d'
+inline constexpr double kKnownCriterion = 0.3;                   ///< [-]
 struct YesNoSummary {
   double d_prime_bias{};    ///< [-]
   double criterion_bias{};  ///< [-]

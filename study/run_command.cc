@@ -15,8 +15,6 @@ namespace {
 using config::ExitCode;
 using config::ExitStatus;
 
-constexpr std::size_t kTableMax = std::size_t{64} << 20;  // [bytes]
-
 /// What all participants of a run share.
 struct Runner {
   const PlannedStudy& planned;
@@ -24,6 +22,7 @@ struct Runner {
   const Observer& observer;
   const std::function<void(const std::string&)>& say;
   bool each{};
+  std::string kind{};  ///< as a row has it
 };
 
 /// As a row has it, so that a run that was cut short goes on from the very same number.
@@ -67,11 +66,13 @@ Result<BlockEnd> run_block(const Runner& runner,
   }
   while (!block.done()) {
     const TrialAsk ask = block.next();
+    const auto outcome = runner.observer({participant, plan.condition}, ask);
+    if (!outcome) return tl::unexpected(outcome.error());
     TrialRow row{.ask = ask,
-                 .outcome = runner.observer({participant, plan.condition}, ask),
+                 .outcome = *outcome,
                  .condition = code,
                  .block = number,
-                 .kind = "simulated",
+                 .kind = runner.kind,
                  .believed_mean = 0,
                  .believed_sd = 0,
                  .two_sided = study.task.two_sided};
@@ -113,6 +114,12 @@ Result<std::size_t> run_participant(const Runner& runner, std::size_t participan
   return answered;
 }
 
+/// Without an approval answers of people are a pilot's.
+std::string kind_of(const RunFlags& flags, const Study& study) {
+  if (flags.observer != kPerson) return "simulated";
+  return study.ethics_body.empty() ? "pilot" : "person";
+}
+
 /// Those that are to go through the study, without those who withdrew.
 Result<std::vector<std::size_t>> chosen(const RunFlags& flags, const PlannedStudy& planned) {
   const std::size_t count = planned.study.participants;
@@ -146,9 +153,9 @@ void declare_run(config::CommandLine& line, RunFlags& flags) {
   line.choice(
       "--observer",
       flags.observer,
-      {"formula", "felt"},
-      "who answers: a formula that knows no condition, or somebody who feels whole sessions "
-      "in virtual time");
+      {"formula", "felt", std::string{kPerson}},
+      "who answers: a formula that knows no condition, somebody who feels whole sessions in "
+      "virtual time, or a person at the page of real sites, --participant");
   line.number("--weber",
               flags.people.weber,
               {.min = 0.01, .max = 1},
@@ -158,6 +165,16 @@ void declare_run(config::CommandLine& line, RunFlags& flags) {
               {.min = 0, .max = 1},
               "standard deviation of ln JND from one to the next");
   line.number("--lapse", flags.people.lapse, {.min = 0, .max = 0.5}, "share of answers guessed");
+  line.text(
+      "--master", flags.hand.master, "NAME", "of a person: pointer, or a device of palp-surgeon");
+  line.text("--devices",
+            flags.hand.devices,
+            "FILE",
+            "of a person: file that says how a master is built in");
+  line.whole("--monitor-port",
+             flags.hand.monitor_port,
+             {.min = 0, .max = 65535},
+             "of a person: TCP port of the page; 0: any free one");
   line.toggle("--each", flags.each, "print a line for each answered trial");
   line.footer(
       "Goes on where an earlier run stood: every answer is on the disk before the next trial "
@@ -170,12 +187,15 @@ ExitStatus run_run(const RunFlags& flags,
                    const std::function<void(const std::string&)>& say) {
   const auto planned = open_study(flags.folder);
   if (!planned) return config::refusal("palp-study", planned.error());
+  if (flags.observer == kPerson && !flags.participant) {
+    return {ExitCode::BadInput, "palp-study: --observer person needs --participant: one at a time"};
+  }
   const auto who = chosen(flags, *planned);
   if (!who) return config::refusal("palp-study", who.error());
   const auto observer = make_observer(planned->study);
   if (!observer) return config::refusal("palp-study", observer.error());
   const AnswerTable table = table_of(planned->study);
-  const Runner runner{*planned, table, *observer, say, flags.each};
+  const Runner runner{*planned, table, *observer, say, flags.each, kind_of(flags, planned->study)};
   std::vector<Result<std::size_t>> ends(who->size());
   for_each_index(who->size(), [&](std::size_t i) { ends[i] = run_participant(runner, (*who)[i]); });
   std::size_t answered = 0;
@@ -183,7 +203,7 @@ ExitStatus run_run(const RunFlags& flags,
     if (!end) return config::refusal("palp-study", end.error());
     answered += *end;
   }
-  const auto listed = planned->data.list_participants("simulated");
+  const auto listed = planned->data.list_participants(runner.kind);
   if (!listed) return config::refusal("palp-study", listed.error());
   std::string text = std::to_string(who->size()) + " participants through, " +
                      std::to_string(answered) + " trials answered now\n";

@@ -11,12 +11,23 @@
 
 namespace palp::study {
 
+/// Whose trials are given at real sites.
+inline constexpr std::string_view kPerson = "person";
+
+/// A person's device, as for palp-surgeon.
+struct HandFlags {
+  std::string master{"pointer"};
+  std::string devices{};             ///< file; empty: none is needed
+  std::uint64_t monitor_port{8080};  ///< 0: any free one
+};
+
 /// `palp-study run`, as given on the command line.
 struct RunFlags {
   std::string folder{};
   std::optional<std::uint64_t> participant{};  ///< from 1; nothing: all
   std::string observer{"formula"};
   PeopleTraits people{};
+  HandFlags hand{};
   bool each{};
 };
 

@@ -132,7 +132,9 @@ std::vector<BlockPlan> participant_plan(const Study& study, std::size_t particip
     for (std::size_t i = 0; i < is_catch.size(); ++i) {
       const TrialKind kind = is_catch[i] ? TrialKind::Catch : TrialKind::Trial;
       const std::size_t track = is_catch[i] ? 0 : track_of(study, trial++, stream(kTracks));
-      block.trials.push_back({kind, track, sides[i], decoy(i)});
+      // A catch trial of "is there something?" always has something, or it were not easy.
+      const std::size_t side = study.task.yes_no && is_catch[i] ? 1 : sides[i];
+      block.trials.push_back({kind, track, side, decoy(i)});
     }
     const std::size_t practice = study.practice.right > 0 ? study.practice.trials_max : 0;
     const auto others = balanced_draw(practice, intervals, study.seed, stream(kPracticeSides));

@@ -34,7 +34,8 @@ enum class TrialKind : std::uint8_t {
 struct Slot {
   TrialKind kind{};
   std::size_t track{};  ///< of TrialKind::Trial
-  /// The interval that holds the stronger stimulus, from 0; two-sided tasks: of easy trials only.
+  /// The interval that holds the stronger stimulus, from 0; two-sided tasks: of easy trials only;
+  /// yes or no: 1, there is something.
   std::size_t stronger{};
   std::size_t decoy{};  ///< place by way of which the stage travels, 0 to 3
 };

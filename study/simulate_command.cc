@@ -17,11 +17,6 @@ using config::ExitCode;
 using config::ExitStatus;
 using config::Json;
 
-constexpr std::array kMethods{
-    MethodKind::Constant, MethodKind::Staircase, MethodKind::Quest, MethodKind::QuestPlus};
-constexpr std::array kSensitivities{1.0, 1.5, 2.0};  // [-], d'
-constexpr double kCriterion = 0.3;                   // [-]
-
 /// What is printed and what is written.
 struct Outcome {
   std::string text;
@@ -96,9 +91,9 @@ Outcome grouped(const SimulateFlags& flags, const ForEachIndex& for_each_index) 
 
 Outcome yes_or_no(const SimulateFlags& flags) {
   Outcome out{"  d'   bias of d'  held %   bias of criterion  held %\n", Json::array()};
-  for (const double d_prime : kSensitivities) {
+  for (const double d_prime : kKnownSensitivities) {
     const YesNoSummary found =
-        recover_yes_no(d_prime, kCriterion, flags.trials, flags.observers, flags.seed);
+        recover_yes_no(d_prime, kKnownCriterion, flags.trials, flags.observers, flags.seed);
     std::array<char, 128> line{};
     std::snprintf(line.data(),
                   line.size(),

@@ -10,8 +10,6 @@ namespace {
 
 constexpr double kReach = 1.96;  // [-], standard deviations of a 95 % interval
 
-double per_cent(double ln_ratio) { return 100 * std::expm1(ln_ratio); }
-
 /// Foreign text inside of HTML.
 std::string escaped(std::string_view text) {
   std::string out;
@@ -157,15 +155,15 @@ plot::Figure jnd_figure(const Study& study,
       const Marginal& one = blocks[k].ln_jnd;
       people.x.push_back(x - 0.1 +
                          0.4 * static_cast<double>(k + 1) / static_cast<double>(blocks.size()));
-      people.y.push_back(per_cent(std::exp(one.median)));
-      people.low.push_back(per_cent(std::exp(one.low)));
-      people.high.push_back(per_cent(std::exp(one.high)));
+      people.y.push_back(percent_of_level(std::exp(one.median)));
+      people.low.push_back(percent_of_level(std::exp(one.low)));
+      people.high.push_back(percent_of_level(std::exp(one.high)));
     }
     const GroupMean group = group_mean(blocks);
     means.x.push_back(x - 0.2);
-    means.y.push_back(per_cent(std::exp(group.mean)));
-    means.low.push_back(per_cent(std::exp(group.mean - group.reach)));
-    means.high.push_back(per_cent(std::exp(group.mean + group.reach)));
+    means.y.push_back(percent_of_level(std::exp(group.mean)));
+    means.low.push_back(percent_of_level(std::exp(group.mean - group.reach)));
+    means.high.push_back(percent_of_level(std::exp(group.mean + group.reach)));
   }
   panel.curves = {people, means};
   return {.title = "JND by condition", .panels = {panel}};
@@ -178,12 +176,13 @@ plot::Figure answers_figure(const Study& study,
   for (std::size_t i = 0; i < study.conditions.size(); ++i) {
     const auto blocks = counted(fit, i);
     if (blocks.empty()) continue;
-    plot::Panel panel{
-        .axes = {.title = "condition " + names[i],
-                 .x_name = "ln of the ratio of stiffnesses",
-                 .y_name = study.task.two_sided ? "share \"the second\"" : "share right",
-                 .y_from = 0,
-                 .y_to = 1}};
+    plot::Panel panel{.axes = {.title = "condition " + names[i],
+                               .x_name = "ln of the ratio of stiffnesses",
+                               .y_name = study.task.yes_no      ? "share \"yes\""
+                                         : study.task.two_sided ? "share \"the second\""
+                                                                : "share right",
+                               .y_from = 0,
+                               .y_to = 1}};
     panel.curves = {shares_of(all_answers(fit, i)), function_of(study, blocks)};
     figure.panels.push_back(std::move(panel));
   }
@@ -201,7 +200,11 @@ std::string report_html(const Study& study, const StudyFit& fit, const ReportPar
       "</head><body>\n<h1>" +
       escaped(study.name) + "</h1>\n<p>" + escaped(study.question) + "</p>\n<p><strong>" +
       escaped(parts.standing) + "</strong></p>\n";
-  page += "<h2>Results</h2>\n" + figure_svg(jnd_figure(study, fit, parts.names), style);
+  page += "<h2>Results</h2>\n<pre>";
+  for (std::size_t i = 0; i < study.conditions.size(); ++i) {
+    page += escaped(condition_text(study, fit, i, parts.names[i]));
+  }
+  page += "</pre>\n" + figure_svg(jnd_figure(study, fit, parts.names), style);
   for (const bool bias : {false, true}) {
     if (bias && !study.task.two_sided) continue;
     page += "<pre>" + escaped(pairs_text(compare_study(study, fit, bias), parts.names, bias)) +

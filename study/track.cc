@@ -58,7 +58,8 @@ std::size_t Track::next() const {
   const AnswerTable& table = posterior_.table();
   switch (method_.kind) {
     case MethodKind::Constant:
-      return drawn_level(table.levels().size(), trials_, seed_, stream_);
+      return method_.constant_from +
+             drawn_level(table.levels().size() - method_.constant_from, trials_, seed_, stream_);
     case MethodKind::Staircase:
       return table.nearest(std::exp(ln_level_));
     case MethodKind::Quest:

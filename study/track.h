@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -17,6 +18,9 @@ enum class MethodKind : std::uint8_t {
   Quest,      ///< a fixed number of JNDs above 0, JND as believed now (Watson and Pelli 1983)
   QuestPlus,  ///< the level whose answer is expected to tell most (Watson 2017, Prins 2013)
 };
+
+inline constexpr std::array kMethods{
+    MethodKind::Constant, MethodKind::Staircase, MethodKind::Quest, MethodKind::QuestPlus};
 
 [[nodiscard]] constexpr std::string_view to_string(MethodKind kind) noexcept {
   switch (kind) {
@@ -55,7 +59,8 @@ struct StopRule {
 struct Method {
   MethodKind kind{MethodKind::QuestPlus};
   StaircaseRule staircase{};
-  double quest_jnds{1.8};  ///< [-], MethodKind::Quest: level over JND
+  std::size_t constant_from{0};  ///< MethodKind::Constant: index of the first level it asks
+  double quest_jnds{1.8};        ///< [-], MethodKind::Quest: level over JND
   StopRule stop{};
 };
 
@@ -70,6 +75,8 @@ class Track {
   [[nodiscard]] std::size_t next() const;
   /// The answer to a trial at that level.
   void told(std::size_t level, bool yes);
+  /// An answer at a level that the track did not ask: it is believed, and changes no turn.
+  void heard(std::size_t level, bool yes) { posterior_.told(level, yes); }
   [[nodiscard]] bool done() const;
 
   [[nodiscard]] std::size_t trials() const noexcept { return trials_; }

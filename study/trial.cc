@@ -5,8 +5,16 @@
 
 namespace palp::study {
 
-Trial::Trial(std::size_t intervals, int taps, bool practice, const TrialTimes& times) noexcept
-    : intervals_{intervals}, taps_wanted_{taps}, practice_{practice}, times_{times} {}
+Trial::Trial(std::size_t intervals,
+             int taps,
+             bool practice,
+             const TrialTimes& times,
+             std::size_t choices) noexcept
+    : intervals_{intervals},
+      choices_{choices > 0 ? choices : intervals},
+      taps_wanted_{taps},
+      practice_{practice},
+      times_{times} {}
 
 void Trial::enter(TrialStage stage, TimePoint now) noexcept {
   stage_ = stage;
@@ -45,9 +53,9 @@ void Trial::tick(TimePoint now, const TrialInput& in) noexcept {
   if (!began_at_) {
     began_at_ = entered_at_ = last_ = now;
   }
-  if (!in.pedal && stage_ != TrialStage::Done && stage_ != TrialStage::Told) {
-    enter(TrialStage::Ended, now);
-  }
+  // Who answers may have let go: a button is pressed by the same hand.
+  const bool moves = stage_ == TrialStage::Travel || stage_ == TrialStage::Explore;
+  if (!in.pedal && moves) enter(TrialStage::Ended, now);
   switch (stage_) {
     case TrialStage::Travel:
       if (now - entered_at_ >= times_.travel) enter(TrialStage::Explore, now);
@@ -56,7 +64,7 @@ void Trial::tick(TimePoint now, const TrialInput& in) noexcept {
       explore(now, in);
       break;
     case TrialStage::Answer:
-      if (in.answer && *in.answer < intervals_) {
+      if (in.answer && *in.answer < choices_) {
         answer_ = in.answer;
         response_time_ = now - entered_at_;
         enter(practice_ ? TrialStage::Told : TrialStage::Done, now);

@@ -14,7 +14,7 @@ enum class TrialStage : std::uint8_t {
   Answer,   ///< which one? without a limit
   Told,     ///< practice: right or wrong is shown
   Done,
-  Ended,  ///< the participant let go of the pedal: the trial is given again later
+  Ended,  ///< the pedal came up in Travel or Explore: the trial is given again
 };
 
 struct TrialTimes {
@@ -28,17 +28,21 @@ struct TrialInput {
   double force{};                       ///< [N], that the hand was given, any sign
   bool contact{};                       ///< the tip touches, whether the hand is told or not
   bool pedal{true};                     ///< held
-  std::optional<std::size_t> answer{};  ///< the interval that was chosen, from 0
+  std::optional<std::size_t> answer{};  ///< the interval, or else what was chosen, from 0
 };
 
 /// One trial as a state machine: it moves only in tick(now), and knows neither
 /// device nor screen. Counts taps by contacts that end. An answer counts in TrialStage::Answer
-/// only, and if it names an interval. A value.
+/// only, and if there is such a choice. A value.
 class Trial {
  public:
-  /// `intervals` >= 2. `taps` >= 1 of an interval end it, once out of the tissue, or explore_max
-  /// does.
-  Trial(std::size_t intervals, int taps, bool practice, const TrialTimes& times) noexcept;
+  /// `intervals` >= 1. `taps` >= 1 of an interval end it, once out of the tissue, or explore_max
+  /// does. `choices`: answers there are; 0: an interval each.
+  Trial(std::size_t intervals,
+        int taps,
+        bool practice,
+        const TrialTimes& times,
+        std::size_t choices = 0) noexcept;
 
   /// `now` does not go back. The first call begins the trial.
   void tick(TimePoint now, const TrialInput& in) noexcept;
@@ -60,6 +64,7 @@ class Trial {
   void explore(TimePoint now, const TrialInput& in) noexcept;
 
   std::size_t intervals_;
+  std::size_t choices_;
   int taps_wanted_;
   bool practice_;
   TrialTimes times_;

@@ -32,7 +32,7 @@ struct TrialRow {
   double believed_sd{};     ///< [-]
   bool two_sided{};
 
-  /// Right; at a two-sided task "the second is stiffer".
+  /// Right; at a two-sided task "the second is stiffer", or "yes".
   [[nodiscard]] bool yes() const noexcept;
 };
 

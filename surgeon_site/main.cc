@@ -1,5 +1,4 @@
 // palp-surgeon: the surgeon's site in real time.
-#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -29,16 +28,14 @@
 #include "site_program/site_report.h"
 #include "site_program/status_line.h"
 #include "surgeon_site/advice.h"
-#include "surgeon_site/devices/master_rig.h"
 #include "surgeon_site/devices_command.h"
 #include "surgeon_site/display.h"
-#include "surgeon_site/pointer_hand.h"
+#include "surgeon_site/hand_plan.h"
 #include "surgeon_site/script_record.h"
-#include "surgeon_site/script_source.h"
 #include "surgeon_site/session_end.h"
 #include "surgeon_site/settings.h"
 #include "surgeon_site/settings_devices.h"
-#include "surgeon_site/simulated_hand.h"
+#include "surgeon_site/study_port.h"
 #include "surgeon_site/surgeon_node.h"
 
 namespace palp::surgeon {
@@ -49,10 +46,15 @@ using site_program::exit_status_of;
 using site_program::ExitStatus;
 
 constexpr Duration kDisplayPeriod = std::chrono::milliseconds{100};
+constexpr Duration kStudyPeriod = std::chrono::milliseconds{10};  ///< a participant answers
 constexpr Duration kDevicePause = std::chrono::milliseconds{20};
-constexpr std::string_view kPointer = "pointer";  ///< the master that lies on the monitor's page
 
-void declare_flags(config::CommandLine& line, config::Document& document, std::string& report) {
+using StudyDescriptor = std::optional<std::uint64_t>;
+
+void declare_flags(config::CommandLine& line,
+                   config::Document& document,
+                   std::string& report,
+                   StudyDescriptor& study) {
   line.report(report, "palp.site/2");
   line.settings(document);
   line.knob("--peer", "peer");
@@ -63,6 +65,11 @@ void declare_flags(config::CommandLine& line, config::Document& document, std::s
   line.knob("--surface-offset-mm", "hand.surface_offset_mm");
   site_program::declare_session_flags(line);
   line.knob("--force-engage", "engagement.forced");
+  line.knob("--picture-in-step", "picture_in_step");
+  line.whole("--study-descriptor",
+             study,
+             {.min = 3, .max = 1024},
+             "open pipe of the palp-study run that started this program");
 }
 
 /// What the parts are made of, all checked.
@@ -74,6 +81,7 @@ struct Plan {
   coupling::SurgeonCoupling law;
   site_program::RunnerConfig runner;
   record::SessionInfo info;
+  std::optional<io::MessagePipe> study;  ///< who gives the trials of a study
 };
 
 /// Where somebody could look. A relay between the sites knows one address of each, that of force.
@@ -81,65 +89,21 @@ bool shows_camera(const Settings& settings) {
   return settings.monitor.serve && settings.protection.through.empty();
 }
 
-/// Whose hand it is, of a person or of a script.
-struct HandPlan {
-  std::optional<GestureScript> script;
-  std::optional<MasterPlan> master;
-  HandFacts facts;
-};
-
-Result<HandPlan> plan_hand(const Settings& settings) {
-  HandPlan hand;
-  if (settings.master == kPointer) {
-    hand.facts = facts_of(settings.hand);
-    return hand;
-  }
-  const KnownMaster* const product = master_named(settings.master);
-  if (product == nullptr) {
-    auto script = load_script(settings.master, {settings.hand.plant.grip.stiffness, {}});
-    if (!script) return tl::unexpected{script.error()};
-    hand.script = std::move(*script);
-    hand.facts = facts_of(settings.hand);
-    return hand;
-  }
-  if (settings.devices.empty()) {
-    return fail("master '" + settings.master + "' needs --devices FILE");
-  }
-  auto plan = read_master_plan(*product, settings.devices);
-  if (!plan) return tl::unexpected{plan.error()};
-  hand.facts = plan->facts;
-  hand.master = std::move(*plan);
-  return hand;
-}
-
-/// Null where the hand is a person's.
-std::unique_ptr<SimulatedHand> make_scripted(const SimulatedHandConfig& hand,
-                                             std::optional<GestureScript> script) {
-  return script ? std::make_unique<SimulatedHand>(hand, std::move(*script)) : nullptr;
-}
-
-/// Null unless the hand is that of a pointer.
-std::unique_ptr<PointerHand> make_pointer(const Settings& settings) {
-  if (settings.master != kPointer) return nullptr;
-  const SimulatedHandConfig& hand = settings.hand;
-  return std::make_unique<PointerHand>(
-      PointerHandConfig{.plant = hand.plant,
-                        .encoder_step = hand.encoder_step,
-                        .velocity_cut_off = hand.velocity_cut_off,
-                        .force_max = hand.force_max,
-                        .force_continuous = hand.force_continuous});
-}
-
-/// Started, not ready; null where the hand is no device's.
-std::unique_ptr<MasterRig> start_master(const std::optional<MasterPlan>& plan, int priority) {
-  return plan ? std::make_unique<MasterRig>(*plan, std::max(0, priority - 1)) : nullptr;
-}
-
-tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
+tl::expected<Plan, ExitStatus> make_plan(const config::Document& document,
+                                         const StudyDescriptor& descriptor) {
   const auto bad = [](const Error& error) { return tl::unexpected{exit_status_of(error)}; };
   auto settings = make_settings(document);
   if (!settings) return bad(settings.error());
-  if (settings->master == kPointer) settings->monitor.serve = true;
+  std::optional<io::MessagePipe> study;
+  if (descriptor) {
+    auto pipe = io::MessagePipe::adopt(static_cast<int>(*descriptor));
+    if (!pipe) return bad(pipe.error());
+    study = std::move(*pipe);
+  }
+  if (settings->master == kPointerMaster || study) settings->monitor.serve = true;
+  if (settings->picture_in_step && !shows_camera(*settings)) {
+    return bad({"--picture-in-step needs --monitor, and no --through: elsewhere is no picture"});
+  }
   const auto meeting = site_program::meeting_place("--peer", settings->peer, settings->protection);
   if (!meeting) return tl::unexpected{meeting.error()};
   if (*meeting) settings->peer = settings->protection.through;
@@ -180,7 +144,8 @@ tl::expected<Plan, ExitStatus> make_plan(const config::Document& document) {
               hand->facts,
               std::move(*law),
               std::move(runner),
-              std::move(info)};
+              std::move(info),
+              std::move(study)};
 }
 
 /// A surgeon site in real time, its parts in the order in which they need each other.
@@ -192,6 +157,7 @@ class Program {
         scripted_{make_scripted(settings_.hand, std::move(plan.script))},
         rig_{start_master(plan.master, settings_.loop.priority)},
         pointer_{make_pointer(settings_)},
+        study_{plan.study ? std::make_unique<StudyPort>(std::move(*plan.study), hand()) : nullptr},
         law_{std::move(plan.law)},
         link_{settings_.link, std::make_unique<link::WireCodec>()},
         runner_{plan.runner},
@@ -209,7 +175,9 @@ class Program {
                     site_program::MonitoredSite{
                         .stops = &node_.stops(),
                         .pointer = pointer_ ? &pointer_->reports() : nullptr,
-                        .media = shows_camera(settings_) ? &runner_.media_door() : nullptr}},
+                        .media = shows_camera(settings_) ? &runner_.media_door() : nullptr,
+                        .touch_hold = settings_.picture_in_step ? &node_.touch_hold() : nullptr,
+                        .study = study_ ? &study_->screen() : nullptr}},
         began_at_{clock_.now()},
         watch_{{.peer = settings_.peer,
                 .patience_at_first = settings_.link.closed_after,
@@ -230,12 +198,17 @@ class Program {
   /// nullopt: the master is ready.
   [[nodiscard]] std::optional<ExitStatus> await_master(io::Terminal& terminal);
   void tell_of_master();
+  void tell_of_answers();
   void show(const SurgeonStatus& status, TimePoint now);
 
-  [[nodiscard]] HapticDevice& device() noexcept {
+  [[nodiscard]] HapticDevice& hand() noexcept {
     if (rig_) return rig_->device();
     if (pointer_) return *pointer_;
     return *scripted_;
+  }
+  [[nodiscard]] HapticDevice& device() noexcept {
+    if (study_) return study_->hand();
+    return hand();
   }
   [[nodiscard]] record::SessionInfo proven(record::SessionInfo info) const {
     runner_.describe_identity(info);
@@ -246,6 +219,7 @@ class Program {
   std::unique_ptr<SimulatedHand> scripted_;
   std::unique_ptr<MasterRig> rig_;
   std::unique_ptr<PointerHand> pointer_;  ///< one of these three
+  std::unique_ptr<StudyPort> study_;      ///< null: no study asks
   std::uint32_t resets_{};
   coupling::SurgeonCoupling law_;
   link::Link link_;
@@ -277,6 +251,12 @@ std::optional<ExitStatus> Program::await_master(io::Terminal& terminal) {
   return std::nullopt;
 }
 
+/// A button is pressed whether a study asks or not.
+void Program::tell_of_answers() {
+  const auto answer = rig_ ? rig_->take_answer() : std::nullopt;
+  if (answer && study_) study_->tell_answer(*answer, clock_.now());
+}
+
 void Program::tell_of_master() {
   if (!rig_) return;
   if (const auto news = rig_->news()) {
@@ -292,11 +272,13 @@ ExitStatus Program::run(io::Terminal& terminal) {
   runner_.start(link_, [this](TimePoint now) { node_.tick(now); });
   for (const std::string& sentence : runner_.shortcomings()) line_.warn(sentence);
   monitoring_.announce(line_);
+  if (study_) study_->tell_page(monitoring_.control_page());
   line_.info(
       "calling " + settings_.peer +
       (terminal.reads_keys() ? "; r resets a stop, m marks a moment, any other key ends" : ""));
+  const Duration period = study_ ? kStudyPeriod : kDisplayPeriod;
   while (true) {
-    const std::optional<io::StopCause> stop = terminal.wait_for_stop(kDisplayPeriod);
+    const std::optional<io::StopCause> stop = terminal.wait_for_stop(period);
     monitoring_.look(recording_, clock_.now());
     monitoring_.tell_news(line_);
     recording_.mark(terminal.marks() + monitoring_.marks(), clock_.now());
@@ -308,7 +290,9 @@ ExitStatus Program::run(io::Terminal& terminal) {
     tell_of_master();
     if (const auto exit_status = look(clock_.now())) return *exit_status;
     if (stop) return {ExitCode::CutShort, "aborted", "aborted by the user"};
-    if (monitoring_.end_asked()) return {ExitCode::Done, "ended", ""};
+    tell_of_answers();
+    const bool over = study_ && !study_->look(node_.status().get(), recording_, clock_.now());
+    if (over || monitoring_.end_asked()) return {ExitCode::Done, "ended", ""};
   }
 }
 
@@ -360,13 +344,14 @@ int run(int argc, char** argv) {
   config::Document document = config::surgeon_document();
   config::CommandLine line{"palp-surgeon", "The surgeon's site: a haptic device, a hand, a link."};
   std::string report_file;
-  declare_flags(line, document, report_file);
+  StudyDescriptor study;
+  declare_flags(line, document, report_file, study);
   line.verbs_optional();
   const site_program::CertificatesCommand certificates{line};
   const site_program::CheckCommand check{line, link::Role::Surgeon};
   const DevicesCommand devices{line};
   const auto session = [&](site_program::SiteReport& report) {
-    return site_program::run_session<Program>(make_plan(document), report);
+    return site_program::run_session<Program>(make_plan(document, study), report);
   };
   const std::vector<site_program::SideVerb> verbs{
       {"certificates", [&] { return certificates.run(); }},

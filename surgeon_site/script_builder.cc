@@ -17,8 +17,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr Duration kTravelMin = milliseconds{100};
-constexpr double kSearchDepth = 4e-3;  ///< [m], as deep as the standard palpation taps
-constexpr double kHertz = 1897.0;      ///< [N/m^1.5], see plain_force
+constexpr double kHertz = 1897.0;  ///< [N/m^1.5], see plain_force
 
 std::string millimetres(double length) {
   std::array<char, 32> text{};
@@ -172,12 +171,10 @@ ScriptBuilder& ScriptBuilder::drag(const Place& place, Duration span) {
 }
 
 ScriptBuilder& ScriptBuilder::search(std::uint32_t count, const Place& place) {
-  // A triangle about as wide as inclusions are: from three places on there is a map.
-  constexpr std::array kFirst{Place{-7e-3, -4e-3}, Place{7e-3, -4e-3}, Place{0, 8e-3}};
   constexpr Duration kLeg = milliseconds{1000};  // of 60 mm at kTravelSpeed
   if (position_ != kNearPlace) move(kNearPlace, milliseconds{500});
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Place& first = kFirst[i % kFirst.size()];
+    const Place& first = kSearchFirst[i % kSearchFirst.size()];
     const Place to{place.x + first.x, place.y + first.y};
     begin_phase("search, tap " + std::to_string(i + 1));
     glide_as(StretchKind::Travel, to, kLeg);
@@ -186,7 +183,7 @@ ScriptBuilder& ScriptBuilder::search(std::uint32_t count, const Place& place) {
     Stretch tap;
     tap.kind = StretchKind::Tap;
     tap.index = 1;
-    tap.duration = milliseconds{1000};
+    tap.duration = kSearchSpan;
     tap.to = aim_for(kSearchDepth);
     tap.depth = kSearchDepth;
     tap.searches = true;

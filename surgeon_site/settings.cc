@@ -69,6 +69,11 @@ Result<Settings> make_settings(const proto::config::SurgeonConfig& message) {
   made.impairment = settings::make_impairment(message.impairment());
   made.record = *record;
   made.monitor = settings::make_monitor(message.monitor());
+  made.picture_in_step = message.picture_in_step();
+  if (made.picture_in_step && coupling->name != "wave" && coupling->name != "tdpa") {
+    return fail("picture_in_step makes touch as old as the picture, which coupling '" +
+                coupling->name + "' does not bear: take wave or tdpa");
+  }
   made.duration = from_seconds(message.duration_s());
   made.give_up_after = from_seconds(message.give_up_after_s());
   made.seed = message.seed();

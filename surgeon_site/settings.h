@@ -37,7 +37,8 @@ struct Settings {
   settings::ImpairmentSettings impairment;
   settings::RecordSettings record;
   settings::MonitorSettings monitor;
-  Duration duration{};                                ///< 0: until the script ends
+  bool picture_in_step{};  ///< touch waits until it is as old as the picture
+  Duration duration{};     ///< 0: until the script ends
   Duration give_up_after{std::chrono::seconds{120}};  ///< a patient site that fell silent
   std::uint64_t seed{1};
 };

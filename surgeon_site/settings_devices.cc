@@ -96,6 +96,37 @@ Result<void> enter_line(const HidMasterDevice& told, MasterPlan& plan) {
   return {};
 }
 
+/// How many buttons a master has, or its pedal bits.
+std::uint32_t buttons_of(MasterKind kind) noexcept {
+  if (kind == MasterKind::Board) return 64;
+  if (kind == MasterKind::SpaceMouse) return 16;
+  return kind == MasterKind::ShaftMotor ? 512 : 0;
+}
+
+Result<AnswerButtons> answer_buttons_of(const HidMasterDevice& told, const KnownMaster& master) {
+  const std::uint32_t count = buttons_of(master.kind);
+  std::vector<std::uint32_t> buttons;
+  for (const auto& one : told.answer()) {
+    if (count == 0) return fail("it has a pedal and no other button: no answer can be given by it");
+    const std::uint32_t button = one.button();
+    if (button >= count) {
+      return fail("answer.button is " + std::to_string(button) + ", expected 0 to " +
+                  std::to_string(count - 1));
+    }
+    if (master.kind != MasterKind::ShaftMotor && button == told.pedal_button()) {
+      return fail("button " + std::to_string(button) + " is the pedal, and cannot be an answer");
+    }
+    if (std::ranges::find(buttons, button) != buttons.end()) {
+      return fail("button " + std::to_string(button) + " stands for two answers");
+    }
+    buttons.push_back(button);
+  }
+  if (buttons.size() > AnswerButtons::kMost) {
+    return fail("it has " + std::to_string(buttons.size()) + " answers, expected 8 at most");
+  }
+  return AnswerButtons{std::move(buttons)};
+}
+
 }  // namespace
 
 Result<MasterPlan> make_master_plan(const KnownMaster& master,
@@ -115,6 +146,9 @@ Result<MasterPlan> make_master_plan(const KnownMaster& master,
   }
   if (!master.force) plan.installation.force_unit = 0;  // whatever the file says
   plan.pedal_button = static_cast<int>(told.pedal_button());
+  auto answers = answer_buttons_of(told, master);
+  if (!answers) return fail(name + ": " + std::string{master.name}, answers.error());
+  plan.answer_buttons = std::move(*answers);
   plan.serial = told.serial();
   plan.rates.speed_max = told.rate_mm_per_s() * 1e-3;
   plan.rates.side_speed_max = told.side_rate_mm_per_s() * 1e-3;

@@ -19,17 +19,21 @@ SurgeonInputs SurgeonNode::read(TimePoint now) noexcept {
   in.link = parts_.link.health(now);
   if (in.link.session_id != control_.status().link.session_id) {
     in.peer_devices = parts_.link.peer_devices();
+    held_.forget();
   }
+  in.arrived.samples = held_.pass(in.arrived.samples, touch_hold_.get(), now);
   return in;
 }
 
 void SurgeonNode::tick(TimePoint now) noexcept {
   const SurgeonInputs in = read(now);
+  const std::uint32_t epoch = control_.status().epoch;
   const SurgeonOutputs out = control_.decide(in);
   parts_.device.apply(out.force);
   parts_.device.hold_in_plane(out.hold_in_plane);
   parts_.link.send(out.to_peer, now);
   control_.write_down(in, out);
+  if (control_.status().epoch != epoch) held_.forget();
   parts_.device.show(out.view);
   status_.put(control_.status());
 }

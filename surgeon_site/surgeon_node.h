@@ -9,6 +9,7 @@
 #include "common/link/link.h"
 #include "common/record/recorder.h"
 #include "surgeon_site/haptic_device.h"
+#include "surgeon_site/sample_hold.h"
 #include "surgeon_site/surgeon_control.h"
 #include "surgeon_site/surgeon_status.h"
 
@@ -36,6 +37,9 @@ class SurgeonNode {
   /// How often somebody else than the user at the terminal asked to stop: each is an emergency
   /// stop. Writer: the monitor's thread. Reader: rt.
   [[nodiscard]] Mailbox<std::uint32_t>& stops() noexcept { return stops_; }
+  /// How long what arrives is held back, so that touch is as old as the picture beside it; 0: not.
+  /// Writer: the video's thread. Reader: rt.
+  [[nodiscard]] Mailbox<Duration>& touch_hold() noexcept { return touch_hold_; }
   /// Writer: rt. Reader: the display's thread.
   [[nodiscard]] Mailbox<SurgeonStatus>& status() noexcept { return status_; }
 
@@ -47,6 +51,8 @@ class SurgeonNode {
   Mailbox<UserCommand> commands_;
   Mailbox<std::uint32_t> stops_;
   std::uint32_t stopped_{};  ///< so many of them were obeyed
+  Mailbox<Duration> touch_hold_;
+  SampleHold held_;
   Mailbox<SurgeonStatus> status_;
 };
 

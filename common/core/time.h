@@ -52,6 +52,11 @@ template <class Line, class Span>
   return std::chrono::duration<double>(span).count();
 }
 
+/// The whole second in which an instant lies, counted on its line.
+[[nodiscard]] constexpr std::int64_t second_of(TimePoint at) noexcept {
+  return std::chrono::floor<std::chrono::seconds>(at).time_since_epoch().count();
+}
+
 /// The span nearest to `value` [s], |value| < 9e9.
 [[nodiscard]] constexpr Duration from_seconds(double value) noexcept {
   const double nanoseconds = value * 1e9;

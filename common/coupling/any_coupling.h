@@ -10,6 +10,7 @@
 #include "common/coupling/coupling.h"
 #include "common/coupling/direct.h"
 #include "common/coupling/mmt.h"
+#include "common/coupling/outside_law.h"
 #include "common/coupling/tdpa.h"
 #include "common/coupling/wave.h"
 
@@ -18,8 +19,10 @@
 /// (ARCHITECTURE.md, "A coupling").
 namespace palp::coupling {
 
-using SurgeonCoupling = std::variant<DirectSurgeon, WaveSurgeon, TdpaSurgeon, MmtSurgeon>;
-using PatientCoupling = std::variant<DirectPatient, WavePatient, TdpaPatient, MmtPatient>;
+using SurgeonCoupling =
+    std::variant<DirectSurgeon, WaveSurgeon, TdpaSurgeon, MmtSurgeon, OutsideSurgeon>;
+using PatientCoupling =
+    std::variant<DirectPatient, WavePatient, TdpaPatient, MmtPatient, OutsidePatient>;
 
 inline constexpr std::array<std::string_view, 4> kCouplingNames{"direct", "wave", "tdpa", "mmt"};
 

@@ -22,7 +22,7 @@ constexpr double kOutwardWeight = 0.5;       // [-], of one on the way out: the 
 constexpr std::uint32_t kDoubtTicks = 60;    // after the first contact
 constexpr double kDoubtShare = 0.25;         // [-], of the force that counts as contact
 constexpr double kDoubtRetreat = 0.1e-3;     // [m], a tip that went farther out says nothing
-constexpr std::size_t kNear = 4;             // candidates around the best that are always judged
+constexpr std::size_t kNeighbours = 4;       // candidates around the best that are always judged
 constexpr std::size_t kStride = 12;          // of the others, one in so many
 constexpr std::size_t kEdge = 3;             // so near the grid's end it is moved
 constexpr double kSplineAbove = 2e-3;        // [m], over the grid's middle: where it begins
@@ -214,8 +214,8 @@ void ContactEstimator::absorb() noexcept {
 }
 
 void ContactEstimator::search() noexcept {
-  const std::size_t from = best_ > kNear ? best_ - kNear : 0;
-  const std::size_t to = std::min(best_ + kNear, kCandidates - 1);
+  const std::size_t from = best_ > kNeighbours ? best_ - kNeighbours : 0;
+  const std::size_t to = std::min(best_ + kNeighbours, kCandidates - 1);
   Solution winner = solve(best_, swing_.still());
   std::size_t won = best_;
   const auto judge = [&](std::size_t candidate) {

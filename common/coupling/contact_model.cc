@@ -191,9 +191,9 @@ ContactModel contact_model(const ModelPayload& model) noexcept {
   return {model.surface, model.c, deepest + kModelReachBeyond, model.stiffness};
 }
 
-double quick_gain(const ModelPayload& model) noexcept {
+double quick_gain(const RelaxingContact::Shares& relaxing) noexcept {
   double gain = 1;
-  for (const double share : model.relaxing) gain += share;
+  for (const double share : relaxing) gain += share;
   return gain;
 }
 

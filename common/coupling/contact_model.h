@@ -81,7 +81,7 @@ inline constexpr double kModelReachBeyond = 2e-3;
 [[nodiscard]] ContactModel contact_model(const ModelPayload& model) noexcept;
 /// The same, nowhere steeper than `slope_max` [N/m]: what a device can show of a stiffer tissue.
 [[nodiscard]] ContactModel no_steeper(const ContactModel& model, double slope_max) noexcept;
-/// [-], how much steeper a tissue that relaxes is to a quick hand.
-[[nodiscard]] double quick_gain(const ModelPayload& model) noexcept;
+/// [-], how much steeper a tissue is to a quick hand, of whose force such shares [-] relax.
+[[nodiscard]] double quick_gain(const RelaxingContact::Shares& relaxing) noexcept;
 
 }  // namespace palp::coupling

@@ -10,6 +10,7 @@ constexpr double kEnergyTolerance = 1e-15;  // [J]
 constexpr double kForceTolerance = 1e-12;   // [N]
 constexpr int kHalvings = 30;
 constexpr Duration kStale = std::chrono::milliseconds{20};  // older speed is no speed
+constexpr double kDragged = 0.1;  // [N], of a tip that is in the tissue as it goes along
 
 constexpr bool may_render(SiteState state) noexcept {
   return state == SiteState::Engaged || state == SiteState::Hold || state == SiteState::Retract;
@@ -74,8 +75,15 @@ void MmtSurgeon::drop_model() noexcept {
   shown_.forget();
 }
 
-void MmtSurgeon::hear(std::span<const Incoming> arrived, Duration round_trip) noexcept {
-  const Incoming* last = newest(arrived);
+/// Of a quick hand there, by the newest model.
+double MmtSurgeon::told_force(double position) const noexcept {
+  if (!candidate_) return 0;
+  return quick_gain(candidate_relaxing_) *
+         candidate_->force(position - candidate_->surface - swing_.after(swing_age_));
+}
+
+void MmtSurgeon::hear(const SurgeonInput& in) noexcept {
+  const Incoming* last = newest(in.arrived);
   if (last == nullptr) return;
   const auto* model = std::get_if<ModelPayload>(&last->sample.payload);
   if (model == nullptr || model->version < version_) return;
@@ -85,13 +93,22 @@ void MmtSurgeon::hear(std::span<const Incoming> arrived, Duration round_trip) no
   }
   version_ = model->version;
   if (model->version == 0) return;
-  candidate_ = no_steeper(contact_model(*model), config_.slope_max / quick_gain(*model));
+  const double told = told_force(in.position);
+  candidate_ = no_steeper(contact_model(*model), config_.slope_max / quick_gain(model->relaxing));
   candidate_relaxing_ = model->relaxing;
   // Another swing than was foreseen is a change of the model, not a motion of the surface.
   const double foreseen = swing_.after(swing_age_);
   swing_ = {model->swing, model->swing_quadrature, model->swing_rate};
-  swing_age_ = 0.5 * seconds(round_trip);
+  swing_age_ = 0.5 * seconds(in.round_trip);
   swung_ += swing_.after(swing_age_) - foreseen;
+  contradiction_.tell(told_force(in.position) - told);
+}
+
+/// [-], than of a peer that takes nothing back.
+double MmtSurgeon::slower() const noexcept {
+  const double doubted = std::max(0.0, contradiction_.taken_back() - config_.believed);
+  const double doubts = doubted / config_.doubt;
+  return 1 + doubts * doubts;
 }
 
 /// The shown model ages at `depth` and moves towards the newest one; in the air at once, for
@@ -107,7 +124,7 @@ void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& 
   // The surface swings on by itself; what is blended is the rest.
   const double swung = swing_.after(swing_age_);
   ContactModel elastic = shown_.elastic();
-  elastic.surface += swung - swung_;
+  elastic.surface += (swung - swung_) / slower();
   aim.surface += swung;
   swung_ = swung;
   if (!showing_ || (depth <= 0 && position <= aim.surface)) {
@@ -118,7 +135,8 @@ void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& 
   const RelaxingContact before = shown_;
   const double force = before.force(depth);
   const double fall_max = config_.fall * seconds(lapse.period);
-  double share = -std::expm1(-seconds(lapse.period) / config_.blend);
+  const double blend = config_.blend * slower();
+  double share = -std::expm1(-seconds(lapse.period) / blend);
   for (int attempt = 0; attempt < 8; ++attempt) {
     const ContactModel between = blended(elastic, aim, share);
     shown_ = before;
@@ -236,7 +254,8 @@ SurgeonOutput MmtSurgeon::let_go(const SurgeonInput& in, double work) noexcept {
 SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexcept {
   const double span = seconds(lapse.period);
   swing_age_ += seconds(lapse.passed());
-  hear(in.arrived, in.round_trip);
+  contradiction_.age(seconds(lapse.passed()));
+  hear(in);
   const double speed = velocity_.step(in.position, lapse.periods);
   const double work = in.force_applied * (in.position - position_before_);
   give_way(in.position - position_before_);
@@ -277,6 +296,7 @@ MmtPatient::MmtPatient(const MmtConfig& config, const PatientDevices& devices) n
       stage_lead_{std::floor(devices.stage.lag / config.period) * config.period},
       paired_{devices, config.period},
       estimator_{with_sensor(config.estimator, devices.sensor)},
+      since_drag_{config.drag_memory},
       lead_velocity_{config.lead_cut_off, config.period} {}
 
 void MmtPatient::begin_epoch(double position) noexcept {
@@ -307,6 +327,18 @@ double MmtPatient::allowed() const noexcept {
   return config_.unfelt + (1 + config_.unfelt_share) * std::max(0.0, hand_force_);
 }
 
+/// A finger that is dragged over something hard gives way to it at once; a hand over a long path
+/// does so late, and until then the tip would press as deep as beside it.
+double MmtPatient::allowed_in_drag() const noexcept {
+  return config_.unfelt_drag + (1 + config_.unfelt_drag_share) * std::max(0.0, hand_force_);
+}
+
+void MmtPatient::notice_drag(const PatientInput& in, double span) noexcept {
+  since_drag_ += span;
+  const bool elsewhere = began_ && distance(in.place, place_) > kSamePlace;
+  if (elsewhere && in.contact_force > kDragged) since_drag_ = 0;
+}
+
 /// A finger gives way to a tissue that breathes against it, or is stiffer than the model says. So
 /// does the tip, slowly enough not to swing between a slow stage and a slow sensor.
 void MmtPatient::give_way(double force, double span) noexcept {
@@ -322,12 +354,14 @@ double MmtPatient::unfelt() const noexcept {
   if (found.version == 0) return 0;
   const ContactModel model = contact_model(found);
   const double depth = hand_ - model.surface - found.swing;
-  if (!(model.force(depth) > allowed())) return 0;
-  return depth - model.depth(allowed());
+  const double most = since_drag_ < config_.drag_memory ? allowed_in_drag() : allowed();
+  if (!(model.force(depth) > most)) return 0;
+  return depth - model.depth(most);
 }
 
 PatientOutput MmtPatient::step(const PatientInput& in, const Lapse& lapse) noexcept {
   give_way(in.contact_force, seconds(lapse.period));
+  notice_drag(in, seconds(lapse.period));
   const double aim = target(in, lapse);
   if (!began_ || distance(in.place, place_) > kSamePlace) {
     estimator_.new_place(in.place);

@@ -9,6 +9,7 @@
 #include "common/coupling/breathing_estimator.h"
 #include "common/coupling/contact_estimator.h"
 #include "common/coupling/contact_model.h"
+#include "common/coupling/contradiction.h"
 #include "common/coupling/coupling.h"
 #include "common/coupling/late_device.h"
 #include "common/coupling/paired_readings.h"
@@ -37,6 +38,8 @@ struct MmtConfig {
   double release_max{1000};
   double release_play{60e-6};   ///< [m], that a holding hand trembles and its encoder counts
   double blend{0.05};           ///< [s], time constant of changes of the model
+  double believed{0.6};         ///< [N], so much may a peer take back as it learns
+  double doubt{0.2};            ///< [N], beyond that, with which `blend` doubles
   double fall{25};              ///< [N/s], most by which they let the force fall
   double brake{2};              ///< [N s/m], on the way in, while a force is still to come in
   double contact_damping{0.2};  ///< [N s/m], on the way out: the way in is what a finger judges
@@ -53,11 +56,14 @@ struct MmtConfig {
   /// [N], so much harder than the hand is told may the tip press, and `unfelt_share` of what it is
   /// told.
   double unfelt{0.8};
-  double unfelt_share{0.3};  ///< [-]
-  double yield{6e-3};        ///< [m/s per N], at which the tip gives way to more than that
-  double yield_most{4e-3};   ///< [m]
-  double travel{60e-3};      ///< [m], a surface farther from 0 is not believed
-  double slope_max{1500};    ///< [N/m], of a stiffer tissue no more is shown
+  double unfelt_share{0.3};        ///< [-]
+  double unfelt_drag{0.02};        ///< [N], the same of a tip that is dragged
+  double unfelt_drag_share{0.05};  ///< [-]
+  double drag_memory{0.3};         ///< [s], for so long after it came to another place
+  double yield{6e-3};              ///< [m/s per N], at which the tip gives way to more than that
+  double yield_most{4e-3};         ///< [m]
+  double travel{60e-3};            ///< [m], a surface farther from 0 is not believed
+  double slope_max{1500};          ///< [N/m], of a stiffer tissue no more is shown
   ContactEstimatorConfig estimator;
 };
 
@@ -76,7 +82,9 @@ class MmtSurgeon {
   [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }  ///< models
 
  private:
-  void hear(std::span<const Incoming> arrived, Duration round_trip) noexcept;
+  void hear(const SurgeonInput& in) noexcept;
+  [[nodiscard]] double told_force(double position) const noexcept;
+  [[nodiscard]] double slower() const noexcept;
   void drop_model() noexcept;
   [[nodiscard]] SurgeonOutput let_go(const SurgeonInput& in, double work) noexcept;
   void approach_candidate(double position, double depth, const Lapse& lapse) noexcept;
@@ -111,6 +119,7 @@ class MmtSurgeon {
   double swung_{};                                ///< [m], of the shown surface
   std::optional<ContactModel> candidate_;         ///< none: nothing was learned yet
   RelaxingContact::Shares candidate_relaxing_{};  ///< [-]
+  Contradiction contradiction_;
   std::uint32_t version_{};
   Ramp presence_{1};
   std::uint64_t refused_{};
@@ -128,8 +137,10 @@ class MmtPatient {
  private:
   [[nodiscard]] double target(const PatientInput& in, const Lapse& lapse) noexcept;
   [[nodiscard]] double allowed() const noexcept;
+  [[nodiscard]] double allowed_in_drag() const noexcept;
   [[nodiscard]] double unfelt() const noexcept;
   void give_way(double force, double span) noexcept;
+  void notice_drag(const PatientInput& in, double span) noexcept;
 
   MmtConfig config_;
   double stage_lead_;  ///< [s], what the servo takes away, in whole ticks
@@ -139,6 +150,7 @@ class MmtPatient {
   double hand_velocity_{};  ///< [m/s], newest
   double hand_force_{};     ///< [N], newest
   double yielded_{};        ///< [m]
+  double since_drag_;       ///< [s]
   TimePoint heard_at_{};
   LowPass lead_velocity_;  ///< [m/s]
   Place place_;

@@ -12,8 +12,8 @@ constexpr double kNoForce = 0.025;      // [N], a mean force below it is none
 constexpr double kForceMeanGain = 0.2;  // per sample: 5 of them
 constexpr double kDragShare = 0.15;     // of the slew, on top of what the spring takes of it
 // [s], round trips: up to the first the law knows of no path; from the second on it is a long one.
-constexpr double kNear = 0.06;
-constexpr double kFar = 0.16;
+constexpr double kNearTrip = 0.06;
+constexpr double kFarTrip = 0.16;
 // [s], from here on the local spring is there in full; over shorter paths, by their square, it is
 // not needed, and would make taps feel too stiff.
 constexpr double kLocal = 0.09;
@@ -64,7 +64,7 @@ void TdpaSurgeon::account(double work, double way) noexcept {
 
 /// The tip's force where the tip was, and the local spring from there to where the hand is.
 double TdpaSurgeon::wanted_force(double position, double trip) noexcept {
-  const double time = config_.calm * std::max(0.0, trip - kNear);
+  const double time = config_.calm * std::max(0.0, trip - kNearTrip);
   calm_force_ += (tip_force_ - calm_force_) * config_.period / (config_.period + time);
   const double touch = std::clamp((mean_force_ - kNoForce) / (kTouchForce - kNoForce), 0.0, 1.0);
   const double share = std::min(1.0, trip * trip / (kLocal * kLocal));
@@ -89,7 +89,7 @@ void TdpaSurgeon::approach(double wanted, double trip, double passed) noexcept {
 /// to there. So does what came from there and is not needed here: kept, it would lack there, and
 /// the tip could not follow the hand into the tissue.
 void TdpaSurgeon::share_energy(double trip) noexcept {
-  const double far = std::clamp((trip - kNear) / (kFar - kNear), 0.0, 1.0);
+  const double far = std::clamp((trip - kNearTrip) / (kFarTrip - kNearTrip), 0.0, 1.0);
   const double kept =
       std::lerp(config_.reserve, std::max(config_.reserve, config_.reserve_far), far);
   const double remote = std::max(0.0, energy_remote_ - energy_out_);

@@ -180,10 +180,6 @@ std::size_t index_of(std::int64_t second) noexcept {
   return static_cast<std::size_t>(((second % kSeconds) + kSeconds) % kSeconds);
 }
 
-std::int64_t second_of(TimePoint at) noexcept {
-  return std::chrono::floor<std::chrono::seconds>(at).time_since_epoch().count();
-}
-
 }  // namespace
 
 void ClockOffsetEstimator::Direction::add(Duration way,

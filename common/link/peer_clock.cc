@@ -3,13 +3,6 @@
 #include <algorithm>
 
 namespace palp::link {
-namespace {
-
-std::int64_t second_of(TimePoint at) noexcept {
-  return std::chrono::floor<std::chrono::seconds>(at).time_since_epoch().count();
-}
-
-}  // namespace
 
 void RecentMinimum::add(Duration value, TimePoint at) noexcept {
   const std::int64_t second = second_of(at);

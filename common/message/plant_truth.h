@@ -24,7 +24,7 @@ struct PlantTruth {
   bool counted{};          ///< the surgeon's site is Engaged or in Hold
   bool guarded{};          ///< the surgeon's process lives, and its pedal is down
   bool held{};             ///< the surgeon's process stands still
-  bool resumed{};          ///< a process of either site stood still at the last tick
+  bool resumed{};          ///< a process of either site stood still at the last tick, or lies
   bool dark{};             ///< the path carries nothing
   double hand{};           ///< [m], past the surface
   double hand_velocity{};  ///< [m/s]

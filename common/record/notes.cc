@@ -58,6 +58,9 @@ constexpr std::array kTexts{
     Text{NoteCode::EndAsked, "a client of the monitor ended the session"},
     Text{NoteCode::PointerTaken, "a client of the monitor took the pointer"},
     Text{NoteCode::PointerGiven, "a client of the monitor gave the pointer back"},
+    Text{NoteCode::StudyTrial, "a trial of the study is offered"},
+    Text{NoteCode::StudyInterval, "an interval of the trial may be touched"},
+    Text{NoteCode::StudyAnswer, "the trial was answered"},
     Text{NoteCode::DiskNearlyFull, "the disk of the session file is nearly full"},
 };
 

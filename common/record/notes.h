@@ -60,6 +60,10 @@ enum class NoteCode : std::uint16_t {
   EndAsked = 53,
   PointerTaken = 54,
   PointerGiven = 55,
+  // Of a study whose participant is at this site.
+  StudyTrial = 56,     ///< is offered; detail: its number in the block, practice included, from 1
+  StudyInterval = 57,  ///< may be touched; detail: which, from 1
+  StudyAnswer = 58,    ///< as it arrived; detail: the interval chosen, from 1
   // Of the recording itself, written by the record thread.
   DiskNearlyFull = 64,  ///< detail: time left [s] at the rate of late
 };

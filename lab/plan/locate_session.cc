@@ -12,13 +12,16 @@ namespace {
 
 constexpr double kTissueKpa = 15.3;  // of the database
 
-std::string words_of(const LocateSession& session,
-                     const depth::DepthDatabase::Query* ball,
-                     const Place& axis) {
+}  // namespace
+
+std::string tissue_words(const LocateSession& session,
+                         const depth::DepthDatabase::Query* ball,
+                         const Place& axis) {
   std::string words = formatted("block e_kpa=%.9g", session.scale * kTissueKpa);
   if (session.spread > 0) {
-    words += formatted(" varies=%.9g length=10 seed=%llu",
+    words += formatted(" varies=%.9g length=%.9g seed=%llu",
                        session.spread,
+                       session.length / kMillimetre,
                        static_cast<unsigned long long>(session.seed >> 12U));
   }
   if (ball == nullptr) return words;
@@ -26,11 +29,9 @@ std::string words_of(const LocateSession& session,
                            ball->depth / kMillimetre,
                            ball->radius / kMillimetre,
                            ball->ratio,
-                           (kSiteB.x + axis.x) / kMillimetre,
-                           (kSiteB.y + axis.y) / kMillimetre);
+                           axis.x / kMillimetre,
+                           axis.y / kMillimetre);
 }
-
-}  // namespace
 
 double reach_of(const std::string& script) noexcept { return script == "search" ? 15e-3 : 10e-3; }
 
@@ -43,7 +44,8 @@ Result<Scenario> locate_scenario(const LocateSession& session,
   const std::string loss = formatted("%.9g", session.loss);
   for (const auto& [path, value] : std::vector<std::pair<std::string, std::string>>{
            {"surgeon.hand.master", "script:" + session.script},
-           {"patient.simulated_phantom.phantom", words_of(session, ball, axis)},
+           {"patient.simulated_phantom.phantom",
+            tissue_words(session, ball, {kSiteB.x + axis.x, kSiteB.y + axis.y})},
            {"patient.estimator.place_spread", formatted("%.9g", session.assumed_spread)},
            {"up.delay_ms", delay},
            {"down.delay_ms", delay},

@@ -16,7 +16,8 @@ struct LocateSession {
   double round_trip{};        ///< [s]
   double loss{};              ///< [-], each way
   double assumed_spread{};    ///< [-], of the tissue's stiffness, by the estimator
-  double spread{};            ///< [-], true, over 10 mm
+  double spread{};            ///< [-], true
+  double length{10e-3};       ///< [m], over which it varies
   double scale{1};            ///< [-], of Young's modulus
   std::uint64_t seed{};
 };
@@ -24,6 +25,11 @@ struct LocateSession {
 /// [m], how far from the middle of such taps, along x and y, a ball lies at most: within the nine
 /// places, or somewhere in the middle 30 mm of a field of 50 mm.
 [[nodiscard]] double reach_of(const std::string& script) noexcept;
+
+/// The tissue of such a session, as patient::make_phantom reads it; `axis`: where the ball lies.
+[[nodiscard]] std::string tissue_words(const LocateSession& session,
+                                       const depth::DepthDatabase::Query* ball,
+                                       const Place& axis);
 
 /// `ball`: nullptr: plain tissue. `axis`: from the middle of the taps, which is B.
 [[nodiscard]] Result<Scenario> locate_scenario(const LocateSession& session,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -10,44 +9,20 @@
 #include "common/core/conventions.h"
 #include "common/core/random.h"
 #include "common/core/small_solver.h"
-#include "depth/stroke_tracker.h"
 #include "lab/plan/locate_session.h"
+#include "lab/plan/locate_taps.h"
 #include "lab/run/run.h"
 #include "patient_site/phantom.h"
 #include "patient_site/simulated_phantom.h"
 #include "patient_site/tissue_words.h"
+#include "surgeon_site/script_builder.h"
 
 namespace palp::lab {
 
-/// What one phantom is.
-struct LocatePhantom {
-  depth::DepthDatabase::Query ball;
-  Place axis;
-  double scale{1};  ///< [-]
-};
-
-/// Draws of one case, in a fixed order.
-class LocateDraws {
- public:
-  LocateDraws(std::uint64_t seed, std::uint32_t index)
-      : stream_{seed, 9300 + std::uint64_t{index}} {}
-  double uniform(double low, double high) { return low + (high - low) * stream_.uniform(next_++); }
-  double normal() { return stream_.normal(next_++); }
-  std::uint64_t bits() { return stream_.bits(next_++); }
-
- private:
-  RandomStream stream_;
-  std::uint64_t next_{};
-};
-
 namespace {
-constexpr double kStep = 20e-6;            // [m], of a place's table
-constexpr double kClearance = 10e-3;       // [m], where a tap begins
-constexpr double kSurfaceSpread = 0.2e-3;  // [m], of the surface from place to place
-constexpr double kScaleSpread = 0.1;       // [-], of Young's modulus
-constexpr double kMargin = 0.15e-3;        // [m], for the servo, before a table's end
-constexpr double kRest = 0.2;              // [s], after a tap
-constexpr double kRight = 1e-3;            // [m], of place and depth
+constexpr double kScaleSpread = 0.1;  // [-], of Young's modulus
+constexpr double kMargin = 0.15e-3;   // [m], for the servo, before a table's end
+constexpr double kRight = 1e-3;       // [m], of place and depth
 
 /// From what the estimator assumes; the axis anywhere between the outer places.
 LocatePhantom draw(const LocateStudy& study,
@@ -66,62 +41,14 @@ LocatePhantom draw(const LocateStudy& study,
                   .ratio = prior.ratio_min *
                            std::pow(prior.ratio_max / prior.ratio_min, draws.uniform(0, 1))};
   } while (!database.contains(truth.ball));
-  const double half =
-      study.script.empty() ? 0.5 * (study.rows - 1) * study.pitch : reach_of(study.script);
+  const double half = study.rule             ? reach_of("search")
+                      : study.script.empty() ? 0.5 * (study.rows - 1) * study.pitch
+                                             : reach_of(study.script);
   truth.axis.x = draws.uniform(-half, half);
   truth.axis.y = draws.uniform(-half, half);
   if (study.axis) truth.axis = *study.axis;
   truth.scale = 1 + kScaleSpread * draws.normal();
   return truth;
-}
-
-/// What a tip meets at one place.
-patient::ForceTable table_at(const depth::DepthDatabase& database,
-                             const depth::DepthDatabase::Curve& curve,
-                             double scale,
-                             const std::function<double(double)>& share) {
-  std::vector<patient::ForceRow> rows;
-  const depth::DepthDatabase::Curve plain = database.plain();
-  const int count = static_cast<int>(curve.indentation_max / kStep + 1e-6);
-  for (int i = 0; i <= count; ++i) {
-    const double d = i * kStep;
-    const double excess = database.log_excess(curve, d) * share(d);
-    rows.push_back({d, scale * database.force(plain, d) * std::exp(excess)});
-  }
-  return *patient::ForceTable::make(std::move(rows));
-}
-
-/// Takes every sample of a tap.
-using Feel = std::function<void(const ContactSample&)>;
-
-/// One tap, raised cosine, no deeper than `reach_max` [m]; `config` says where, and what is there.
-TimePoint tap(const patient::Phantom& phantom,
-              patient::SimulatedPhantomConfig config,
-              double reach_max,
-              LocateDraws& draws,
-              TimePoint now,
-              const Feel& feel) {
-  config.surface_offset = kSurfaceSpread * draws.normal();
-  config.start_position = config.surface_offset - kClearance;
-  config.seed = draws.bits();
-  const double span = draws.uniform(0.7, 1.4);
-  const double reach = std::min(draws.uniform(3.6e-3, 4.2e-3), reach_max);
-  patient::SimulatedPhantom site{phantom, config};
-  const int samples = static_cast<int>((span + kRest) * 1e3);
-  for (int i = 0; i < samples; ++i) {
-    now += std::chrono::milliseconds{1};
-    const patient::StageState stage = site.read(now);
-    const auto force = site.sample(now);
-    if (force) {
-      feel(ContactSample{
-          .at = now, .position = stage.position, .force = force->force, .place = stage.place});
-    }
-    const double t = std::min(i * 1e-3, span) / span;
-    const double depth =
-        -kClearance + 0.5 * (reach + kClearance) * (1 - std::cos(2 * std::numbers::pi * t));
-    site.move_to({config.surface_offset + depth, config.start_place});
-  }
-  return now + std::chrono::seconds{1};
 }
 
 /// The bound of each coordinate: what the touches tell at the truth, and the prior as a normal
@@ -192,29 +119,52 @@ LocateBench::LocateBench(const LocateStudy& study, depth::DepthDatabase database
       basis_{database_} {}
 
 /// One tap at every place of the pattern.
-std::vector<depth::PlaceData> LocateBench::touch_all(const TapAt& tap_at) const {
-  const depth::StrokeTrackerConfig strokes;
-  depth::StrokeTracker tracker{strokes};
+std::vector<depth::PlaceData> LocateBench::touch_all(const Palpation::TapAt& tap_at) const {
+  Palpation hand{basis_, tap_at};
   std::vector<depth::PlaceData> places;
-  TimePoint now{};
   for (std::uint32_t place = 0; place < study_.rows * study_.rows; ++place) {
     const double middle = 0.5 * (study_.rows - 1);
-    const Place at{(place % study_.rows - middle) * study_.pitch,
-                   (place / study_.rows - middle) * study_.pitch};
-    now = tap_at(at, now, [&](const ContactSample& sample) {
-      const auto stroke = tracker.take(sample);
-      if (!stroke || stroke->reason != DepthReason::Ok) return;
-      auto data = depth::place_data({.place = at,
-                                     .touches = stroke->known.touches,
-                                     .surface = stroke->known.surface,
-                                     .noise = stroke->known.noise,
-                                     .quantum = strokes.sensor.step,
-                                     .cut_off = strokes.sensor.pole,
-                                     .stiffness = {}},
-                                    basis_);
-      if (data) places.push_back(*data);
-    });
+    const std::uint32_t row = place / study_.rows;
+    const std::uint32_t column = place % study_.rows;
+    const auto felt = hand.touch({(column - middle) * study_.pitch, (row - middle) * study_.pitch});
+    if (felt) places.push_back(*felt);
   }
+  return places;
+}
+
+std::string LocateBench::words_of(const LocatePhantom& truth,
+                                  bool inclusion,
+                                  LocateDraws& draws) const {
+  return tissue_words({.spread = study_.spread,
+                       .length = study_.length,
+                       .scale = truth.scale,
+                       .seed = draws.bits()},
+                      inclusion ? &truth.ball : nullptr,
+                      truth.axis);
+}
+
+/// Tap by tap, in tissue that varies as that of a session.
+std::vector<depth::PlaceData> LocateBench::touch_by_rule(const LocatePhantom& truth,
+                                                         LocateDraws& draws,
+                                                         LocateCase& out) const {
+  const auto phantom = patient::make_phantom(words_of(truth, out.inclusion, draws));
+  PALP_CHECK(phantom.has_value(), "a study's phantoms are sound");
+  Palpation hand{basis_, [&](const Place& at, TimePoint now, const Feel& feel) {
+                   const double deepest = phantom->depth_max() - kMargin;
+                   const TapMotion search{.clearance = -surgeon::kNearPlace,
+                                          .span = seconds(surgeon::kSearchSpan),
+                                          .reach = surgeon::kSearchDepth};
+                   return tap(*phantom, {.start_place = at}, deepest, search, draws, now, feel);
+                 }};
+  std::vector<depth::PlaceData> places;
+  out.searched = search_field(*study_.rule,
+                              {.field = field_,
+                               .prior = prior_,
+                               .tissue = {.stiffness = {}, .place_spread = study_.assumed_spread},
+                               .config = {.travel = kFieldHalf, .verdict = {}}},
+                              hand,
+                              out.inclusion ? std::optional{truth.axis} : std::nullopt,
+                              places);
   return places;
 }
 
@@ -231,7 +181,7 @@ std::vector<depth::PlaceData> LocateBench::touch_as_assumed(const LocatePhantom&
     const double scale = truth.scale * std::exp(study_.spread * draws.normal());
     const double offset = distance(at, truth.axis);
     const auto left = [&](double d) {
-      return inclusion ? share(truth.ball, offset, std::max(d, kStep)) : 0.0;
+      return inclusion ? share(truth.ball, offset, std::max(d, 1e-6)) : 0.0;
     };
     const patient::ForceTable table = table_at(database_, curve, scale, left);
     const patient::Phantom phantom{.name = "place",
@@ -241,21 +191,21 @@ std::vector<depth::PlaceData> LocateBench::touch_as_assumed(const LocatePhantom&
                                    .radius = {},
                                    .ratio = {},
                                    .shape = "unknown"};
-    return tap(phantom, {.start_place = at}, deepest, draws, now, feel);
+    return tap(phantom, {.start_place = at}, deepest, std::nullopt, draws, now, feel);
   });
 }
 
-/// In another one.
-std::vector<depth::PlaceData> LocateBench::touch_world(const MismatchedWorld& world,
-                                                       LocateDraws& draws) const {
-  const auto phantom = patient::make_phantom(world.phantom);
-  PALP_CHECK(phantom.has_value(), "a world is a sound phantom");
+/// In one that make_phantom() reads.
+std::vector<depth::PlaceData> LocateBench::touch_tissue(
+    const std::string& words,
+    const patient::SimulatedPhantomConfig& config,
+    LocateDraws& draws) const {
+  const auto phantom = patient::make_phantom(words);
+  PALP_CHECK(phantom.has_value(), "a study's phantoms are sound");
   return touch_all([&](const Place& at, TimePoint now, const Feel& feel) {
-    const patient::SimulatedPhantomConfig config{.start_place = at,
-                                                 .breathing_amplitude = world.breathing_amplitude,
-                                                 .breathing_frequency = world.breathing_frequency,
-                                                 .sensor_cut_off = world.sensor_pole};
-    return tap(*phantom, config, phantom->depth_max() - kMargin, draws, now, feel);
+    patient::SimulatedPhantomConfig here = config;
+    here.start_place = at;
+    return tap(*phantom, here, phantom->depth_max() - kMargin, std::nullopt, draws, now, feel);
   });
 }
 
@@ -272,7 +222,11 @@ LocateCase LocateBench::run(std::uint32_t index) const {
     out.inclusion = world.inclusion;
     truth = {.ball = {.depth = world.depth, .radius = world.radius, .ratio = world.ratio},
              .axis = world.axis};
-    places = touch_world(world, draws);
+    places = touch_tissue(world.phantom,
+                          {.breathing_amplitude = world.breathing_amplitude,
+                           .breathing_frequency = world.breathing_frequency,
+                           .sensor_cut_off = world.sensor_pole},
+                          draws);
   } else {
     out.inclusion = index < study_.count;
     truth = draw(study_, prior_.ball, database_, draws);
@@ -281,7 +235,13 @@ LocateCase LocateBench::run(std::uint32_t index) const {
       run_session(truth, draws, out);
       return out;
     }
-    places = touch_as_assumed(truth, out.inclusion, draws);
+    if (study_.rule) {
+      places = touch_by_rule(truth, draws, out);
+    } else if (study_.spread > 0 && study_.length > 0) {
+      places = touch_tissue(words_of(truth, out.inclusion, draws), {}, draws);
+    } else {
+      places = touch_as_assumed(truth, out.inclusion, draws);
+    }
   }
   out.scale = truth.scale;
   if (places.empty()) return out;
@@ -298,6 +258,7 @@ void LocateBench::run_session(const LocatePhantom& truth,
                                          .loss = study_.loss,
                                          .assumed_spread = study_.assumed_spread,
                                          .spread = study_.spread,
+                                         .length = study_.length,
                                          .scale = truth.scale,
                                          .seed = draws.bits()},
                                         out.inclusion ? &truth.ball : nullptr,

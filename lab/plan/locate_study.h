@@ -12,6 +12,8 @@
 #include "common/message/depth.h"
 #include "depth/depth_database.h"
 #include "depth/map_verdict.h"
+#include "lab/plan/locate_search.h"
+#include "lab/plan/locate_taps.h"
 #include "lab/plan/mismatched_world.h"
 
 namespace palp::lab {
@@ -25,12 +27,15 @@ struct LocateStudy {
   std::uint32_t rows{3};        ///< of the pattern, and as many columns
   double pitch{7.5e-3};         ///< [m]
   double spread{};              ///< [-], of the tissue's stiffness from place to place
+  double length{10e-3};         ///< [m], over which it varies; 0: by each place of a pattern anew
   double assumed_spread{0.05};  ///< [-], of it, by the estimator
   double depth_max{27e-3};      ///< [m], of the balls drawn
   /// The one ball of all cases; nothing: drawn from what the estimator assumes.
   std::optional<depth::DepthDatabase::Query> ball{};
   std::optional<Place> axis{};  ///< of all balls, from the pattern's middle; nothing: drawn
   bool mismatch{};              ///< `count` worlds that are not as assumed instead
+  /// A field palpated tap by tap instead of the pattern, by that rule.
+  std::optional<TapRule> rule{};
   /// Whole sessions with that script; empty: the taps alone.
   std::string script{};
   double round_trip{};  ///< [s], of these
@@ -64,6 +69,7 @@ struct LocateCase {
   double worst_curve{};      ///< [-]
   double worst_deviation{};  ///< [-]
   std::uint32_t strokes{};   ///< of a session
+  Searched searched{};       ///< of a field palpated by a rule
 
   /// An inclusion where there is none, or an interval of x, y, depth or radius that misses the
   /// truth, and not a word of doubt.
@@ -71,9 +77,6 @@ struct LocateCase {
   /// Found without a doubt: x, y and depth within 1 mm, and the radius within its interval.
   [[nodiscard]] bool right() const;
 };
-
-struct LocatePhantom;
-class LocateDraws;
 
 /// What all cases share. Immutable; any thread.
 class LocateBench {
@@ -83,15 +86,20 @@ class LocateBench {
 
  private:
   LocateBench(const LocateStudy& study, depth::DepthDatabase database);
-  using Feel = std::function<void(const ContactSample&)>;
-  /// Taps at a place from `now` on. @returns when the next tap may begin.
-  using TapAt = std::function<TimePoint(const Place& at, TimePoint now, const Feel& feel)>;
-  [[nodiscard]] std::vector<depth::PlaceData> touch_all(const TapAt& tap_at) const;
+  [[nodiscard]] std::vector<depth::PlaceData> touch_all(const Palpation::TapAt& tap_at) const;
+  [[nodiscard]] std::string words_of(const LocatePhantom& truth,
+                                     bool inclusion,
+                                     LocateDraws& draws) const;
+  [[nodiscard]] std::vector<depth::PlaceData> touch_by_rule(const LocatePhantom& truth,
+                                                            LocateDraws& draws,
+                                                            LocateCase& out) const;
   [[nodiscard]] std::vector<depth::PlaceData> touch_as_assumed(const LocatePhantom& truth,
                                                                bool inclusion,
                                                                LocateDraws& draws) const;
-  [[nodiscard]] std::vector<depth::PlaceData> touch_world(const MismatchedWorld& world,
-                                                          LocateDraws& draws) const;
+  [[nodiscard]] std::vector<depth::PlaceData> touch_tissue(
+      const std::string& words,
+      const patient::SimulatedPhantomConfig& config,
+      LocateDraws& draws) const;
   void run_session(const LocatePhantom& truth, LocateDraws& draws, LocateCase& out) const;
   void judge(const LocatePhantom& truth,
              std::vector<depth::PlaceData> places,

@@ -11,6 +11,7 @@
 #include "lab/plan/scenario_file.h"
 #include "lab/run/direct_touch.h"
 #include "surgeon_site/script_builder.h"
+#include "surgeon_site/script_reader.h"
 
 namespace palp::lab {
 namespace {
@@ -239,6 +240,11 @@ Result<Scenario> make_case(const Plan& plan, const Case& one) {
   if (!scenario) return scenario;
   scenario->bare = true;
   scenario->depths = false;
+  if (!one.script.empty()) {
+    auto script = surgeon::parse_script(one.script, scenario->hand.plant.grip.stiffness);
+    if (!script) return tl::unexpected(script.error());
+    scenario->script = std::move(*script);
+  }
   if (plan.direct_touch) scenario->finger = own_finger(*scenario);
   scenario->lying = plan.lying || one.lying;
   if (plan.blackout) place_blackout(*scenario);

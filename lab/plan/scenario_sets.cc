@@ -2,6 +2,7 @@
 #include <array>
 #include <string_view>
 
+#include "lab/plan/gesture_set.h"
 #include "lab/plan/plan.h"
 #include "lab/plan/random_sets.h"
 #include "lab/plan/set_case.h"
@@ -121,6 +122,7 @@ constexpr std::array kSets{
         "mc with a sensor, a stage or a haptic device that fails",
         fill_device_faults},
     Set{"wild", "tissues and gestures drawn at random over the links and hands of mc", fill_wild},
+    Set{"gestures", "taps, presses and drags, five round trips, four grips", fill_gestures},
     Set{"devices", "mc with devices of 50 to 1,000 Hz, lags to 30 ms, jitter, steps", fill_devices},
 };
 
@@ -146,6 +148,7 @@ Result<Plan> make_set(const std::string& name, const PlanAsk& ask) {
 
 std::vector<NamedChoice> described_sets() {
   std::vector<NamedChoice> sets;
+  sets.reserve(std::size(kSets));
   for (const Set& set : kSets) sets.push_back({std::string{set.name}, std::string{set.means}});
   return sets;
 }

@@ -10,6 +10,7 @@
 #include "common/config/json.h"
 #include "judge/metric_table.h"
 #include "lab/plan/observer.h"
+#include "lab/report/gesture_table.h"
 #include "lab/run/digest.h"
 
 namespace palp::lab {
@@ -18,7 +19,6 @@ namespace {
 using config::Json;
 
 constexpr std::size_t kWorstMax = 3;  ///< of each metric
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json worst_of(const std::vector<CaseResult>& results) {
   Json worst = Json::array();
@@ -57,9 +57,9 @@ Json observer_rows(const Plan& plan, const std::vector<ObserverRow>& rows) {
       one[plan.label_names[i]] = row.labels[i];
     }
     one["weber"] = row.weber;
-    one["right_true"] = number(row.right_true);
-    one["right_felt"] = number(row.right_felt);
-    one["loss"] = number(row.loss());
+    one["right_true"] = row.right_true;
+    one["right_felt"] = row.right_felt;
+    one["loss"] = row.loss();
     json.push_back(one);
   }
   return json;
@@ -126,8 +126,7 @@ std::string batch_report(const Plan& plan,
     const Spread spread = spread_of(results, metric);
     if (spread.undefined == results.size()) continue;
     const std::string name{table[metric].name};
-    metrics[name] = {
-        {"p50", number(spread.p50)}, {"p95", number(spread.p95)}, {"max", number(spread.max)}};
+    metrics[name] = {{"p50", spread.p50}, {"p95", spread.p95}, {"max", spread.max}};
     if (spread.undefined > 0) undefined[name] = spread.undefined;
   }
   json["undefined"] = undefined;
@@ -135,7 +134,7 @@ std::string batch_report(const Plan& plan,
   json["worst"] = worst_of(results);
   if (plan.name == "inc") {
     const auto rows = observe(results);
-    json["observer_loss_max"] = number(worst_loss(plan, rows, kObserved));
+    json["observer_loss_max"] = worst_loss(plan, rows, kObserved);
     json["observer"] = observer_rows(plan, rows);
   }
   const bool merged = account.cores == 0;
@@ -170,6 +169,7 @@ std::string batch_summary(const Plan& plan,
                 "undefined");
   text += line.data();
   text += metric_rows(results);
+  if (plan.name == "gestures") text += gesture_table(plan, results);
   double virtual_span = 0;
   for (const CaseResult& result : results) virtual_span += result.virtual_span;
   if (plan.name == "inc") {

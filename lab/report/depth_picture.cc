@@ -8,14 +8,14 @@
 namespace palp::lab {
 namespace {
 
-constexpr double kRange = 30;        // [mm]
-constexpr double kSpread = 1.8;      // [mm], to each side of a listed depth
-constexpr std::size_t kDrawn = 300;  // random phantoms; more hide each other
-constexpr double kBin = 3;           // [mm], of true depth, in which held intervals are counted
-constexpr double kFirstBin = 1;      // [mm]; so that the prior's 4 to 25 mm are whole bins
-constexpr double kPromise = 0.95;    // [-], of the intervals
-constexpr double kFaint = 0.3;       // [-], opacity
-constexpr double kSolid = 0.7;       // [-]
+constexpr double kRange = 30;                // [mm]
+constexpr double kSpread = 1.8;              // [mm], to each side of a listed depth
+constexpr std::size_t kPhantomsDrawn = 300;  // random phantoms; more hide each other
+constexpr double kBin = 3;               // [mm], of true depth, in which held intervals are counted
+constexpr double kFirstBin = 1;          // [mm]; so that the prior's 4 to 25 mm are whole bins
+constexpr double kPromise = 0.95;        // [-], of the intervals
+constexpr double kFaint = 0.3;           // [-], opacity
+constexpr double kPhantomOpacity = 0.7;  // [-]
 constexpr const char* kDepthAxis = "true depth of the inclusion's top [mm]";
 
 bool holds_truth(const DepthCase& one) { return one.low <= one.depth && one.depth <= one.high; }
@@ -33,8 +33,8 @@ std::vector<plot::Curve> four_kinds(bool random) {
     return plot::Curve{
         .name = name, .mark = plot::Mark::Intervals, .colour = colour, .opacity = opacity};
   };
-  return {kind("95 % interval", plot::kBlue, kSolid),
-          kind("interval that misses the truth", plot::kVermilion, kSolid),
+  return {kind("95 % interval", plot::kBlue, kPhantomOpacity),
+          kind("interval that misses the truth", plot::kVermilion, kPhantomOpacity),
           kind(random ? "ball of a wider range than assumed" : "", plot::kBlue, kFaint),
           kind("", plot::kVermilion, kFaint)};
 }
@@ -51,7 +51,7 @@ plot::Panel estimates_panel(const DepthStudy& study, const std::vector<DepthCase
   for (const DepthCase& one : cases) {
     if (one.inclusion && one.verdict == DepthVerdict::Found) found.push_back(&one);
   }
-  const std::size_t stride = random ? 1 + found.size() / kDrawn : 1;
+  const std::size_t stride = random ? 1 + found.size() / kPhantomsDrawn : 1;
   if (!random)
     panel.axes.title = "Left of each depth the ball's size is known, right only a range.";
   if (stride > 1) panel.axes.title = "One of " + std::to_string(stride) + " is drawn.";

@@ -15,12 +15,12 @@ namespace {
 
 using config::Json;
 
-constexpr std::size_t kThirds = 3;
+constexpr std::size_t kDepthRows = 3;
 constexpr double kNear = 0.2;  // of the depth: an answer worth having
 constexpr double kStrong = 5;  // standard deviations: such a signal must be found
 
 /// Cases of one depth, or of one third of the range.
-struct Row {
+struct DepthRow {
   Knowledge knowledge{Knowledge::Range};
   bool wide{};
   double depth{};  ///< [m], mean of the truth
@@ -42,24 +42,24 @@ struct RowFigures {
 
 /// Random phantoms: thirds of the depths, drawn from the prior and wider. Listed depths: each, with
 /// one knowledge and then with the other.
-std::vector<Row> rows_of(const DepthStudy& study, const std::vector<DepthCase>& cases) {
+std::vector<DepthRow> rows_of(const DepthStudy& study, const std::vector<DepthCase>& cases) {
   const bool random = study.depths.empty();
-  const std::size_t depths = random ? kThirds : study.depths.size();
-  std::vector<Row> rows(2 * depths);
+  const std::size_t depths = random ? kDepthRows : study.depths.size();
+  std::vector<DepthRow> rows(2 * depths);
   for (const DepthCase& one : cases) {
     if (!one.inclusion) continue;
     const bool second = random ? one.wide : one.knowledge == Knowledge::Range;
     const std::size_t place =
         random ? static_cast<std::size_t>(std::clamp((one.depth - 4e-3) / 7e-3, 0.0, 2.0))
                : one.index / study.repeats % depths;
-    Row& row = rows[place + (second ? depths : 0)];
+    DepthRow& row = rows[place + (second ? depths : 0)];
     row.knowledge = one.knowledge;
     row.wide = one.wide;
     row.cases.push_back(&one);
     row.depth += one.depth;
   }
-  std::erase_if(rows, [](const Row& row) { return row.cases.empty(); });
-  for (Row& row : rows) row.depth /= static_cast<double>(row.cases.size());
+  std::erase_if(rows, [](const DepthRow& row) { return row.cases.empty(); });
+  for (DepthRow& row : rows) row.depth /= static_cast<double>(row.cases.size());
   return rows;
 }
 
@@ -156,7 +156,7 @@ std::string text(const char* name, std::optional<double> value, double scale, co
   return line;
 }
 
-Json row_json(const Row& row) {
+Json row_json(const DepthRow& row) {
   const RowFigures f = figures(row.cases);
   Json one;
   one["prior"] = std::string{to_string(row.knowledge)};
@@ -175,7 +175,7 @@ Json row_json(const Row& row) {
   return one;
 }
 
-std::string row_text(const Row& row) {
+std::string row_text(const DepthRow& row) {
   const RowFigures f = figures(row.cases);
   char line[200];
   std::snprintf(line,
@@ -212,7 +212,7 @@ std::string depth_report(const DepthStudy& study,
   json["loss"] = study.loss;
   json["digest"] = hexadecimal(digest_of(cases));
   json["rows"] = Json::array();
-  for (const Row& row : rows_of(study, cases)) json["rows"].push_back(row_json(row));
+  for (const DepthRow& row : rows_of(study, cases)) json["rows"].push_back(row_json(row));
   const Totals all = totals(cases);
   json["coverage95"] = number(share(all.all.inside, all.all.found));
   json["plain_count"] = all.plain;
@@ -237,7 +237,7 @@ std::string depth_table(const DepthStudy& study, const std::vector<DepthCase>& c
   std::string out =
       "prior  depth mm     n   found  rmse mm  rmse %  bias mm  crb mm  claimed  coverage  width "
       "mm (bound's)\n";
-  for (const Row& row : rows_of(study, cases)) out += row_text(row);
+  for (const DepthRow& row : rows_of(study, cases)) out += row_text(row);
   const Totals all = totals(cases);
   if (!study.depths.empty()) {
     if (study.estimator == depth::EstimatorKind::Bayes) {

@@ -5,9 +5,9 @@
 namespace palp::lab {
 namespace {
 
-constexpr std::size_t kDrawn = 300;  // balls; more hide each other
-constexpr double kSolid = 0.7;       // [-], opacity
-constexpr double kDeepest = 30;      // [mm]
+constexpr std::size_t kBallsDrawn = 300;  // balls; more hide each other
+constexpr double kBallOpacity = 0.7;      // [-], opacity
+constexpr double kDeepest = 30;           // [mm]
 
 /// One coordinate of the balls found, less `from` times its truth, over the true depth.
 plot::Panel panel_of(const std::vector<LocateCase>& cases,
@@ -18,14 +18,14 @@ plot::Panel panel_of(const std::vector<LocateCase>& cases,
   plot::Curve held{.name = "95 % interval",
                    .mark = plot::Mark::Intervals,
                    .colour = plot::kBlue,
-                   .opacity = kSolid};
+                   .opacity = kBallOpacity};
   plot::Curve missed{.name = "interval that misses the truth",
                      .mark = plot::Mark::Intervals,
                      .colour = plot::kVermilion,
-                     .opacity = kSolid};
+                     .opacity = kBallOpacity};
   std::size_t drawn = 0;
   for (const LocateCase& one : cases) {
-    if (!one.inclusion || !one.found || drawn == kDrawn) continue;
+    if (!one.inclusion || !one.found || drawn == kBallsDrawn) continue;
     ++drawn;
     const Located& told = one.coordinates[coordinate];
     const bool holds = told.low <= told.truth && told.truth <= told.high;

@@ -58,14 +58,14 @@ std::size_t third_of(double value, double low, double high) {
 }
 
 /// A name and the cases of it.
-struct Row {
+struct LocateRow {
   std::string name;
   Figures figures;
 };
 
-std::vector<Row> rows_of(const LocateStudy& study, const std::vector<LocateCase>& cases) {
+std::vector<LocateRow> rows_of(const LocateStudy& study, const std::vector<LocateCase>& cases) {
   const depth::DepthPrior prior;
-  std::vector<Row> rows{{"all", figures(cases, [](const LocateCase&) { return true; })}};
+  std::vector<LocateRow> rows{{"all", figures(cases, [](const LocateCase&) { return true; })}};
   const auto radius = [](const LocateCase& one) { return one.coordinates[3].truth; };
   const auto depth = [](const LocateCase& one) { return one.coordinates[2].truth; };
   rows.push_back({"hard, near", figures(cases, [&](const LocateCase& one) {
@@ -155,6 +155,18 @@ double strokes_of(const std::vector<LocateCase>& cases) {
   return median(strokes).value_or(0);
 }
 
+/// Median over all balls of a number of touches, 0 of them for never; 0: never for half of them.
+double touches_of(const std::vector<LocateCase>& cases, std::uint32_t Searched::*number) {
+  std::vector<double> touches;
+  for (const LocateCase& one : cases) {
+    if (!one.inclusion) continue;
+    const std::uint32_t told = one.searched.*number;
+    touches.push_back(told > 0 ? told : 1e9);
+  }
+  const double middle = median(touches).value_or(0);
+  return middle < 1e9 / 2 ? middle : 0;
+}
+
 std::size_t balls_of(const std::vector<LocateCase>& cases) {
   return static_cast<std::size_t>(std::count_if(
       cases.begin(), cases.end(), [](const LocateCase& one) { return one.inclusion; }));
@@ -162,12 +174,12 @@ std::size_t balls_of(const std::vector<LocateCase>& cases) {
 
 double unit_of(std::size_t coordinate) { return coordinate + 1 < kLocated ? kMillimetre : 1; }
 
-double share(std::size_t part, std::size_t whole) {
+double share_or_zero(std::size_t part, std::size_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
 }
 
 /// A line of the table.
-std::string text_of(const Row& row) {
+std::string text_of(const LocateRow& row) {
   const Figures& f = row.figures;
   char line[240];
   std::snprintf(line,
@@ -175,12 +187,12 @@ std::string text_of(const Row& row) {
                 "%-16s %4zu %5.1f%%",
                 row.name.c_str(),
                 f.count,
-                100 * share(f.found, f.count));
+                100 * share_or_zero(f.found, f.count));
   std::string out = line;
   if (f.found == 0) return out + '\n';
   out += "      ";
   for (std::size_t i = 0; i < kLocated; ++i) {
-    std::snprintf(line, sizeof line, " %6.1f", 100 * share(f.inside[i], f.found));
+    std::snprintf(line, sizeof line, " %6.1f", 100 * share_or_zero(f.inside[i], f.found));
     out += line;
   }
   out += "   ";
@@ -209,8 +221,8 @@ std::string worlds_text(const std::vector<LocateCase>& cases) {
                   "%-12s %6zu %17.1f%% %6.1f%% %26zu\n",
                   one.name.c_str(),
                   one.count,
-                  100 * share(one.wrong, one.count),
-                  100 * share(one.warned, one.count),
+                  100 * share_or_zero(one.wrong, one.count),
+                  100 * share_or_zero(one.warned, one.count),
                   one.alarms);
     out += line;
   }
@@ -223,7 +235,7 @@ std::string locate_table(const LocateStudy& study, const std::vector<LocateCase>
   std::string out =
       "balls               n  found  coverage % x     y depth radius ratio  rms mm x     y depth "
       "radius  over bound x    y depth radius\n";
-  for (const Row& row : rows_of(study, cases)) out += text_of(row);
+  for (const LocateRow& row : rows_of(study, cases)) out += text_of(row);
   if (study.mismatch) return out + worlds_text(cases);
   const Alarms told = alarms(cases);
   char line[240];
@@ -233,10 +245,19 @@ std::string locate_table(const LocateStudy& study, const std::vector<LocateCase>
                 "false alarms %.2f %% of %zu plain phantoms\nmodel doubted %.2f %% of all\n",
                 right_of(cases),
                 balls_of(cases),
-                100 * share(told.found, told.plain),
+                100 * share_or_zero(told.found, told.plain),
                 told.plain,
-                100 * share(told.doubted, told.all));
+                100 * share_or_zero(told.doubted, told.all));
   out += line;
+  if (study.rule) {
+    std::snprintf(line,
+                  sizeof line,
+                  "touches, median of all balls, until known to 1 mm: %.1f, until right to 1 mm "
+                  "beside the axis: %.1f\n",
+                  touches_of(cases, &Searched::known),
+                  touches_of(cases, &Searched::near));
+    out += line;
+  }
   if (study.script.empty()) return out;
   std::snprintf(line, sizeof line, "strokes, median of the balls found: %.0f\n", strokes_of(cases));
   return out + line;
@@ -252,10 +273,11 @@ std::string locate_report(const LocateStudy& study,
   json["places"] = study.rows * study.rows;
   json["pitch_mm"] = study.pitch / kMillimetre;
   json["stiffness_spread"] = study.spread;
+  json["stiffness_length_mm"] = study.length / kMillimetre;
   json["assumed_spread"] = study.assumed_spread;
   json["depth_max_mm"] = study.depth_max / kMillimetre;
   json["rows"] = Json::array();
-  for (const Row& row : rows_of(study, cases)) {
+  for (const LocateRow& row : rows_of(study, cases)) {
     const Figures& f = row.figures;
     Json one;
     one["balls"] = row.name;
@@ -264,7 +286,7 @@ std::string locate_report(const LocateStudy& study,
     one["trusted"] = f.trusted;
     for (std::size_t i = 0; i < kLocated && f.found > 0; ++i) {
       Json& told = one[kLocatedNames[i]];
-      told["coverage95"] = share(f.inside[i], f.found);
+      told["coverage95"] = share_or_zero(f.inside[i], f.found);
       told["rmse"] = f.squares[i] / unit_of(i);
       told["crb"] = f.bounds[i] / unit_of(i);
     }
@@ -275,6 +297,11 @@ std::string locate_report(const LocateStudy& study,
   json["rtt_ms"] = study.round_trip * 1e3;
   json["loss"] = study.loss;
   json["strokes_p50"] = study.script.empty() ? Json(nullptr) : Json(strokes_of(cases));
+  json["next_tap"] =
+      study.rule ? Json(kTapRuleNames[static_cast<std::size_t>(*study.rule)]) : Json(nullptr);
+  json["touches_known_p50"] =
+      study.rule ? Json(touches_of(cases, &Searched::known)) : Json(nullptr);
+  json["touches_near_p50"] = study.rule ? Json(touches_of(cases, &Searched::near)) : Json(nullptr);
   json["set"] = study.mismatch ? Json("mismatch") : Json(nullptr);
   json["kinds"] = Json::array();
   for (const Worlds& one : study.mismatch ? worlds_of(cases) : std::vector<Worlds>{}) {
@@ -286,8 +313,8 @@ std::string locate_report(const LocateStudy& study,
   }
   const Alarms told = alarms(cases);
   json["plain_count"] = told.plain;
-  json["false_alarm_rate"] = share(told.found, told.plain);
-  json["model_doubted_rate"] = share(told.doubted, told.all);
+  json["false_alarm_rate"] = share_or_zero(told.found, told.plain);
+  json["model_doubted_rate"] = share_or_zero(told.doubted, told.all);
   json["cases_csv"] = cases_csv.empty() ? Json(nullptr) : Json(cases_csv);
   return json.dump(2) + "\n";
 }

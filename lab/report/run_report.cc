@@ -23,8 +23,6 @@ namespace {
 
 using config::Json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 std::vector<DepthEstimate> estimates_at(const Place& place, std::span<const DepthEstimate> all) {
   std::vector<DepthEstimate> here;
   for (const DepthEstimate& estimate : all) {
@@ -34,7 +32,7 @@ std::vector<DepthEstimate> estimates_at(const Place& place, std::span<const Dept
 }
 
 Json millimetres(const std::optional<double>& metres) {
-  return metres ? number(*metres * 1e3) : Json(nullptr);
+  return metres ? Json(*metres * 1e3) : Json(nullptr);
 }
 
 Json depth_json(const DepthEstimate& estimate, depth::EstimatorKind kind) {
@@ -47,7 +45,7 @@ Json depth_json(const DepthEstimate& estimate, depth::EstimatorKind kind) {
   json["stddev_mm"] = millimetres(statement.stddev);
   json["excluded_above_mm"] = millimetres(statement.excluded);
   json["says"] = statement.says;
-  json["h_n"] = number(estimate.hash);
+  json["h_n"] = estimate.hash;
   json["reason"] = to_string(estimate.reason);
   json["estimator"] = to_string(kind);
   return json;
@@ -67,10 +65,10 @@ Json taps_json(const RunResult& result, depth::EstimatorKind kind) {
     json["y_mm"] = tap.place.y * 1e3;
     json["index"] = tap.index;
     const bool known = estimate != nullptr;
-    json["indentation_max_mm"] = known ? number(estimate->indentation_max * 1e3) : Json(nullptr);
-    json["force_max_n"] = known ? number(estimate->force_max) : Json(nullptr);
-    json["stiffness_felt_n_per_m"] = number(tap.stiffness.felt().value_or(judge::kUndefined));
-    json["stiffness_true_n_per_m"] = number(tap.stiffness.truth().value_or(judge::kUndefined));
+    json["indentation_max_mm"] = known ? Json(estimate->indentation_max * 1e3) : Json(nullptr);
+    json["force_max_n"] = known ? Json(estimate->force_max) : Json(nullptr);
+    json["stiffness_felt_n_per_m"] = tap.stiffness.felt().value_or(judge::kUndefined);
+    json["stiffness_true_n_per_m"] = tap.stiffness.truth().value_or(judge::kUndefined);
     json["depth"] = known ? depth_json(*estimate, kind) : Json(nullptr);
     taps.push_back(json);
   }
@@ -82,7 +80,7 @@ Json metrics_json(const judge::RunMetrics& m) {
   json["unstable"] = m.unstable;
   json["unstable_reason"] = m.unstable_reason;
   for (const judge::Metric& metric : judge::metric_table()) {
-    json[std::string{metric.name}] = number(metric.value(m));
+    json[std::string{metric.name}] = metric.value(m);
   }
   return json;
 }
@@ -138,7 +136,7 @@ std::string run_report(const Scenario& scenario,
   json["virtual_s"] = seconds(result.virtual_span);
   json["cpu_s"] = account.cpu;
   json["wall_s"] = account.wall;
-  json["speed"] = number(seconds(result.virtual_span) / account.cpu);
+  json["speed"] = seconds(result.virtual_span) / account.cpu;
   json["records"] = result.records;
   json["recording_fault"] =
       account.recording_fault.empty() ? Json(nullptr) : Json(account.recording_fault);
@@ -199,7 +197,8 @@ std::string trace_csv(const RunResult& result) {
       "t_s,site,phase,index,hand_mm,tip_mm,force_felt_n,force_true_n,contact_force_n,energy_mj,"
       "counted,hand_speed_m_per_s,surface_mm,x_mm,y_mm\n";
   constexpr std::array kSites{"A", "B", ""};
-  constexpr std::array kKinds{"other", "air", "tap", "press", "lift"};
+  constexpr std::array kKinds{"other", "air", "tap", "press", "lift", "drag"};
+  static_assert(kKinds.size() == static_cast<std::size_t>(judge::PhaseKind::Drag) + 1);
   for (const judge::RunTick& tick : result.ticks) {
     append(text,
            "%.4f,%s,%s,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%.9g,%.9g,%.9g,%.9g\n",

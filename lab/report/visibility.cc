@@ -12,8 +12,6 @@ namespace {
 using config::ExitCode;
 using config::ExitStatus;
 
-constexpr double kSeen = 5;  // standard deviations
-
 /// The largest ball at `depth` that the database holds, or 0.
 double largest(const depth::DepthDatabase& database, double depth, double ratio) {
   const std::vector<double>& radii = database.grid().radii;
@@ -27,12 +25,13 @@ double largest(const depth::DepthDatabase& database, double depth, double ratio)
 
 double smallest_seen(const depth::DepthDatabase& database,
                      const TapPlan& plan,
+                     double deviations,
                      double depth,
                      double ratio) {
   const std::vector<TipState> motion = motion_of(plan);
   const auto seen = [&](double radius) {
     const depth::DepthDatabase::Query query{.depth = depth, .radius = radius, .ratio = ratio};
-    return depth_bound(database, query, {}, {}, plan.sensor, motion).signal >= kSeen;
+    return depth_bound(database, query, {}, {}, plan.sensor, motion).signal >= deviations;
   };
   double low = database.grid().radii.front();
   double high = largest(database, depth, ratio);
@@ -56,7 +55,9 @@ std::string radius_text(const Visibility& all, double radius) {
 
 }  // namespace
 
-Visibility visibility(const depth::DepthDatabase& database, const TapPlan& plan) {
+Visibility visibility(const depth::DepthDatabase& database,
+                      const TapPlan& plan,
+                      double deviations) {
   Visibility out;
   out.radius_min = database.grid().radii.front();
   out.ratios = {3, 10, 100, 856};
@@ -64,7 +65,7 @@ Visibility visibility(const depth::DepthDatabase& database, const TapPlan& plan)
     out.depths.push_back(depth_mm * kMillimetre);
     std::vector<double>& row = out.radii.emplace_back();
     for (const double ratio : out.ratios) {
-      row.push_back(smallest_seen(database, plan, out.depths.back(), ratio));
+      row.push_back(smallest_seen(database, plan, deviations, out.depths.back(), ratio));
     }
   }
   return out;
@@ -93,6 +94,10 @@ void declare_visible(config::CommandLine& line, VisibilityFlags& flags) {
   line.whole("--reference-taps", flags.reference_taps, {.min = 0, .max = 1000}, "beside it");
   line.number(
       "--indentation-mm", flags.indentation_mm, {.min = 1, .max = 5, .unit = "mm"}, "of each tap");
+  line.number("--deviations",
+              flags.deviations,
+              {.min = 0.1, .max = 20},
+              "standard deviations by which a ball differs from plain tissue");
   line.report(flags.report, "palp.visible/1");
 }
 
@@ -103,13 +108,14 @@ ExitStatus run_visible(const VisibilityFlags& flags) {
                      .reference_taps = static_cast<int>(flags.reference_taps),
                      .indentation = flags.indentation_mm * kMillimetre,
                      .sensor = {}};
-  const Visibility all = visibility(*database, plan);
+  const Visibility all = visibility(*database, plan, flags.deviations);
   if (!flags.report.empty()) {
     config::Json out;
     out["schema"] = "palp.visible/1";
     out["taps"] = flags.taps;
     out["reference_taps"] = flags.reference_taps;
     out["indentation_mm"] = flags.indentation_mm;
+    out["deviations"] = flags.deviations;
     out["ratios"] = all.ratios;
     out["rows"] = config::Json::array();
     for (std::size_t i = 0; i < all.depths.size(); ++i) {

@@ -9,12 +9,13 @@
 
 namespace palp::lab {
 
-/// `palp-lab visible`: the smallest ball that differs from plain tissue by five standard
+/// `palp-lab visible`: the smallest ball that differs from plain tissue by so many standard
 /// deviations, by depth and stiffness ratio. What the sensor allows, whoever estimates.
 struct VisibilityFlags {
   std::uint64_t taps{4};
   std::uint64_t reference_taps{4};
   double indentation_mm{4};
+  double deviations{5};  ///< [-], standard deviations
   std::string report{};
 };
 
@@ -27,7 +28,10 @@ struct Visibility {
   double radius_min{};  ///< [m], of the database
 };
 
-[[nodiscard]] Visibility visibility(const depth::DepthDatabase& database, const TapPlan& plan);
+/// `deviations` [-]: by so many standard deviations a ball differs that is seen.
+[[nodiscard]] Visibility visibility(const depth::DepthDatabase& database,
+                                    const TapPlan& plan,
+                                    double deviations);
 [[nodiscard]] std::string visibility_text(const Visibility& visibility);
 
 void declare_visible(config::CommandLine& line, VisibilityFlags& flags);

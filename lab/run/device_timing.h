@@ -19,6 +19,13 @@ struct DeviceTiming {
   friend bool operator==(const DeviceTiming&, const DeviceTiming&) = default;
 };
 
+/// Of a run's devices.
+struct DeviceTimings {
+  DeviceTiming hand{};
+  DeviceTiming stage{};
+  DeviceTiming sensor{};
+};
+
 /// When a device is asked. Thread: the lab's. A value.
 class DevicePolls {
  public:

@@ -5,6 +5,7 @@
 #include <memory>
 #include <numbers>
 
+#include "judge/drag_bump.h"
 #include "judge/swing_finder.h"
 #include "patient_site/phantom.h"
 #include "review/phase_finder.h"
@@ -41,13 +42,17 @@ std::vector<TouchTick> direct_touch(const Scenario& scenario) {
 OwnFinger own_finger(const Scenario& scenario) {
   OwnFinger finger{.force = 0};
   judge::SwingFinder swing;
+  judge::DragBump drag;
   review::PhaseFinder phases{scenario.script};
   for (const TouchTick& tick : direct_touch(scenario)) {
     finger.force = std::max(finger.force, tick.force);
-    if (phases.at(tick.at, tick.place).kind == judge::PhaseKind::FreeAir) swing.restart();
+    const judge::PhaseKind kind = phases.at(tick.at, tick.place).kind;
+    if (kind == judge::PhaseKind::FreeAir) swing.restart();
+    drag.look(seconds(tick.at), kind == judge::PhaseKind::Drag, tick.force, tick.force);
     swing.look(seconds(tick.at), tick.position);
   }
   finger.swing = swing.largest();
+  finger.bump = drag.felt();
   return finger;
 }
 

@@ -69,7 +69,9 @@ class Probe {
                 .force_continuous = scenario.hand.force_continuous,
                 .own_swing = scenario.finger.swing,
                 .stiffest = scenario.coupling.mmt.slope_max,
-                .round_trip = seconds(scenario.up.delay.mean + scenario.down.delay.mean)}} {}
+                .round_trip = seconds(scenario.up.delay.mean + scenario.down.delay.mean),
+                .bound = {.grip = scenario.hand.plant.grip.stiffness,
+                          .energy = scenario.coupling.mmt.tank_start}}} {}
 
   /// Of the run's path and time at a look.
   struct Moment {
@@ -114,7 +116,7 @@ class Probe {
         .counted = status.state == SiteState::Engaged || status.state == SiteState::Hold,
         .guarded = site.pressed(),
         .held = site.paused(),
-        .resumed = paused_,
+        .resumed = paused_ || scenario_.lying,
         .dark = moment.dark,
         .hand = depth,
         .hand_velocity = hand.velocity,
@@ -345,6 +347,7 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   result.outcome = surgeon.hand.progress().outcome;
   result.metrics = probe.judge().metrics();
   result.metrics.contact.force_direct = scenario.finger.force;
+  result.metrics.contact.drag_direct = scenario.finger.bump;
   result.ticks = probe.take_ticks();
   result.depths = patient.file.estimates();
   result.map = patient.file.map();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "common/core/time.h"
@@ -30,6 +31,7 @@ struct SiteTexts {
 struct OwnFinger {
   double force{judge::kUndefined};  ///< [N], most that it presses
   double swing{};                   ///< [m], of its own swinging, as judge::SwingFinder has it
+  double bump{judge::kUndefined};   ///< [N], most in a drag, as judge::DragBump has it
 };
 
 /// Everything that decides a run: two runs of equal scenarios give equal bits.
@@ -39,6 +41,7 @@ struct Scenario {
   SiteTexts site_texts{};
   std::uint64_t seed{1};
   coupling::CouplingConfig coupling;
+  std::optional<coupling::OutsideLaw> outside{};  ///< runs in place of what `coupling` names
   link::LinkConfig link;
   surgeon::SurgeonConfig surgeon;
   surgeon::SimulatedHandConfig hand;
@@ -46,9 +49,7 @@ struct Scenario {
   patient::PatientConfig patient;
   patient::SimulatedPhantomConfig tissue;
   patient::Phantom phantom;
-  DeviceTiming hand_timing{};
-  DeviceTiming stage_timing{};
-  DeviceTiming sensor_timing{};
+  DeviceTimings timings{};
   depth::DepthEstimatorConfig estimator;
   netem::Impairment up;    ///< surgeon to patient
   netem::Impairment down;  ///< patient to surgeon

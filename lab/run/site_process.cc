@@ -17,7 +17,18 @@ std::unique_ptr<link::Codec> make_codec(const Scenario& scenario) {
 std::unique_ptr<link::Codec> patient_codec(const Scenario& scenario) {
   auto codec = make_codec(scenario);
   if (!scenario.lying) return codec;
-  return std::make_unique<LyingCodec>(std::move(codec), scenario.seed, scenario.link.period);
+  return std::make_unique<LyingCodec>(
+      std::move(codec), scenario.seed, scenario.link.period, drawn_manner(scenario.seed));
+}
+
+coupling::SurgeonCoupling surgeon_law(const Scenario& scenario) {
+  if (scenario.outside) return scenario.outside->surgeon;
+  return coupling::make_surgeon_coupling(scenario.coupling, hand_facts_of(scenario)).value();
+}
+
+coupling::PatientCoupling patient_law(const Scenario& scenario) {
+  if (scenario.outside) return scenario.outside->patient;
+  return coupling::make_patient_coupling(scenario.coupling, patient_devices_of(scenario)).value();
 }
 
 // Streams of chance.
@@ -33,9 +44,9 @@ HandAtClock::HandAtClock(surgeon::SimulatedHand& hand,
     : hand_{hand},
       facts_{hand_facts_of(scenario)},
       clock_{clock},
-      at_once_{scenario.hand_timing.at_once()},
-      polls_{scenario.hand_timing, scenario.seed, kHandPolls},
-      commands_{scenario.hand_timing.lag} {}
+      at_once_{scenario.timings.hand.at_once()},
+      polls_{scenario.timings.hand, scenario.seed, kHandPolls},
+      commands_{scenario.timings.hand.lag} {}
 
 void HandAtClock::let_go() noexcept {
   asked_ = 0;
@@ -76,12 +87,12 @@ PhantomAtClock::PhantomAtClock(patient::SimulatedPhantom& phantom,
     : phantom_{phantom},
       facts_{patient_devices_of(scenario)},
       clock_{clock},
-      stage_at_once_{scenario.stage_timing.at_once()},
-      stage_polls_{scenario.stage_timing, scenario.seed, kStagePolls},
-      commands_{scenario.stage_timing.lag},
-      sensor_at_once_{scenario.sensor_timing.at_once()},
-      sensor_polls_{scenario.sensor_timing, scenario.seed, kSensorPolls},
-      felt_{scenario.sensor_timing.lag} {}
+      stage_at_once_{scenario.timings.stage.at_once()},
+      stage_polls_{scenario.timings.stage, scenario.seed, kStagePolls},
+      commands_{scenario.timings.stage.lag},
+      sensor_at_once_{scenario.timings.sensor.at_once()},
+      sensor_polls_{scenario.timings.sensor, scenario.seed, kSensorPolls},
+      felt_{scenario.timings.sensor.lag} {}
 
 void PhantomAtClock::obey(const Command& command) noexcept {
   command ? phantom_.move_to(*command) : phantom_.halt();
@@ -141,8 +152,7 @@ std::optional<patient::ForceSample> PhantomAtClock::sample(TimePoint now) noexce
 
 SurgeonProcess::Running::Running(SurgeonProcess& owner)
     : link{owner.scenario_.link, make_codec(owner.scenario_)},
-      law{coupling::make_surgeon_coupling(owner.scenario_.coupling, hand_facts_of(owner.scenario_))
-              .value()},
+      law{surgeon_law(owner.scenario_)},
       node{owner.scenario_.surgeon, {owner.device_, law, link, owner.recorder_}} {}
 
 SurgeonProcess::SurgeonProcess(const Scenario& scenario,
@@ -196,9 +206,7 @@ LinkHealth SurgeonProcess::health(TimePoint now) const noexcept {
 
 PatientProcess::Running::Running(PatientProcess& owner)
     : link{owner.scenario_.link, patient_codec(owner.scenario_)},
-      law{coupling::make_patient_coupling(owner.scenario_.coupling,
-                                          patient_devices_of(owner.scenario_))
-              .value()},
+      law{patient_law(owner.scenario_)},
       node{owner.scenario_.patient,
            {owner.device_,
             owner.device_,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "common/core/random.h"
 
@@ -12,22 +11,38 @@ namespace {
 
 constexpr double kLineReach = 0.6;  // [-], of levels
 
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-double difference(const FeltTrial& felt, const Judgement& judgement) {
-  if (felt.ln_slopes[0].empty() || felt.ln_slopes[1].empty()) {
-    return std::numeric_limits<double>::quiet_NaN();
+/// [-], of a trial; none where an interval told nothing.
+CueBank::Differences differences(const FeltTrial& felt,
+                                 const Task& task,
+                                 const Judgement& judgement,
+                                 std::size_t stronger) {
+  std::vector<double> left;
+  for (const FeltInterval& one : felt.intervals) {
+    const auto impressed = impression(one, judgement);
+    if (!impressed) return {};
+    left.push_back(*impressed);
   }
-  return (mean(felt.ln_slopes[1]) - mean(felt.ln_slopes[0])) / judgement.own_gain;
+  if (task.yes_no) return {left.front() - judgement.plain};
+  CueBank::Differences out;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (i != stronger) out.push_back(left[stronger] - left[i]);
+  }
+  return out;
 }
 
-/// At one of the bank's levels.
-double share_at(const std::vector<double>& differences, double sd) {
-  double sum = 0;
-  for (const double one : differences) sum += std::isnan(one) ? 0.5 : normal_cdf(one / sd);
-  return sum / static_cast<double>(differences.size());
+/// What is told apart of a session.
+double share_of(const CueBank::Differences& session,
+                const Task& task,
+                const Judgement& judgement,
+                double sd) {
+  const double guess = 1.0 / task.intervals;
+  if (session.empty()) return guess;
+  // Without noise the same is the same.
+  if (sd == 0 && session.front() == 0) return task.yes_no ? 0 : guess;
+  if (task.yes_no) return normal_cdf(session.front() / sd - judgement.criterion);
+  std::vector<double> d_primes;
+  for (const double one : session) d_primes.push_back(one / sd);
+  return forced_choice_share(d_primes);
 }
 
 /// The level at which a rising share is `wanted`; infinite beyond the bank.
@@ -51,25 +66,26 @@ double level_of(const CueBank& bank, const Judgement& judgement, int taps, doubl
 
 CueBank bank_of(const FeltSession& session,
                 const Judgement& judgement,
-                bool two_sided,
+                const Task& task,
                 const std::vector<double>& levels,
                 std::size_t count,
                 std::uint64_t seed,
                 const ForEachIndex& for_each_index) {
-  CueBank bank{
-      .levels = levels,
-      .differences = std::vector<std::vector<double>>(levels.size(), std::vector<double>(count))};
+  CueBank bank{.task = task,
+               .levels = levels,
+               .differences = std::vector<std::vector<CueBank::Differences>>(
+                   levels.size(), std::vector<CueBank::Differences>(count))};
+  const auto intervals = static_cast<std::size_t>(task.intervals);
   for_each_index(levels.size() * count, [&](std::size_t i) {
     const std::size_t level = i / count;
     const std::size_t which = i % count;
-    // The stronger one comes second in every other session.
-    const bool second = two_sided || which % 2 == 0;
-    const TrialAsk ask{.level = levels[level], .stronger = second ? 1U : 0U};
+    // The stronger one takes turns.
+    const std::size_t stronger = task.two_sided ? 1 : intervals - 1 - which % intervals;
+    const TrialAsk ask{.level = levels[level], .stronger = stronger};
     const FeltSetting setting = setting_of(
-        ask, two_sided, session.taps(), judgement.depth_sd, random_bits(seed, level, which) >> 16);
-    FeltTrial felt = session.feel(setting);
-    if (two_sided) felt.ln_slopes[0] = session.touch(setting).ln_slopes[0];
-    bank.differences[level][which] = (second ? 1 : -1) * difference(felt, judgement);
+        ask, task, session.taps(), judgement.depth_sd, random_bits(seed, level, which) >> 16);
+    bank.differences[level][which] =
+        differences(feel_trial(session, setting, task), task, judgement, stronger);
   });
   return bank;
 }
@@ -78,22 +94,31 @@ double banked_share(const CueBank& bank,
                     const Judgement& judgement,
                     int taps,
                     double level) noexcept {
-  const double sd = judgement.difference_sd(taps);
+  const double sd = judgement.sd(taps);
+  const auto share_at = [&](std::size_t index) {
+    double sum = 0;
+    for (const CueBank::Differences& one : bank.differences[index]) {
+      sum += share_of(one, bank.task, judgement, sd);
+    }
+    return sum / static_cast<double>(bank.differences[index].size());
+  };
   const auto above = std::ranges::lower_bound(bank.levels, level) - bank.levels.begin();
   const auto last = static_cast<std::ptrdiff_t>(bank.levels.size()) - 1;
   const auto right = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above, 1, last));
   const double from = bank.levels[right - 1];
   const double share = std::clamp((level - from) / (bank.levels[right] - from), 0.0, 1.0);
-  return (1 - share) * share_at(bank.differences[right - 1], sd) +
-         share * share_at(bank.differences[right], sd);
+  return (1 - share) * share_at(right - 1) + share * share_at(right);
 }
 
 Foretold banked(const CueBank& bank, const Judgement& judgement, int taps) {
-  const bool two_sided = bank.levels.front() < 0;
-  const double upper = level_of(bank, judgement, taps, 0.75);
-  if (!two_sided) return {.jnd = upper, .pse = 0};
-  return {.jnd = (upper - level_of(bank, judgement, taps, 0.25)) / 2,
-          .pse = level_of(bank, judgement, taps, 0.5)};
+  const double chance = bank.task.two_sided ? 0.5 : 1.0 / bank.task.intervals;
+  const double upper = level_of(bank, judgement, taps, chance + (1 - chance) / 2);
+  if (!bank.task.two_sided) return {.jnd = upper, .pse = 0};
+  if (std::isinf(upper)) return {.jnd = upper, .pse = std::numeric_limits<double>::quiet_NaN()};
+  const double pse = level_of(bank, judgement, taps, 0.5);
+  // Below what nothing feels like there are no levels.
+  if (bank.task.yes_no) return {.jnd = upper - pse, .pse = pse};
+  return {.jnd = (upper - level_of(bank, judgement, taps, 0.25)) / 2, .pse = pse};
 }
 
 FeltLine line_of(const CueBank& bank) {
@@ -106,14 +131,15 @@ FeltLine line_of(const CueBank& bank) {
   for (std::size_t i = 0; i < bank.levels.size(); ++i) {
     const double level = bank.levels[i];
     if (std::abs(level) > kLineReach) continue;
-    for (const double one : bank.differences[i]) {
-      if (std::isnan(one)) continue;
-      count += 1;
-      x += level;
-      y += one;
-      xx += level * level;
-      xy += level * one;
-      yy += one * one;
+    for (const CueBank::Differences& session : bank.differences[i]) {
+      for (const double one : session) {
+        count += 1;
+        x += level;
+        y += one;
+        xx += level * level;
+        xy += level * one;
+        yy += one * one;
+      }
     }
   }
   const double spread = count * xx - x * x;
@@ -125,18 +151,23 @@ FeltLine line_of(const CueBank& bank) {
           .scatter = std::sqrt(std::max(0.0, left) / std::max(1.0, count - 2))};
 }
 
-Foretold closed_form(const FeltLine& line, const Judgement& judgement, int taps) noexcept {
+Foretold closed_form(const FeltLine& line,
+                     const Task& task,
+                     const Judgement& judgement,
+                     int taps) noexcept {
   if (line.gain <= 0) {
     return {.jnd = std::numeric_limits<double>::infinity(),
             .pse = std::numeric_limits<double>::quiet_NaN()};
   }
-  return {.jnd = judgement.jnd(taps, line.gain, line.scatter), .pse = -line.offset / line.gain};
+  const double from = task.yes_no ? judgement.criterion * judgement.sd(taps) : 0;
+  return {.jnd = judgement.jnd(task, taps, line.gain, line.scatter),
+          .pse = (from - line.offset) / line.gain};
 }
 
 CueBank resampled(const CueBank& bank, std::uint64_t seed, std::uint64_t stream) {
   CueBank out = bank;
   for (std::size_t level = 0; level < bank.levels.size(); ++level) {
-    const std::vector<double>& from = bank.differences[level];
+    const auto& from = bank.differences[level];
     for (std::size_t i = 0; i < from.size(); ++i) {
       out.differences[level][i] =
           from[random_bits(seed, stream, level * from.size() + i) % from.size()];

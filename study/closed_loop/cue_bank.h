@@ -9,24 +9,28 @@
 /// What would be answered, foretold from few sessions: felt slopes, kept for some levels.
 namespace palp::study {
 
-/// Differences of what both intervals felt like [ln, as with the own finger], session by session.
+/// How much stiffer an interval felt than the others [ln, as with the own finger], session by
+/// session: the stronger one than each of the others; bias: the second than the first; yes or no:
+/// the one than plain tissue.
 struct CueBank {
-  std::vector<double> levels{};                    ///< [-], rising
-  std::vector<std::vector<double>> differences{};  ///< [-], of each level, session by session;
-                                                   ///< NaN: an interval told nothing
+  using Differences = std::vector<double>;  ///< [-]; none: an interval told nothing
+
+  Task task{};
+  std::vector<double> levels{};                         ///< [-], rising
+  std::vector<std::vector<Differences>> differences{};  ///< of each level, session by session
 };
 
-/// `levels` of either sign where `two_sided`, as setting_of() has it; `count` sessions each.
+/// `levels` of either sign where the task is bias, as setting_of() has it; `count` sessions each.
 [[nodiscard]] CueBank bank_of(const FeltSession& session,
                               const Judgement& judgement,
-                              bool two_sided,
+                              const Task& task,
                               const std::vector<double>& levels,
                               std::size_t count,
                               std::uint64_t seed,
                               const ForEachIndex& for_each_index);
 
-/// Share [-] of "the second is stiffer" or of right answers, lapses left out, at a level: mean over
-/// the bank's sessions, interpolated between its levels.
+/// Share [-] of "the second is stiffer", of "yes" or of right answers, lapses left out, at a level:
+/// mean over the bank's sessions, interpolated between its levels.
 [[nodiscard]] double banked_share(const CueBank& bank,
                                   const Judgement& judgement,
                                   int taps,
@@ -37,7 +41,7 @@ struct Foretold {
   double jnd{};  ///< [-]; infinite: never told apart
   double pse{};  ///< [-], two-sided; not finite: nothing seems equal
 };
-/// From banked_share(): where a half and three quarters are.
+/// From banked_share(): where a half and three quarters are, or half way from chance to certainty.
 [[nodiscard]] Foretold banked(const CueBank& bank, const Judgement& judgement, int taps);
 
 /// How what is felt follows what is there: felt difference = offset + gain * level, by least
@@ -48,8 +52,9 @@ struct FeltLine {
   double scatter{};  ///< [-], standard deviation about the line, from session to session
 };
 [[nodiscard]] FeltLine line_of(const CueBank& bank);
-/// JND of judgement and scatter together, over gain; -offset / gain.
+/// JND of judgement and scatter together, over gain; criterion less offset, over gain.
 [[nodiscard]] Foretold closed_form(const FeltLine& line,
+                                   const Task& task,
                                    const Judgement& judgement,
                                    int taps) noexcept;
 

@@ -10,101 +10,183 @@
 namespace palp::study {
 namespace {
 
-constexpr double kQuartile = 0.674489750196081743;  // 75 % of the normal distribution lie below
 constexpr double kPerSd = kQuartile * 1.41421356237309505;  // JND over the sd of one judgement
 constexpr double kForceJnd = 0.07;                          // [-]
 constexpr double kPositionJnd = 0.08;                       // [-]
+constexpr double kReadJnd = 0.03;                           // [-], of a bar's length
 constexpr int kTapsOfWeber = 3;
 constexpr double kDepth = 4e-3;     // [m], of a tap
 constexpr double kGainReach = 0.4;  // [-], of ln stiffness, where a gain is measured
 
 // Draws of a trial; those of its session have streams of their own.
-enum : std::uint64_t { kCoin = 2, kLapse, kJudgements, kTaps = 16, kSession = 4096 };
+constexpr std::uint64_t kCoin = 2;
+constexpr std::uint64_t kLapse = 3;
+constexpr std::uint64_t kJudgements = 4;
+constexpr std::uint64_t kSession = 4096;
 constexpr std::uint64_t kDepths = 64;
 constexpr std::uint64_t kTapsMost = 16;  // of an interval
 
-double mean(std::span<const double> values) {
+constexpr std::uint64_t kPlain = 0x706c61696e000000;  // streams apart from those of trials
+constexpr std::uint64_t kPlainTouches = 12;
+
+double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// By which an interval is judged.
+int taps_of(const FeltInterval& felt) noexcept {
+  return static_cast<int>(std::max({std::size_t{1}, felt.ln_slopes.size(), felt.ln_drawn.size()}));
 }
 
 }  // namespace
 
-double Judgement::difference_sd(int taps) const noexcept {
-  return std::sqrt(2 * (tap_sd * tap_sd / taps + judgement_sd * judgement_sd));
+double Judgement::sd(int taps) const noexcept {
+  if (feedback == Feedback::Depth) return 0;
+  const double judged = judgement_sd * judgement_sd;
+  const double common = position_sd * position_sd / taps + (reads_exactly ? 0 : judged);
+  const double felt = force_sd * force_sd / taps + (reads_exactly ? judged : 0);
+  const double drawn = read_sd * read_sd / taps;
+  const double share = drawn_share(taps);
+  return std::sqrt(common + (1 - share) * (1 - share) * felt + share * share * drawn);
 }
 
-double Judgement::jnd(int taps, double gain, double scatter) const noexcept {
-  return kQuartile * std::hypot(difference_sd(taps), scatter) / gain;
+double Judgement::drawn_share(int taps) const noexcept {
+  if (feedback != Feedback::Both) return feedback == Feedback::Drawn ? 1 : 0;
+  // By the variances that the two do not have in common.
+  const double felt =
+      force_sd * force_sd / taps + (reads_exactly ? judgement_sd * judgement_sd : 0);
+  return felt / (felt + read_sd * read_sd / taps);
+}
+
+double Judgement::jnd(const Task& task, int taps, double gain, double scatter) const {
+  if (task.yes_no) return kQuartile * std::hypot(sd(taps), scatter) / gain;
+  return d_prime_at_jnd(task) * std::hypot(sd(taps), scatter / std::sqrt(2.0)) / gain;
 }
 
 Judgement judgement_of(double weber, double lapse, double own_gain) noexcept {
   Judgement out{.lapse = lapse, .own_gain = own_gain};
-  out.tap_sd = std::hypot(kForceJnd, kPositionJnd) / kPerSd;
+  out.force_sd = kForceJnd / kPerSd;
+  out.read_sd = kReadJnd / kPerSd;
+  out.position_sd = kPositionJnd / kPerSd;
   const double all = std::log1p(weber) / kPerSd;
-  const double left = all * all - out.tap_sd * out.tap_sd / kTapsOfWeber;
-  out.judgement_sd = std::sqrt(std::max(0.0, left));
+  const double tap_sd = std::hypot(out.force_sd, out.position_sd);
+  out.judgement_sd = std::sqrt(std::max(0.0, all * all - tap_sd * tap_sd / kTapsOfWeber));
   return out;
 }
 
-bool judge_second(const std::array<std::vector<double>, 2>& ln_slopes,
-                  const Judgement& judgement,
-                  std::uint64_t seed,
-                  std::uint64_t stream) noexcept {
-  const bool coin = random_uniform(seed, stream, kCoin) < 0.5;
-  const bool lapsed = random_uniform(seed, stream, kLapse) < judgement.lapse;
-  if (lapsed || ln_slopes[0].empty() || ln_slopes[1].empty()) return coin;
-  std::array<double, 2> seems{};
-  for (std::size_t interval = 0; interval < 2; ++interval) {
-    double noise = 0;
-    for (std::size_t tap = 0; tap < ln_slopes[interval].size(); ++tap) {
-      noise += judgement.tap_sd * random_normal(seed, stream, kTaps + kTapsMost * interval + tap) /
-               static_cast<double>(ln_slopes[interval].size());
-    }
-    seems[interval] = mean(ln_slopes[interval]) / judgement.own_gain + noise +
-                      judgement.judgement_sd * random_normal(seed, stream, kJudgements + interval);
+Judgement judgement_for(const FeltSession& session, double weber, double lapse) {
+  const std::vector<double> depth(static_cast<std::size_t>(session.taps()), kDepth);
+  const FeltTrial felt =
+      session.touch({.places = {{-kGainReach / 2, depth}, {kGainReach / 2, depth}}});
+  const FeltInterval& soft = felt.intervals[0];
+  const FeltInterval& stiff = felt.intervals[1];
+  Judgement out =
+      judgement_of(weber, lapse, (mean(stiff.ln_slopes) - mean(soft.ln_slopes)) / kGainReach);
+  out.feedback = session.feedback();
+  // A hand that is given no force gives way to none.
+  if (out.feedback == Feedback::Both) {
+    out.drawn_gain = (mean(stiff.ln_drawn) - mean(soft.ln_drawn)) / kGainReach;
   }
-  return seems[1] > seems[0];
+  return out;
 }
 
-double own_gain(const FeltSession& session) {
-  FeltSetting setting;
-  for (auto& depth : setting.depth) {
-    depth.assign(static_cast<std::size_t>(session.taps()), kDepth);
+std::optional<double> impression(const FeltInterval& felt, const Judgement& judgement) noexcept {
+  if (judgement.feedback == Feedback::Depth) {
+    return felt.ball_depth ? -*felt.ball_depth : kNoBall;
   }
-  setting.ln_stiffness = {-kGainReach / 2, kGainReach / 2};
-  const FeltTrial felt = session.touch(setting);
-  return (mean(felt.ln_slopes[1]) - mean(felt.ln_slopes[0])) / kGainReach;
+  std::optional<double> by_hand;
+  std::optional<double> by_eye;
+  if (!felt.ln_slopes.empty()) by_hand = mean(felt.ln_slopes) / judgement.own_gain;
+  if (!felt.ln_drawn.empty()) by_eye = mean(felt.ln_drawn) / judgement.drawn_gain;
+  const double share = judgement.drawn_share(taps_of(felt));
+  if (by_hand && by_eye) return std::lerp(*by_hand, *by_eye, share);
+  if (by_hand && share < 1) return by_hand;
+  return share > 0 ? by_eye : std::nullopt;
+}
+
+std::size_t chosen(const std::vector<FeltInterval>& felt,
+                   const Task& task,
+                   const Judgement& judgement,
+                   std::uint64_t seed,
+                   std::uint64_t stream) noexcept {
+  const auto choices = static_cast<std::size_t>(task.intervals);
+  const double coin = random_uniform(seed, stream, kCoin) * static_cast<double>(choices);
+  const std::size_t guess = choices - 1 - static_cast<std::size_t>(coin);
+  if (random_uniform(seed, stream, kLapse) < judgement.lapse) return guess;
+  std::vector<double> seems;
+  for (const FeltInterval& one : felt) {
+    const std::optional<double> left = impression(one, judgement);
+    if (!left) return guess;
+    const double noise = random_normal(seed, stream, kJudgements + seems.size());
+    seems.push_back(*left + judgement.sd(taps_of(one)) * noise);
+  }
+  if (task.yes_no) {
+    const double from = judgement.criterion * judgement.sd(taps_of(felt.front()));
+    return seems.front() > judgement.plain + from ? 1 : 0;
+  }
+  const auto most = std::ranges::max_element(seems);
+  return std::ranges::count(seems, *most) > 1 ? guess
+                                              : static_cast<std::size_t>(most - seems.begin());
 }
 
 FeltSetting setting_of(
-    const TrialAsk& ask, bool two_sided, int taps, double depth_sd, std::uint64_t seed) {
+    const TrialAsk& ask, const Task& task, int taps, double depth_sd, std::uint64_t seed) {
   FeltSetting setting{.seed = seed};
-  const std::size_t stronger = two_sided ? 1 : ask.stronger;
-  setting.ln_stiffness[stronger] = ask.level;
-  for (std::size_t interval = 0; interval < 2; ++interval) {
+  setting.places.resize(task.yes_no ? 1 : static_cast<std::size_t>(task.intervals));
+  const std::size_t stronger = task.two_sided ? setting.places.size() - 1 : ask.stronger;
+  setting.places[stronger].ln_stiffness = ask.level;
+  for (std::size_t interval = 0; interval < setting.places.size(); ++interval) {
     for (int tap = 0; tap < taps; ++tap) {
       const std::uint64_t index = kTapsMost * interval + static_cast<std::uint64_t>(tap);
       const double noise = std::clamp(depth_sd * random_normal(seed, kDepths, index), -0.3, 0.3);
-      setting.depth[interval].push_back(kDepth * (1 + noise));
+      setting.places[interval].depth.push_back(kDepth * (1 + noise));
     }
   }
   return setting;
 }
 
+FeltTrial feel_trial(const FeltSession& session, const FeltSetting& setting, const Task& task) {
+  FeltTrial felt = session.feel(setting);
+  const bool bias = task.two_sided && !task.yes_no;
+  if (bias) felt.intervals.front() = session.touch(setting).intervals.front();
+  return felt;
+}
+
+double felt_plain(const FeltSession& session, const Judgement& judgement, std::uint64_t seed) {
+  const Task task{.two_sided = true, .yes_no = true};
+  if (judgement.feedback == Feedback::Depth) return kNoBall;
+  double sum = 0;
+  double count = 0;
+  for (std::uint64_t i = 0; i < kPlainTouches; ++i) {
+    const FeltTrial felt = session.feel(setting_of({.level = 0},
+                                                   task,
+                                                   session.taps(),
+                                                   judgement.depth_sd,
+                                                   random_bits(seed, kPlain, i) >> 16));
+    const auto left = impression(felt.intervals.front(), judgement);
+    sum += left.value_or(0);
+    count += left ? 1 : 0;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
 FeltParticipants::FeltParticipants(const Study& study,
                                    const PeopleTraits& people,
                                    std::vector<FeltSession> sessions)
-    : seed_{study.seed},
-      two_sided_{study.task.two_sided},
-      people_{people},
-      sessions_{std::move(sessions)},
-      own_gain_{own_gain(sessions_.front())} {}
+    : seed_{study.seed}, task_{study.task}, people_{people}, sessions_{std::move(sessions)} {
+  for (const FeltSession& session : sessions_) {
+    judgements_.push_back(judgement_for(session, people.weber, people.lapse));
+    Judgement& judgement = judgements_.back();
+    judgement.plain = task_.yes_no ? felt_plain(session, judgement, seed_) : 0;
+  }
+}
 
 Result<FeltParticipants> FeltParticipants::make(const Study& study, const PeopleTraits& people) {
-  if (study.task.intervals != 2) return fail("a felt trial has 2 places, intervals is not 2");
+  const auto curves = LevelCurves::make(study);
+  if (!curves) return tl::unexpected(curves.error());
   std::vector<FeltSession> sessions;
   for (const Condition& condition : study.conditions) {
-    auto session = FeltSession::make(condition);
+    auto session = FeltSession::make(condition, *curves);
     if (!session) return tl::unexpected(session.error());
     sessions.push_back(std::move(*session));
   }
@@ -115,13 +197,14 @@ TrialOutcome FeltParticipants::answer(const TrialPlace& place, const TrialAsk& a
   const FeltSession& session = sessions_[place.condition];
   const std::uint64_t stream = trial_stream(place, ask.number);
   const double weber = std::expm1(std::exp(drawn_ln_jnd(people_, seed_, place.participant)));
-  const Judgement judgement = judgement_of(weber, people_.lapse, own_gain_);
+  Judgement judgement = judgements_[place.condition];
+  judgement.judgement_sd = judgement_of(weber, people_.lapse, 1).judgement_sd;
+  judgement.criterion = drawn_criterion(seed_, place.participant);
   const std::uint64_t seed = random_bits(seed_, stream, kSession) >> 16;
-  const FeltSetting setting = setting_of(ask, two_sided_, session.taps(), judgement.depth_sd, seed);
-  FeltTrial felt = session.feel(setting);
-  if (two_sided_) felt.ln_slopes[0] = session.touch(setting).ln_slopes[0];
+  const FeltSetting setting = setting_of(ask, task_, session.taps(), judgement.depth_sd, seed);
+  const FeltTrial felt = feel_trial(session, setting, task_);
   const double response = drawn_response_time(seed_, place, ask.number);
-  return {.chosen = judge_second(felt.ln_slopes, judgement, seed_, stream) ? 1U : 0U,
+  return {.chosen = chosen(felt.intervals, task_, judgement, seed_, stream),
           .onset = 0,
           .duration = felt.duration + response,
           .response_time = response,

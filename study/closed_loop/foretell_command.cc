@@ -7,6 +7,8 @@
 
 #include "common/config/json.h"
 #include "common/config/report.h"
+#include "common/core/conventions.h"
+#include "common/core/formatted.h"
 #include "common/core/random.h"
 #include "common/core/whole_file.h"
 #include "study/simulated_observer.h"
@@ -21,10 +23,13 @@ using config::Json;
 constexpr std::size_t kResamples = 200;
 constexpr double kLapseRate = 0.02;  // [-]
 constexpr std::uint64_t kBankStream = 0x62616e6b;
+constexpr std::uint64_t kPlainStream = 0x706c6e;
 constexpr double kStandard = 1.96;  // [-], standard deviations of a 95 % interval
 constexpr double kAllowed = 2.58;   // [-], likewise of 99 %
 
 std::vector<double> bank_levels(const Study& study) {
+  if (study.ball) return study.levels;  // each has a tissue of its own
+  if (study.task.yes_no) return {0, 0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.9, 1.2};
   if (study.task.two_sided) {
     return {-1.2, -0.9, -0.6, -0.4, -0.2, 0, 0.2, 0.4, 0.6, 0.9, 1.2};
   }
@@ -48,7 +53,8 @@ void foretell_from(const CueBank& bank,
   std::array<std::vector<double>, 4> resamples;
   const auto all = [&](const CueBank& one) {
     const Foretold by_bank = banked(one, judgement, taps);
-    const Foretold by_form = closed_form(line_of(one), judgement, taps);
+    const FeltLine line = judgement.feedback == Feedback::Depth ? FeltLine{} : line_of(one);
+    const Foretold by_form = closed_form(line, one.task, judgement, taps);
     return std::array{by_bank.jnd, by_form.jnd, by_bank.pse, by_form.pse};
   };
   for (std::size_t i = 0; i < kResamples; ++i) {
@@ -56,7 +62,10 @@ void foretell_from(const CueBank& bank,
     for (std::size_t k = 0; k < values.size(); ++k) resamples[k].push_back(values[k]);
   }
   const auto values = all(bank);
-  row.line = line_of(bank);
+  if (judgement.feedback != Feedback::Depth) row.line = line_of(bank);
+  for (const double level : bank.levels) {
+    row.banked_shares.push_back({level, banked_share(bank, judgement, taps, level)});
+  }
   row.banked_jnd = estimate_of(values[0], resamples[0]);
   row.closed_jnd = estimate_of(values[1], resamples[1]);
   row.banked_pse = estimate_of(values[2], resamples[2]);
@@ -71,24 +80,25 @@ std::vector<Answers> feel_track(const Study& study,
                                 const TrialPlace& place) {
   Method method = study.method;
   method.stop = {.trials_min = study.trials, .trials_max = study.trials};
+  if (study.task.yes_no) method.constant_from = 1;
   Track track{table, method, study.seed, trial_stream(place, 0)};
   std::vector<Answers> out;
-  while (!track.done()) {
-    const std::size_t level = track.next();
-    const std::uint64_t stream = trial_stream(place, track.trials());
-    const TrialAsk ask{.level = table.levels()[level],
-                       .stronger = random_bits(study.seed, stream, 1) & 1};
-    const bool two_sided = study.task.two_sided;
+  for (std::size_t trial = 0; trial < study.trials; ++trial) {
+    const std::uint64_t stream = trial_stream(place, trial);
+    const std::size_t stronger =
+        random_bits(study.seed, stream, 1) % static_cast<std::uint64_t>(study.task.intervals);
+    const bool nothing = study.task.yes_no && stronger == 0;
+    const std::size_t level = nothing ? 0 : track.next();
+    const TrialAsk ask{.level = table.levels()[level], .stronger = stronger};
     const FeltSetting setting = setting_of(ask,
-                                           two_sided,
+                                           study.task,
                                            session.taps(),
                                            judgement.depth_sd,
                                            random_bits(study.seed, stream, 0) >> 16);
-    FeltTrial felt = session.feel(setting);
-    if (two_sided) felt.ln_slopes[0] = session.touch(setting).ln_slopes[0];
-    const bool second = judge_second(felt.ln_slopes, judgement, study.seed, stream);
-    const bool yes = two_sided ? second : second == (ask.stronger == 1);
-    track.told(level, yes);
+    const FeltTrial felt = feel_trial(session, setting, study.task);
+    const std::size_t answer = chosen(felt.intervals, study.task, judgement, study.seed, stream);
+    const bool yes = answer == (study.task.two_sided ? 1 : stronger);
+    if (!nothing) track.told(level, yes);
     out.push_back({ask.level, yes ? std::size_t{1} : 0, 1});
   }
   return out;
@@ -96,6 +106,22 @@ std::vector<Answers> feel_track(const Study& study,
 
 Estimate exponential(const Marginal& ln) {
   return {std::exp(ln.median), std::exp(ln.low), std::exp(ln.high)};
+}
+
+/// Share of "yes" at the levels that were asked, by the bank.
+double foretold_share(const CueBank& bank,
+                      const Judgement& judgement,
+                      int taps,
+                      const std::vector<Answers>& asked) {
+  double sum = 0;
+  double count = 0;
+  for (const Answers& one : asked) {
+    const auto trials = static_cast<double>(one.trials);
+    const double share = banked_share(bank, judgement, taps, one.level);
+    sum += trials * (kLapseRate / bank.task.intervals + (1 - kLapseRate) * share);
+    count += trials;
+  }
+  return sum / count;
 }
 
 void show_whole(const Study& study,
@@ -106,25 +132,29 @@ void show_whole(const Study& study,
                 ForetoldRow& row) {
   const AnswerTable table{study.task, {}, {.jnd_max = 4, .jnd_count = 241}, study.levels};
   AnswerPosterior posterior{table};
-  double expected = 0;
-  double variance = 0;
+  std::vector<Answers> asked;
+  for (const double level : table.levels()) asked.push_back({.level = level});
   double yes = 0;
   for (const auto& of : answers) {
     for (const Answers& one : of) {
-      posterior.told(table.nearest(one.level), one.yes > 0);
-      const double share =
-          kLapseRate / 2 +
-          (1 - kLapseRate) * banked_share(bank, judgement, session.taps(), one.level);
-      expected += share;
-      variance += share * (1 - share);
+      const std::size_t level = table.nearest(one.level);
+      posterior.told(level, one.yes > 0);
+      ++asked[level].trials;
       yes += static_cast<double>(one.yes);
       ++row.trials;
     }
   }
   const auto n = static_cast<double>(row.trials);
   row.yes = yes / n;
-  row.yes_foretold = expected / n;
-  row.yes_sd = std::sqrt(variance) / n;
+  row.yes_foretold = foretold_share(bank, judgement, session.judged(), asked);
+  // Chance in the answers, and in the sessions from which was foretold.
+  double variance = row.yes_foretold * (1 - row.yes_foretold) / n;
+  for (std::size_t i = 0; i < kResamples; ++i) {
+    const CueBank one = resampled(bank, study.seed, kBankStream + 1 + i);
+    const double off = foretold_share(one, judgement, session.judged(), asked) - row.yes_foretold;
+    variance += off * off / kResamples;
+  }
+  row.yes_sd = std::sqrt(variance);
   row.whole_jnd = exponential(posterior.ln_jnd());
   const Marginal pse = posterior.pse();
   row.whole_pse = {pse.median, pse.low, pse.high};
@@ -163,6 +193,7 @@ std::string row_text(const ForetoldRow& row, bool two_sided) {
                 shown(row.banked_jnd).c_str(),
                 row.trials > 0 ? shown(row.whole_jnd).c_str() : "");
   std::string text{line.data()};
+  if (row.depth) text += formatted("  %4.1f mm", *row.depth / kMillimetre);
   if (two_sided) {
     text += " |" + shown(row.closed_pse) + shown(row.banked_pse) +
             (row.trials > 0 ? shown(row.whole_pse) : "");
@@ -187,18 +218,23 @@ Json row_json(const ForetoldRow& row, bool two_sided) {
            {"scatter", row.line.scatter},
            {"closed_jnd_ln", estimate_json(row.closed_jnd)},
            {"banked_jnd_ln", estimate_json(row.banked_jnd)}};
+  out["banked_shares"] = Json::array();
+  for (const Answered& one : row.banked_shares) {
+    out["banked_shares"].push_back(Json{{"level_ln", one.level}, {"share", one.share}});
+  }
+  if (row.depth) out["banked_depth_mm"] = *row.depth / kMillimetre;
   if (two_sided) {
     out["closed_pse_ln"] = estimate_json(row.closed_pse);
     out["banked_pse_ln"] = estimate_json(row.banked_pse);
   }
   if (row.trials > 0) {
-    out["trials"] = Json{row.trials};
+    out["trials"] = row.trials;
     out["whole_jnd_ln"] = estimate_json(row.whole_jnd);
     if (two_sided) out["whole_pse_ln"] = estimate_json(row.whole_pse);
-    out["yes_share"] = Json{row.yes};
-    out["yes_foretold_share"] = Json{row.yes_foretold};
-    out["yes_sd"] = Json{row.yes_sd};
-    out["holds"] = Json{row.holds(two_sided)};
+    out["yes_share"] = row.yes;
+    out["yes_foretold_share"] = row.yes_foretold;
+    out["yes_sd"] = row.yes_sd;
+    out["holds"] = row.holds(two_sided);
   }
   return out;
 }
@@ -207,6 +243,7 @@ Json row_json(const ForetoldRow& row, bool two_sided) {
 
 bool ForetoldRow::holds(bool two_sided) const noexcept {
   if (std::abs(yes - yes_foretold) > kAllowed * yes_sd) return false;
+  if (told) return true;
   if (std::isfinite(banked_jnd.high)) {
     const Estimate seen = logarithm(whole_jnd);
     if (!agree(seen, logarithm(banked_jnd)) || !agree(seen, logarithm(closed_jnd))) return false;
@@ -219,18 +256,28 @@ Result<ForetoldRow> foretell(const Study& study,
                              std::size_t condition,
                              const ForetellFlags& flags,
                              const ForEachIndex& for_each_index) {
-  auto session = FeltSession::make(study.conditions[condition]);
+  const auto curves = LevelCurves::make(study);
+  if (!curves) return tl::unexpected(curves.error());
+  auto session = FeltSession::make(study.conditions[condition], *curves);
   if (!session) return tl::unexpected(session.error());
-  const Judgement judgement = judgement_of(flags.weber, kLapseRate, own_gain(*session));
-  ForetoldRow row{.condition = study.conditions[condition].name};
+  Judgement judgement = judgement_for(*session, flags.weber, kLapseRate);
+  judgement.reads_exactly = flags.reads_exactly;
+  if (study.task.yes_no) {
+    judgement.plain =
+        felt_plain(*session, judgement, random_bits(study.seed, kPlainStream, condition));
+    judgement.criterion = kCriterion;
+  }
+  ForetoldRow row{.condition = study.conditions[condition].name,
+                  .told = session->feedback() == Feedback::Depth};
   const CueBank bank = bank_of(*session,
                                judgement,
-                               study.task.two_sided,
+                               study.task,
                                bank_levels(study),
                                flags.sessions,
                                random_bits(study.seed, kBankStream, condition),
                                for_each_index);
-  foretell_from(bank, judgement, session->taps(), study.seed, row);
+  foretell_from(bank, judgement, session->judged(), study.seed, row);
+  row.depth = depth_found(study, row.banked_jnd.value);
   const AnswerTable table = table_of(study);
   std::vector<std::vector<Answers>> answers(flags.observers);
   for_each_index(answers.size(), [&](std::size_t i) {
@@ -255,12 +302,17 @@ void declare_foretell(config::CommandLine& line, ForetellFlags& flags) {
              flags.observers,
              {.min = 0, .max = 1000},
              "who feel each trial of a condition as a session of its own; 0: the forecast alone");
+  line.toggle("--reads-exactly",
+              flags.reads_exactly,
+              "a force that is drawn is judged with the noise of reading it, and of the own place, "
+              "alone");
   line.report(flags.report, "palp.study_forecast/1");
   line.footer(
       "JND and PSE of each condition as logarithms with 95 % intervals: from how felt stiffness\n"
       "follows true stiffness (closed form), from some felt sessions (bank), and as observers "
       "show\n"
-      "them in whole sessions. Exit code 1: what they show is not what was foretold.");
+      "them in whole sessions; with balls, down to which depth one is found. Exit code 1: what "
+      "they show is not what was foretold.");
 }
 
 ExitStatus run_foretell(const ForetellFlags& flags, const ForEachIndex& for_each_index) {
@@ -273,6 +325,7 @@ ExitStatus run_foretell(const ForetellFlags& flags, const ForEachIndex& for_each
       "condition               gain offset  JND, closed form     JND, bank            JND, "
       "sessions";
   if (two_sided) text += "        | PSE, closed form   PSE, bank            PSE, sessions";
+  if (!study->depths.empty()) text += "        found";
   text += "       yes %  foretold\n";
   Json report{{"schema", "palp.study_forecast/1"},
               {"study", study->name},

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "common/config/command_line.h"
 #include "study/closed_loop/cue_bank.h"
@@ -12,8 +14,9 @@ namespace palp::study {
 struct ForetellFlags {
   std::string file{};
   double weber{0.15};          ///< [-]
-  std::uint64_t sessions{12};  ///< of each level of the bank
+  std::uint64_t sessions{24};  ///< of each level of the bank
   std::uint64_t observers{6};  ///< 0: the forecast alone
+  bool reads_exactly{};        ///< as Judgement has it
   std::string report{};
 };
 
@@ -29,20 +32,30 @@ struct Estimate {
   double high{};   ///< [-]
 };
 
+/// A level, and how often it is right, or "the second", or "yes", by the bank, without lapses.
+struct Answered {
+  double level{};  ///< [-]
+  double share{};  ///< [-]
+};
+
 /// What observers of a condition are foretold, and what they show.
 struct ForetoldRow {
   std::string condition{};
+  bool told{};  ///< by the estimator: it has no line, and no JND by a curve of noise
   FeltLine line{};
+  std::vector<Answered> banked_shares{};
   Estimate banked_jnd{};
   Estimate closed_jnd{};
   Estimate banked_pse{};
   Estimate closed_pse{};
   Estimate whole_jnd{};
   Estimate whole_pse{};
+  /// [m], tasks of detection: where a ball is found, by the bank; nothing: beyond the study's.
+  std::optional<double> depth{};
   std::size_t trials{};   ///< in whole sessions; 0: none
   double yes{};           ///< [-], share of right answers, or of "the second"
   double yes_foretold{};  ///< [-], at the same levels, by the bank
-  double yes_sd{};        ///< [-], of the share
+  double yes_sd{};        ///< [-], of their difference, by chance in the sessions of both
 
   /// By 2.58 standard deviations (1 % on chance's account): the answers are as often right as
   /// foretold; where a JND was foretold, it is that one, by the bank and by the closed form, and

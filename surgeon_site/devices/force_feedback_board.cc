@@ -16,6 +16,7 @@ constexpr int kBoardInterface = 2;
 // Reports by id; lengths with it.
 constexpr std::uint8_t kAxesReport = 0x01;
 constexpr std::uint8_t kStateReport = 0x02;
+constexpr std::size_t kButtonBytes = 8;
 constexpr std::size_t kAxesBytes = 25;  // with axes of 16 bits
 constexpr std::size_t kAxisAt = 9;
 constexpr std::size_t kAxesMost = 8;
@@ -180,6 +181,7 @@ Taken ForceFeedbackBoard::take(std::span<const std::uint8_t> report,
   if (wide) sample.position /= 65'536;
   const auto button = static_cast<std::size_t>(pedal_button_);
   sample.pedal_held = ((report[1 + button / 8] >> (button % 8)) & 1U) != 0;
+  sample.answers_held = answers_.held(report.subspan(1, kButtonBytes));
   return Taken::Reading;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "surgeon_site/devices/answer_buttons.h"
 #include "surgeon_site/devices/master_protocol.h"
 
 namespace palp::surgeon {
@@ -10,8 +11,9 @@ namespace palp::surgeon {
 /// motor. A still handle reports 10 times a second. Thread: its device's.
 class ForceFeedbackBoard final : public MasterProtocol {
  public:
-  /// `pedal_button`: 0 to 63, of its buttons.
-  explicit ForceFeedbackBoard(int pedal_button) noexcept : pedal_button_{pedal_button} {}
+  /// `pedal_button`: 0 to 63, of its buttons; `answers` likewise.
+  explicit ForceFeedbackBoard(int pedal_button, AnswerButtons answers = AnswerButtons{}) noexcept
+      : pedal_button_{pedal_button}, answers_{std::move(answers)} {}
   [[nodiscard]] static io::HidAddress address();
 
   void begin(bool asked) noexcept override;
@@ -27,6 +29,7 @@ class ForceFeedbackBoard final : public MasterProtocol {
   [[nodiscard]] io::PortFault start_effect(io::ReportPort& port, TimePoint now);
 
   int pedal_button_;
+  AnswerButtons answers_;
   Step step_{};
   std::uint8_t block_{};
   int resets_{};  ///< in this start, of a full pool

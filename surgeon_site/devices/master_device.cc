@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -128,7 +129,17 @@ void MasterDevice::drain(const Clock& clock) {
   if (good > 0 || position_known_ || whole) adopt(now);
 }
 
+/// A press counts, not how long it lasts.
+void MasterDevice::hear_answers() noexcept {
+  const unsigned before = std::exchange(answers_held_, sample_.answers_held);
+  const unsigned pressed = sample_.answers_held & ~before;
+  if (pressed == 0) return;
+  now_.answer = static_cast<std::uint32_t>(std::countr_zero(pressed)) + 1;
+  ++now_.answers;
+}
+
 void MasterDevice::adopt(TimePoint now) {
+  hear_answers();
   now_.pedal_held = sample_.pedal_held;
   now_.emergency_stop = sample_.emergency_stop;
   now_.place = sample_.place;

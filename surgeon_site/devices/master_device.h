@@ -53,6 +53,8 @@ struct MasterReading {
   double force{};  ///< [N], sent
   bool pedal_held{};
   bool emergency_stop{};
+  std::uint32_t answers{};  ///< times that a button of an answer was pressed
+  std::uint32_t answer{};   ///< the last of them, from 1
 };
 
 struct MasterCommand {
@@ -80,6 +82,7 @@ class MasterDevice {
   void enter_start() noexcept;
   void drain(const Clock& clock);
   void adopt(TimePoint now);
+  void hear_answers() noexcept;
   void derive_velocity(double way, double span) noexcept;
   void proceed(TimePoint now);
   void send(const MasterCommand& command, TimePoint now);
@@ -98,7 +101,8 @@ class MasterDevice {
   TimePoint stepped_at_{};  ///< of the velocity
   TimePoint started_at_{};  ///< end of the protocol's start
   JumpAllowance jumps_;
-  bool asked_{true};  ///< this start, by a person
+  std::uint8_t answers_held_{};  ///< as at the look before
+  bool asked_{true};             ///< this start, by a person
   bool tried_{};
   bool start_done_{};
   bool position_known_{};  ///< since the start

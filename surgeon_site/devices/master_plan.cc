@@ -34,13 +34,14 @@ std::vector<io::HidAddress> addresses_of(MasterKind kind) {
 
 std::unique_ptr<MasterProtocol> make_protocol(const MasterPlan& plan) {
   if (plan.product->kind == MasterKind::Board) {
-    return std::make_unique<ForceFeedbackBoard>(plan.pedal_button);
+    return std::make_unique<ForceFeedbackBoard>(plan.pedal_button, plan.answer_buttons);
   }
   if (plan.product->kind == MasterKind::Paddle) return std::make_unique<Paddle>();
   if (plan.product->kind == MasterKind::ShaftMotor) {
-    return std::make_unique<ShaftMotor>(plan.installation.force_max, plan.pedal_bit);
+    return std::make_unique<ShaftMotor>(
+        plan.installation.force_max, plan.pedal_bit, plan.answer_buttons);
   }
-  return std::make_unique<SpaceMouse>(plan.rates);
+  return std::make_unique<SpaceMouse>(plan.rates, plan.answer_buttons);
 }
 
 std::unique_ptr<io::ReportPort> make_port(const MasterPlan& plan) {

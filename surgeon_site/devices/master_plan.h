@@ -8,6 +8,7 @@
 #include "common/core/device_facts.h"
 #include "common/io/device/modbus_port.h"
 #include "common/io/device/report_port.h"
+#include "surgeon_site/devices/answer_buttons.h"
 #include "surgeon_site/devices/master_device.h"
 #include "surgeon_site/devices/shaft_motor.h"
 #include "surgeon_site/devices/space_mouse.h"
@@ -35,6 +36,7 @@ struct MasterPlan {
   HandFacts facts;
   SpaceMouse::Rates rates;  ///< of one that has no force
   int pedal_button{};
+  AnswerButtons answer_buttons;
   std::string serial;      ///< empty: whichever is there
   io::ModbusAddress line;  ///< of one that is no device on USB
   io::HidAddress pedal;    ///< of one without buttons; some device's

@@ -31,6 +31,12 @@ std::optional<std::string> MasterRig::hopeless(Duration waited) {
   return std::nullopt;
 }
 
+std::optional<std::uint32_t> MasterRig::take_answer() {
+  const MasterReading& reading = thread_.status();
+  if (std::exchange(answers_, reading.answers) == reading.answers) return std::nullopt;
+  return reading.answer;
+}
+
 std::optional<MasterNews> MasterRig::news() {
   const MasterReading& reading = thread_.status();
   const bool same_state = std::exchange(state_, reading.state) == reading.state;

@@ -27,6 +27,8 @@ class MasterRig {
   [[nodiscard]] std::optional<std::string> hopeless(Duration waited);
   /// Where it changed its state since the last call.
   [[nodiscard]] std::optional<MasterNews> news();
+  /// The answer, from 1, whose button was pressed since the last call: the last one.
+  [[nodiscard]] std::optional<std::uint32_t> take_answer();
   /// Out of a fault, from the beginning of its start.
   void restart() noexcept { thread_.restart(); }
   [[nodiscard]] HapticDevice& device() noexcept { return device_; }
@@ -37,8 +39,9 @@ class MasterRig {
   std::string product_;
   MasterThread thread_;
   HidMaster device_;
-  MasterState state_{};   ///< as told last
-  std::string_view why_;  ///< as told last
+  MasterState state_{};      ///< as told last
+  std::string_view why_;     ///< as told last
+  std::uint32_t answers_{};  ///< as taken last
 };
 
 }  // namespace palp::surgeon

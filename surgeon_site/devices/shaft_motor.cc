@@ -145,6 +145,7 @@ Taken ShaftMotor::take(std::span<const std::uint8_t> report,
   if (report[0] == RegisterReports::kPedal) {
     if (report.size() <= 1 + pedal_.byte) return Taken::Unknown;
     sample.pedal_held = (report[1 + pedal_.byte] & pedal_.mask) != 0;
+    sample.answers_held = answers_.held(report.subspan(1));
     return Taken::Aside;
   }
   if (report.size() < 5) return Taken::Unknown;

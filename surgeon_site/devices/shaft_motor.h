@@ -4,6 +4,7 @@
 #include <initializer_list>
 
 #include "common/io/device/modbus_port.h"
+#include "surgeon_site/devices/answer_buttons.h"
 #include "surgeon_site/devices/master_protocol.h"
 
 namespace palp::surgeon {
@@ -26,9 +27,9 @@ class ShaftMotor final : public MasterProtocol {
     std::size_t byte{};
     std::uint8_t mask{1};
   };
-  /// `force_max` [N], above 0.
-  ShaftMotor(double force_max, const Pedal& pedal) noexcept
-      : force_max_{force_max}, pedal_{pedal} {}
+  /// `force_max` [N], above 0. `answers`: bits of the pedal's report, from its byte 0 on.
+  ShaftMotor(double force_max, const Pedal& pedal, AnswerButtons answers = AnswerButtons{}) noexcept
+      : force_max_{force_max}, pedal_{pedal}, answers_{std::move(answers)} {}
 
   void begin(bool asked) noexcept override;
   StartOutcome start(io::ReportPort& port, TimePoint now, std::string_view& why) override;
@@ -45,6 +46,7 @@ class ShaftMotor final : public MasterProtocol {
 
   double force_max_;  ///< [N]
   Pedal pedal_;
+  AnswerButtons answers_;
   Step step_{};
   bool asked_{};
   bool errors_known_{};

@@ -46,6 +46,7 @@ void SpaceMouse::begin(bool /*asked*/) noexcept {
   position_ = rates_.begin;
   place_ = {};
   pedal_held_ = stepped_ = false;
+  answers_held_ = 0;
 }
 
 StartOutcome SpaceMouse::start(io::ReportPort& /*port*/,
@@ -71,6 +72,7 @@ Taken SpaceMouse::take(std::span<const std::uint8_t> report,
   if (report[0] != 3 || report.size() < 3) return Taken::Unknown;
   const unsigned buttons = report[1] | (static_cast<unsigned>(report[2]) << 8U);
   pedal_held_ = ((buttons >> static_cast<unsigned>(rates_.pedal_button)) & 1U) != 0;
+  answers_held_ = answers_.held(report.subspan(1, 2));
   return Taken::Reading;
 }
 
@@ -91,6 +93,7 @@ bool SpaceMouse::advance(TimePoint now, MasterSample& sample) {
   sample.velocity = speed;
   sample.velocity_known = true;
   sample.pedal_held = pedal_held_;
+  sample.answers_held = answers_held_;
   return true;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "surgeon_site/devices/answer_buttons.h"
 #include "surgeon_site/devices/master_protocol.h"
 
 namespace palp::surgeon {
@@ -21,7 +22,9 @@ class SpaceMouse final : public MasterProtocol {
     int pedal_button{};            ///< 0 to 15
   };
   static constexpr double kPositionUnit = 1;  ///< [m]
-  explicit SpaceMouse(const Rates& rates) noexcept : rates_{rates} {}
+  /// `answers`: 0 to 15, of its buttons.
+  explicit SpaceMouse(const Rates& rates, AnswerButtons answers = AnswerButtons{}) noexcept
+      : rates_{rates}, answers_{std::move(answers)} {}
   /// Of all models that are known, in the order of their worth.
   [[nodiscard]] static std::array<io::HidAddress, 8> addresses();
 
@@ -34,10 +37,12 @@ class SpaceMouse final : public MasterProtocol {
 
  private:
   Rates rates_;
+  AnswerButtons answers_;
   std::array<double, 3> deflection_{};  ///< [-], -1 to 1, x, y and z of the cap
   double position_{};                   ///< [m]
   Place place_{};
   bool pedal_held_{};
+  std::uint8_t answers_held_{};  ///< as in MasterSample
   bool stepped_{};
   TimePoint heard_at_{};
   TimePoint stepped_at_{};

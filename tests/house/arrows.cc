@@ -11,7 +11,7 @@ namespace palp::house {
 namespace {
 
 /// Rooms, the longer name first where one lies in another.
-constexpr std::array<std::string_view, 38> kRooms{"common/core",
+constexpr std::array<std::string_view, 39> kRooms{"common/core",
                                                   "common/message",
                                                   "common/coupling",
                                                   "common/link",
@@ -46,6 +46,7 @@ constexpr std::array<std::string_view, 38> kRooms{"common/core",
                                                   "lab",
                                                   "review",
                                                   "study/closed_loop",
+                                                  "study/real_sites",
                                                   "study",
                                                   "proto",
                                                   "tests"};
@@ -129,6 +130,10 @@ const std::vector<Arrow>& arrows() {
        {"surgeon_site/devices", "common/config", "common/io/*", "site_program"}},
       {"surgeon_site/master_check.*", {"surgeon_site/devices", "common/io/device", "site_program"}},
       {"surgeon_site/session_end.*", {"common/config", "common/record", "site_program"}},
+      // What a study and its participant's page say to each other.
+      {"surgeon_site/study_port.*",
+       {"common/config", "common/io/process", "common/record", "monitor", "site_program"}},
+      {"surgeon_site/hand_plan.*", {"surgeon_site/devices", "common/settings"}},
       {"surgeon_site/settings_devices.*",
        {"surgeon_site/devices", "common/io/device", "common/config", "common/settings"}},
       {"surgeon_site/settings.*",
@@ -229,6 +234,7 @@ const std::vector<Arrow>& arrows() {
       // Experiments with observers: no clock; files in commands, the journal and the data set only.
       {"study/main.cc",
        {"study/closed_loop",
+        "study/real_sites",
         "common/config",
         "common/io/process/parallel.h",
         "site_program/build_info.h"}},
@@ -241,9 +247,19 @@ const std::vector<Arrow>& arrows() {
       {"study/answers_file.*", {"common/config/number.h"}},
       {"study/trial_row.*", {"common/config/number.h"}},
       {"study/exports.*", {"common/config/number.h"}},
+      // Stimuli as tissue.
+      {"study/level_curves.*", {"patient_site", "common/config/number.h"}},
       // Observers that feel whole sessions: where study and lab meet.
       {"study/closed_loop/*",
        {"study", "lab/run", "lab/plan", "surgeon_site", "patient_site", "common/config"}},
+      // Trials at both sites' programs: where study has processes and a clock.
+      {"study/real_sites/*",
+       {"study",
+        "patient_site",
+        "common/config",
+        "common/record",
+        "common/io/process",
+        "common/io/realtime"}},
       {"study/*", {}},
       // What a site did is done again by the site's own control, and judged as the lab judges.
       {"review/*",

@@ -60,6 +60,11 @@ TEST(TreeTest, EverySourceIsBuilt) {
   EXPECT_TRUE(found.empty()) << listing(found);
 }
 
+TEST(TreeTest, SourcesThatMayBeJoinedShareNoNames) {
+  const Violations found = repeated_names(tree());
+  EXPECT_TRUE(found.empty()) << listing(found);
+}
+
 TEST(TreeTest, EveryPageCitedIsHere) {
   const Violations found = missing_pages(tree());
   EXPECT_TRUE(found.empty()) << listing(found);

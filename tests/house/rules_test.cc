@@ -284,6 +284,24 @@ TEST(TreeRulesTest, SourceInNoListIsFound) {
   EXPECT_TRUE(unlisted_sources({source}).empty());  // no such room yet
 }
 
+TEST(TreeRulesTest, NameThatTwoSourcesOfAFolderGiveIsFound) {
+  const auto unnamed = [](const std::string& path, const std::string& what) {
+    return make_source(path, "namespace palp {\nnamespace {\n" + what + "\n}  // namespace\n}\n");
+  };
+  for (const std::string what : {"constexpr double kNear = 1;",
+                                 "struct Row {",
+                                 "std::string mm(double value) {",
+                                 "constexpr std::array kAll{1, 2};"}) {
+    const Source first = unnamed("fem/a.cc", what);
+    EXPECT_EQ(repeated_names({first, unnamed("fem/b.cc", what)}).size(), 1U) << what;
+    EXPECT_TRUE(repeated_names({first, unnamed("lab/b.cc", what)}).empty()) << what;
+    EXPECT_TRUE(repeated_names({first, unnamed("tests/fem/b.cc", what)}).empty()) << what;
+  }
+  EXPECT_TRUE(repeated_names({unnamed("fem/a.cc", "double mm(int value) {"),
+                              unnamed("fem/b.cc", "double mm(double value) {")})
+                  .empty());
+}
+
 TEST(TreeRulesTest, CitedPageThatIsNotHereIsFound) {
   const std::string page = std::string{"guide"} + ".md";
   const Source source = make_source("lab/a.h", "// see " + page + "\n");

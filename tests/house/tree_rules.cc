@@ -57,6 +57,19 @@ bool names(const Source& list, const std::string& file) {
   return false;
 }
 
+/// What a line at the margin of an unnamed namespace defines: a function with its parameters, a
+/// constant, a type. Empty: none.
+std::string defined_name(const std::string& code) {
+  static const std::regex kConstant{R"(^(?:constexpr|const) [^=({]*?\b(k[A-Z]\w*)[^\w].*)"};
+  static const std::regex kType{R"(^(?:struct|class|union|enum class|enum) (\w+).*)"};
+  static const std::regex kFunction{R"(^(?:[\w:<>,*&\[\]]+ )+[*&]?(\w+\([^)]*\)?).*)"};
+  std::smatch found;
+  for (const std::regex& form : {kConstant, kType, kFunction}) {
+    if (std::regex_match(code, found, form)) return found[1];
+  }
+  return {};
+}
+
 }  // namespace
 
 Violations untested_headers(const Tree& tree) {
@@ -98,6 +111,33 @@ Violations unlisted_sources(const Tree& tree) {
     }
     if (has_list && !listed) {
       found.push_back({source.path, 0, "in no CMakeLists.txt: nobody builds this file"});
+    }
+  }
+  return found;
+}
+
+Violations repeated_names(const Tree& tree) {
+  static const std::regex kNamespace{R"(^namespace ([\w:]+) \{.*)"};
+  std::map<std::string, std::string> first;  // who gave a name
+  Violations found;
+  for (const Source& source : tree) {
+    if (!source.ends_with(".cc") || source.is_under("tests")) continue;
+    std::string room;
+    bool unnamed = false;
+    for (std::size_t i = 0; i < source.code.size(); ++i) {
+      const std::string& code = source.code[i];
+      std::smatch named;
+      if (std::regex_match(code, named, kNamespace)) room = named[1];
+      if (code.starts_with("namespace {")) unnamed = true;
+      if (code.starts_with("}") && source.comments[i].find("// namespace") != std::string::npos) {
+        unnamed = false;
+      }
+      const std::string name = unnamed && !code.starts_with(' ') ? defined_name(code) : "";
+      if (name.empty()) continue;
+      const auto [who, is_new] =
+          first.try_emplace(folder_of(source.path) + ' ' + room + ' ' + name, source.path);
+      if (is_new || who->second == source.path) continue;
+      found.push_back({source.path, i + 1, name + " is also in " + who->second});
     }
   }
   return found;

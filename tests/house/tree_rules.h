@@ -17,6 +17,10 @@ using Tree = std::vector<Source>;
 /// .cc files that stand in no CMakeLists.txt.
 [[nodiscard]] Violations unlisted_sources(const Tree& tree);
 
+/// Names of unnamed namespaces that two sources of one folder give alike: where builds join
+/// sources, these are defined twice. Tests are never joined.
+[[nodiscard]] Violations repeated_names(const Tree& tree);
+
 /// Mentions of pages that are not here. Pages in capitals (WIRE.md) may come later than those who
 /// cite them.
 [[nodiscard]] Violations missing_pages(const Tree& tree);

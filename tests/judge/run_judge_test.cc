@@ -95,7 +95,8 @@ RunMetrics judged(PhaseKind kind, double (*hand)(double), double (*tip)(double))
 }
 
 double at_rest(double /*t*/) { return 2e-3; }
-double hammering(double t) { return 2e-3 + 0.4e-3 * std::sin(85 * t); }  // 13.5 Hz
+double hammering(double t) { return 2e-3 + 0.4e-3 * std::sin(85 * t); }         // 13.5 Hz
+double slowly_hammering(double t) { return 2e-3 + 0.6e-3 * std::sin(13 * t); }  // 2 Hz
 double creeping(double t) { return 2e-3 + 1.5e-3 * t; }
 
 TEST(RunJudgeTest, ATipThatHammersUnderAQuietHandIsUnstable) {
@@ -103,6 +104,20 @@ TEST(RunJudgeTest, ATipThatHammersUnderAQuietHandIsUnstable) {
   EXPECT_TRUE(metrics.unstable);
   EXPECT_STREQ(metrics.unstable_reason, "the tip swings by itself");
   EXPECT_NEAR(metrics.contact.tip_swing, 0.8e-3, 0.02e-3);
+}
+
+/// Too slow for a limit cycle of the plant: the round trip is in this loop.
+TEST(RunJudgeTest, ATipThatComesAndGoesUnderAHandThatHoldsIsUnstable) {
+  const RunMetrics metrics = judged(PhaseKind::PressHold, at_rest, slowly_hammering);
+  EXPECT_TRUE(metrics.unstable);
+  EXPECT_STREQ(metrics.unstable_reason, "the tip swings by 1 mm or more under a hand that holds");
+  EXPECT_FALSE(judged(PhaseKind::Tap, at_rest, slowly_hammering).unstable) << "a person's own will";
+}
+
+TEST(RunJudgeTest, ATipThatFollowsAHandIsJudgedByWhatItAdds) {
+  const auto hand = [](double t) { return 2e-3 + 0.45e-3 * std::sin(13 * t); };
+  const auto tip = [](double t) { return 2e-3 + 0.7e-3 * std::sin(13 * t); };
+  EXPECT_FALSE(judged(PhaseKind::PressHold, hand, tip).unstable);
 }
 
 TEST(RunJudgeTest, AHandThatSwingsWhileItMovesIsUnstable) {

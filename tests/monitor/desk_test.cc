@@ -5,6 +5,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "common/config/json.h"
+#include "tests/monitor/next_frame.h"
 
 namespace palp::monitor {
 namespace {
@@ -26,13 +27,7 @@ struct Rig {
   Desk desk{{.site = link::Role::Surgeon, .program = "palp-surgeon", .run = "r"},
             {.requests = &requests, .stops = &stops, .pointer = &pointer, .camera = &camera}};
 
-  std::string next(std::uint32_t client) {
-    Outbox& box = desk.outbox(client);
-    if (box.empty()) return {};
-    const std::string body = box.begin_first().body;
-    box.pop();
-    return body;
-  }
+  std::string next(std::uint32_t client) { return next_frame(desk, client); }
   /// Past the greeting.
   std::uint32_t join(Right right) {
     const std::uint32_t client = desk.join(right, kNow);

@@ -233,6 +233,11 @@ inline void expect_same_judgement(const lab::Scenario& scenario, Looked& looked)
   const nlohmann::json metrics = nlohmann::json::parse(told.dump());
   for (const judge::Metric& metric : judge::metric_table()) {
     const std::string name{metric.name};
+    // What energy permits takes the tissue and the hand themselves; no session file has them.
+    if (name.starts_with("first_press_permitted")) {
+      EXPECT_TRUE(metrics[name].is_null()) << name;
+      continue;
+    }
     EXPECT_EQ(metrics[name].dump(), lab[name].dump()) << name;
   }
   EXPECT_EQ(metrics["unstable"], lab["unstable"]);

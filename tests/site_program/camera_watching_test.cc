@@ -3,6 +3,7 @@
 #include "site_program/camera_watching.h"
 
 #include "tests/site_program/camera_rig.h"
+#include "video/touch_hold.h"
 
 namespace palp::site_program {
 namespace {
@@ -16,7 +17,9 @@ class CameraWatchingTest : public testing::Test {
     sending_.emplace(CameraSendingConfig{}, rig_.camera, rig_.patient.door, rig_.patient.recording);
     rig_.meet();
     watching_.emplace(
-        records, rig_.surgeon->door, rig_.surgeon->recording, rig_.feed, [this] { ++arrived_; });
+        records, rig_.surgeon->door, &touch_hold_, rig_.surgeon->recording, rig_.feed, [this] {
+          ++arrived_;
+        });
   }
   bool shown(VideoState state) {
     return rig_.run_until([&] {
@@ -25,6 +28,7 @@ class CameraWatchingTest : public testing::Test {
   }
   test::CameraRig rig_;
   std::atomic<int> arrived_{};
+  Mailbox<Duration> touch_hold_;
   std::optional<CameraSending> sending_;
   std::optional<CameraWatching> watching_;
 };
@@ -46,6 +50,15 @@ TEST_F(CameraWatchingTest, PicturesComeInOrderFromAKeyFrameOn) {
   }
   EXPECT_TRUE(shown(VideoState::Sending));
   EXPECT_TRUE(rig_.run_until([&] { return rig_.feed.shown.get().delivered >= 20; }));
+}
+
+TEST_F(CameraWatchingTest, TouchIsToldToWaitForPicturesAndNoLongerWhereNoneCome) {
+  begin(true);
+  ASSERT_TRUE(rig_.run_until([&] { return touch_hold_.get() > Duration{0}; }));
+  EXPECT_LE(touch_hold_.get(), video::TouchHold::kMax);
+  EXPECT_TRUE(rig_.run_until([&] { return rig_.feed.shown.get().touch_held > Duration{0}; }));
+  rig_.camera.plugged = false;
+  EXPECT_TRUE(rig_.run_until([&] { return touch_hold_.get() == Duration{0}; }));
 }
 
 TEST_F(CameraWatchingTest, WhereNobodyLooksNothingIsEncoded) {

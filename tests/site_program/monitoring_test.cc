@@ -93,15 +93,19 @@ TEST(MonitoringTest, APageThatDiesIsToldOnceAndTheRestGoesOn) {
   (void)recording.stop();
 }
 
-TEST(MonitoringTest, TheFeedIsThereWithoutASessionFile) {
-  Recording recording{{}, surgeon_info(), 1, kPeriod};
-  ASSERT_NE(recording.feed(), nullptr);
-  SiteTick tick;
-  tick.at = io::SteadyClock{}.now();
-  EXPECT_TRUE(recording.recorder(0).record(tick));
-  (void)recording.stop();
-  EXPECT_EQ(recording.feed()->status().ticks, 1U);
-  EXPECT_FALSE(recording.feed()->status().recording);
+TEST(MonitoringTest, TheFeedIsThereWithoutASessionFileAndTellsTheLastTickToo) {
+  for (int i = 0; i < 20; ++i) {
+    Recording recording{{}, surgeon_info(), 1, kPeriod};
+    ASSERT_NE(recording.feed(), nullptr);
+    const TimePoint begun = io::SteadyClock{}.now();
+    SiteTick tick;
+    do tick.at = io::SteadyClock{}.now();
+    while (tick.at - begun < std::chrono::milliseconds{i % 5});
+    EXPECT_TRUE(recording.recorder(0).record(tick));
+    (void)recording.stop();
+    EXPECT_EQ(recording.feed()->status().ticks, 1U);
+    EXPECT_FALSE(recording.feed()->status().recording);
+  }
 }
 
 }  // namespace

@@ -62,6 +62,19 @@ TEST(BlockTest, AsksWhatTheScheduleSaysAndLearnsFromTrialsOnly) {
   EXPECT_FALSE(block.excluded());
 }
 
+TEST(BlockTest, CountsTrialsWithoutPractice) {
+  Standing standing;
+  Block block = standing.block();
+  const std::size_t all = standing.plans[0].trials.size();
+  for (std::size_t before = 0; !block.done();) {
+    const TrialAsk ask = block.next();
+    EXPECT_EQ(ask.count, all);
+    EXPECT_EQ(ask.before, before);
+    before += ask.kind == TrialKind::Practice ? 0 : 1;
+    block.told(true);
+  }
+}
+
 TEST(BlockTest, EasyTrialsOfATwoSidedTaskHaveBothSigns) {
   Standing standing;
   standing.study = *parse_study("task: \"bias\" condition { name: \"one\" }", "f");

@@ -17,7 +17,7 @@ TEST(FormulaParticipantTest, AnswersByTheFunctionOnBothSidesAlike) {
   constexpr std::size_t kTrials = 1000;
   for (std::size_t i = 0; i < 2 * kTrials; ++i) {
     const TrialAsk ask{.number = i, .level = std::log1p(0.15), .stronger = i % 2};
-    right[i % 2] += observer({0, 0}, ask).chosen == ask.stronger ? 1 : 0;
+    right[i % 2] += observer({0, 0}, ask)->chosen == ask.stronger ? 1 : 0;
   }
   for (const int count : right) EXPECT_NEAR(count / double{kTrials}, 0.75, 0.055);
 }
@@ -32,7 +32,7 @@ TEST(FormulaParticipantTest, OfThreeChoosesWronglyEitherOther) {
   constexpr std::size_t kTrials = 3000;
   for (std::size_t i = 0; i < kTrials; ++i) {
     const TrialAsk ask{.number = i, .level = std::log1p(0.15), .stronger = i % 3};
-    const TrialOutcome out = observer({0, 0}, ask);
+    const TrialOutcome out = *observer({0, 0}, ask);
     ++further[(out.chosen + 3 - ask.stronger) % 3];
     ASSERT_EQ(out.taps, 9);
   }
@@ -43,10 +43,10 @@ TEST(FormulaParticipantTest, OfThreeChoosesWronglyEitherOther) {
 TEST(FormulaParticipantTest, DoesAllTapsOfItsConditionAndPractisesWithTheAnswerTold) {
   const Study study = test::small_study();
   const Observer observer = formula_participants(study, PeopleTraits{});
-  const TrialOutcome three = observer({0, 0}, {.level = 0.2});
+  const TrialOutcome three = *observer({0, 0}, {.level = 0.2});
   EXPECT_EQ(three.taps, 6);
-  EXPECT_EQ(observer({0, 1}, {.level = 0.2}).taps, 2);
-  const TrialOutcome told = observer({0, 0}, {.kind = TrialKind::Practice, .level = 0.2});
+  EXPECT_EQ(observer({0, 1}, {.level = 0.2})->taps, 2);
+  const TrialOutcome told = *observer({0, 0}, {.kind = TrialKind::Practice, .level = 0.2});
   EXPECT_NEAR(told.duration - three.duration, 1, 0.01);
   EXPECT_GT(three.response_time, 0.1);
 }

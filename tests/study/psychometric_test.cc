@@ -20,6 +20,14 @@ TEST(PsychometricTest, AgreesWithPublishedTablesOfForcedChoice) {
   EXPECT_NEAR(forced_choice_share(2, 3), 0.866, 5e-4);
 }
 
+// Others far below the stronger one do not matter, and each that is nearer costs answers.
+TEST(PsychometricTest, TheOthersMayStandAtDifferentHeights) {
+  EXPECT_NEAR(forced_choice_share(std::array{1.0, 20.0, 20.0}), forced_choice_share(1, 2), 1e-9);
+  EXPECT_NEAR(forced_choice_share(std::array{1.0, 1.0}), forced_choice_share(1, 3), 1e-12);
+  EXPECT_LT(forced_choice_share(std::array{1.0, 0.5}), forced_choice_share(1, 3));
+  EXPECT_GT(forced_choice_share(std::array{1.0, 1.5}), forced_choice_share(1, 3));
+}
+
 // The integral for m intervals, of which two-interval answers have a closed form.
 TEST(PsychometricTest, SharesGrowWithTheSignalAndFallWithTheIntervals) {
   for (int m = 2; m < 8; ++m) {

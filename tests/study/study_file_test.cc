@@ -16,7 +16,27 @@ TEST(StudyFileTest, DefaultsAreTheDesigns) {
   EXPECT_NEAR(study.levels.back(), 1.2, 1e-12);
   EXPECT_EQ(study.method.kind, MethodKind::QuestPlus);
   EXPECT_EQ(study.conditions.at(0).coupling, "mmt");
-  EXPECT_TRUE(study.conditions.at(0).force);
+  EXPECT_EQ(study.conditions.at(0).feedback, Feedback::Force);
+}
+
+TEST(StudyFileTest, AFeedbackIsGivenDrawnBothOrNone) {
+  const std::string depths =
+      "task: \"detect2\" depth { top_mm: 5 contrast_ln: 0.4 } depth { top_mm: 9 contrast_ln: 0.2 } "
+      "ball { radius_mm: 6 ratio: 50 } ";
+  for (const auto& [name, feedback] : {std::pair{"force", Feedback::Force},
+                                       {"none", Feedback::None},
+                                       {"drawn", Feedback::Drawn},
+                                       {"both", Feedback::Both},
+                                       {"depth", Feedback::Depth}}) {
+    const auto study =
+        parse_study(depths + "condition { name: \"one\" feedback: \"" + name + "\" }", "file");
+    ASSERT_TRUE(study) << study.error().text;
+    EXPECT_EQ(study->conditions.at(0).feedback, feedback);
+    EXPECT_DOUBLE_EQ(study->ball->radius, 6e-3);
+    EXPECT_DOUBLE_EQ(study->ball->ratio, 50);
+  }
+  EXPECT_FALSE(gives_force(Feedback::Drawn));
+  EXPECT_TRUE(gives_force(Feedback::Both) && draws_force(Feedback::Both));
 }
 
 TEST(StudyFileTest, ATwoSidedTaskHasLevelsOfBothSigns) {
@@ -30,19 +50,23 @@ TEST(StudyFileTest, ATwoSidedTaskHasLevelsOfBothSigns) {
 
 TEST(StudyFileTest, WhatCannotBeIsRefusedInOneSentence) {
   const std::string one = "condition { name: \"one\" } ";
-  for (const std::string& text : {std::string{},
-                                  one + one,
-                                  one + "name: \"../out\"",
-                                  one + "levels { from_ln: 0 }",
-                                  one + "levels { from_ln: 1 to_ln: 0.5 }",
-                                  one + "practice { right: 9 of: 8 }",
-                                  one + "task: \"bias\" method: \"staircase\"",
-                                  one + "task: \"bias\" intervals: 3",
-                                  one + "intervals: 1",
-                                  one + "tracks: 4 trials: 3",
-                                  one + "seed: -1",
-                                  one + "colour: \"red\"",
-                                  one + "condition { name: \"a\\nb\" }"}) {
+  for (const std::string& text :
+       {std::string{},
+        one + one,
+        one + "name: \"../out\"",
+        one + "levels { from_ln: 0 }",
+        one + "levels { from_ln: 1 to_ln: 0.5 }",
+        one + "practice { right: 9 of: 8 }",
+        one + "task: \"bias\" method: \"staircase\"",
+        one + "task: \"bias\" intervals: 3",
+        std::string{"condition { name: \"one\" taps: 1 taps_unjudged: 1 }"},
+        one + "ball { radius_mm: 8 }",
+        std::string{"condition { name: \"one\" feedback: \"depth\" }"},
+        one + "intervals: 1",
+        one + "tracks: 4 trials: 3",
+        one + "seed: -1",
+        one + "colour: \"red\"",
+        one + "condition { name: \"a\\nb\" }"}) {
     const auto study = parse_study(text, "file");
     ASSERT_FALSE(study) << text;
     EXPECT_EQ(study.error().text.find("file"), 0U) << study.error().text;

@@ -106,7 +106,7 @@ TEST(TrialTest, ALastTapIsCountedOnceOutOfTheTissue) {
   EXPECT_EQ(rig.trial.stage(), TrialStage::Travel);
 }
 
-TEST(TrialTest, WhoLetsGoOfThePedalEndsItAtAnyTime) {
+TEST(TrialTest, WhoLetsGoOfThePedalBeforeTheQuestionEndsIt) {
   for (const int ms : {10, 1600, 3000}) {
     Rig rig;
     rig.pass(ms * kMs);
@@ -116,6 +116,15 @@ TEST(TrialTest, WhoLetsGoOfThePedalEndsItAtAnyTime) {
     EXPECT_EQ(rig.trial.stage(), TrialStage::Ended);
     EXPECT_FALSE(rig.trial.answer());
   }
+}
+
+TEST(TrialTest, WhoAnswersNeedNotHoldThePedal) {
+  Rig rig;
+  rig.to_the_question();
+  rig.pass(500 * kMs, {.pedal = false});
+  EXPECT_EQ(rig.trial.stage(), TrialStage::Answer);
+  rig.pass(kMs, {.pedal = false, .answer = 1});
+  EXPECT_EQ(rig.trial.stage(), TrialStage::Done);
 }
 
 TEST(TrialTest, PracticeShowsWhetherItWasRight) {

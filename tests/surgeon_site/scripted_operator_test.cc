@@ -256,7 +256,7 @@ TEST(ScriptedOperatorTest, ASearchTapsWhereTheMapProposes) {
   one.next = {1e-3, 2e-3};
   one.map = 4;
   EXPECT_EQ(one.person.intent().place, before) << "a tap is where it is";
-  one.live(2500ms);
+  one.live(3500ms);
   EXPECT_EQ(one.person.intent().place, one.next);
 }
 
@@ -265,7 +265,7 @@ TEST(ScriptedOperatorTest, ASearchWaitsForTheNewsOfItsLastTapAndNotForEver) {
   one.map = 3;
   one.next = {30e-3, 0};
   one.three_taps();
-  one.live(3s);
+  one.live(4s);
   const Duration waits_at = one.person.script().stretches()[2 + 3 * 4].began_at;
   EXPECT_NEAR(seconds(one.person.script_time()), seconds(waits_at), 0.01);
   one.live(2s);

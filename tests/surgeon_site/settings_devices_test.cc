@@ -49,6 +49,21 @@ TEST(MasterSettingsTest, BadInputNamesFileAndField) {
   EXPECT_FALSE(read_master_plan(*master_named("paddle"), "/no/such/file"));
 }
 
+TEST(MasterSettingsTest, AnswersAreButtonsThatItHasAndNotThePedal) {
+  const std::string two = "answer { button: 1 } answer { button: 12 }";
+  EXPECT_EQ(refusal("spacemouse", "master { " + two + " }"), "accepted");
+  EXPECT_THAT(refusal("spacemouse", "master { answer { button: 16 } }"),
+              HasSubstr("answer.button is 16, expected 0 to 15"));
+  EXPECT_THAT(refusal("spacemouse", "master { pedal_button: 12 " + two + " }"),
+              HasSubstr("button 12 is the pedal"));
+  EXPECT_THAT(refusal("spacemouse", "master { " + two + " answer { button: 1 } }"),
+              HasSubstr("button 1 stands for two answers"));
+  EXPECT_THAT(refusal("paddle", "master { " + two + " }"), HasSubstr("no other button"));
+  std::string many = "master { pedal_button: 15 ";
+  for (int i = 0; i < 9; ++i) many += "answer { button: " + std::to_string(i) + " } ";
+  EXPECT_THAT(refusal("spacemouse", many + "}"), HasSubstr("9 answers, expected 8 at most"));
+}
+
 TEST(MasterSettingsTest, ACapMovesAtItsRates) {
   const auto plan = make_master_plan(
       *master_named("spacemouse"), "master { rate_mm_per_s: 8 side_rate_mm_per_s: 30 }", "master");

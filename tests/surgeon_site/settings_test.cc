@@ -62,6 +62,7 @@ std::string text_of(const Settings& settings) {
   add(list, settings.record);
   add(list, settings.monitor);
   list.add("duration", settings.duration)
+      .add("picture_in_step", settings.picture_in_step)
       .add("give_up_after", settings.give_up_after)
       .add("seed", settings.seed);
   return list.text();
@@ -123,6 +124,21 @@ TEST(SurgeonSettingsTest, DirectAloneHasALimitOfTheRoundTripAndForcedEngagementL
   EXPECT_EQ(limit({"coupling.name=mmt"}), Duration{0});
   EXPECT_EQ(limit({"coupling.name=direct"}), Settings{}.direct_round_trip_max);
   EXPECT_EQ(limit({"coupling.name=direct", "engagement.forced=true"}), Duration{0});
+}
+
+TEST(SurgeonSettingsTest, TouchWaitsForThePictureOnlyWhereTheCouplingBearsIt) {
+  EXPECT_FALSE(settings_with({}).picture_in_step);
+  for (const std::string name : {"wave", "tdpa"}) {
+    EXPECT_TRUE(settings_with({"coupling.name=" + name, "picture_in_step=true"}).picture_in_step);
+  }
+  for (const std::string name : {"mmt", "direct"}) {
+    config::Document document = config::surgeon_document();
+    ASSERT_TRUE(document.set("coupling.name=" + name));
+    ASSERT_TRUE(document.set("picture_in_step=true"));
+    const auto made = make_settings(document);
+    ASSERT_FALSE(made) << name;
+    EXPECT_THAT(made.error().text, HasSubstr("coupling '" + name + "' does not bear"));
+  }
 }
 
 TEST(SurgeonSettingsTest, TheAgreementIsOnTheLawAndThePeriodAlone) {

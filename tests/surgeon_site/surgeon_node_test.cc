@@ -1,14 +1,13 @@
 #include "surgeon_site/surgeon_node.h"
 
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include <gtest/gtest.h>
 
 #include "surgeon_site/script_builder.h"
 #include "surgeon_site/simulated_hand.h"
-#include "tests/surgeon_site/two_ends.h"
+#include "tests/surgeon_site/surgeon_bench.h"
 
 namespace palp::surgeon {
 namespace {
@@ -32,60 +31,6 @@ SimulatedHandConfig firm_hand() {
   config.plant.grip = kFirmGrip;
   return config;
 }
-
-/// A device that a test holds in its hand.
-class HeldDevice final : public HapticDevice {
- public:
-  HandState read(TimePoint now) noexcept override {
-    state.sampled_at = now;
-    return state;
-  }
-  void apply(double force) noexcept override { force_applied = force; }
-  void show(const OperatorView& view) noexcept override { shown = view; }
-  [[nodiscard]] HandFacts hand_facts() const noexcept override { return {}; }
-
-  HandState state;
-  OperatorView shown;
-  double force_applied{};  ///< [N]
-};
-
-/// Both sites on one wire, a millisecond at a time.
-class Bench {
- public:
-  explicit Bench(HapticDevice& device, SurgeonConfig config = {})
-      : device_{device}, node_{config, {device, law_, link_, recorder}} {
-    open_session(link_, up, down, 1, now);
-  }
-
-  void run(
-      Duration span, const std::function<bool()>& busy = [] { return true; }) {
-    for (const TimePoint end = now + span; now < end && busy();) {
-      now += 1ms;
-      node_.tick(now);
-      if (patient_lives) patient.tick(now);
-    }
-  }
-  [[nodiscard]] SurgeonStatus status() { return node_.status().get(); }
-  void restart_patient(std::uint64_t session_id) {
-    open_session(link_, up, down, session_id, now);
-    patient.restart(session_id, now);
-    patient_lives = true;
-  }
-  [[nodiscard]] SurgeonNode& node() { return node_; }
-
-  TimePoint now{};
-  Wire up;
-  Wire down;
-  PlainPatient patient{down, up};
-  bool patient_lives{true};
-  Keeper recorder;
-
- private:
-  HapticDevice& device_;
-  coupling::SurgeonCoupling law_{coupling::DirectSurgeon{{}}};
-  link::Link link_{link::LinkConfig{}, std::make_unique<link::RawCodec>()};
-  SurgeonNode node_;
-};
 
 /// [N] in 10 ms, beyond what the hand's own way of the last 30 does in tissue of 370 N/m. A way of
 /// more than 3 mm is no hand's, but an engagement that sets the axis anew.
@@ -121,6 +66,29 @@ TEST(SurgeonNodeTest, AStopOfSomebodyElseLatchesUntilAReset) {
   bench.node().commands().put({.emergency_stop = false, .resets = 1});
   bench.run(2ms);
   EXPECT_NE(bench.status().state, SiteState::Stopped);
+}
+
+TEST(SurgeonNodeTest, TouchWaitsAsLongAsItIsToldAndForAnotherEpochNotAtAll) {
+  HeldDevice device;
+  Bench bench{device};
+  bench.node().touch_hold().put(40ms);
+  bench.run(4s);
+  const std::vector<Arrived> waited = bench.recorder.all<Arrived>();
+  ASSERT_FALSE(waited.empty());
+  EXPECT_EQ(waited.back().at - waited.back().incoming.arrived_at, 40ms);
+
+  device.state.pedal_held = true;
+  bench.run(1s, [&] { return bench.status().state != SiteState::Engaged; });
+  ASSERT_EQ(bench.status().state, SiteState::Engaged);
+  const TimePoint engaged_at = bench.now;
+  bench.run(200ms);
+  std::size_t heard = 0;
+  for (const Arrived& one : bench.recorder.all<Arrived>()) {
+    if (one.at <= engaged_at) continue;
+    ++heard;
+    EXPECT_GE(one.incoming.arrived_at, engaged_at);
+  }
+  EXPECT_GT(heard, 0U);
 }
 
 TEST(SurgeonNodeTest, PalpatesFromBeginningToEnd) {

@@ -6,6 +6,15 @@ import { join } from 'node:path';
 
 export const pause = ms => new Promise(done => setTimeout(done, ms));
 
+/** Writes what was read to `out`, ends the browser, and the process with 1 where there is a fault. */
+export async function finish(browser, out, result) {
+  writeFileSync(out, JSON.stringify(result, null, 2));
+  await browser.stop();
+  if (!result.fault) return;
+  console.log(result.fault);
+  process.exit(1);
+}
+
 export class Browser {
   static async start(program) {
     const browser = new Browser();

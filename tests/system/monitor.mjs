@@ -1,8 +1,7 @@
 // A person at the page of a live session, as a script: monitor.mjs BROWSER CONTROL_URL VIEW_URL OUT.
 // Palpates at two places by pointer, reads what the page says, hangs the page while it presses,
 // stops, ends. Writes what it read to OUT, JSON. PALP_SHOTS: a folder for pictures.
-import { writeFileSync } from 'node:fs';
-import { Browser, pause } from './browser.mjs';
+import { Browser, finish, pause } from './browser.mjs';
 
 const [program, controlUrl, viewUrl, out] = process.argv.slice(2);
 const shots = process.env.PALP_SHOTS;
@@ -151,10 +150,5 @@ try {
 } catch (error) {
   result.fault = error.message;
 } finally {
-  writeFileSync(out, JSON.stringify(result, null, 2));
-  await browser.stop();
-}
-if (result.fault) {
-  console.log(result.fault);
-  process.exit(1);
+  await finish(browser, out, result);
 }

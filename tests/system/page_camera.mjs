@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { pathToFileURL } from 'node:url';
 import { check } from './page_check.mjs';
 
-let now = 0, decoders = [];
+let now = 0, decoders = [], timers = [];
 class Decoder {
   constructor(does) { Object.assign(this, { does, state: 'unconfigured', given: [] }); decoders.push(this); }
   configure(config) { this.state = 'configured'; this.config = config; }
@@ -16,7 +16,7 @@ class Decoder {
     this.does.output({ timestamp, displayWidth: 4, displayHeight: 2, close() {} });
   }
 }
-Object.assign(globalThis, { VideoDecoder: Decoder, EncodedVideoChunk: class { constructor(chunk) { Object.assign(this, chunk); } } });
+Object.assign(globalThis, { setTimeout: (does, ms) => timers.push({ does, ms }), VideoDecoder: Decoder, EncodedVideoChunk: class { constructor(chunk) { Object.assign(this, chunk); } } });
 Object.defineProperty(globalThis, 'performance', { value: { now: () => now } });
 const { Camera, codecOf, lagWords } = await import(pathToFileURL(`${process.argv[2]}/camera.js`).href);
 
@@ -25,9 +25,13 @@ const DELTA = Uint8Array.from([0, 0, 0, 1, 0x61, 1, 2, 3]);
 
 function rig() {
   decoders = [];
+  timers = [];
   now = 10000;
-  const asked = [], camera = new Camera((stamp, at) => at - stamp, () => asked.push(now));
-  return { camera, asked, decoder: () => decoders.at(-1) };
+  const asked = [], touch = { age: 0 };
+  const camera = new Camera({
+    age: (stamp, at) => at - stamp, early: age => Math.max(0, touch.age - age), ask: () => asked.push(now), drew() {},
+  });
+  return { camera, asked, touch, decoder: () => decoders.at(-1) };
 }
 
 const tests = {
@@ -96,6 +100,44 @@ const tests = {
     decoder().does.error(new Error('damaged'));
     assert.equal(asked.length, 1);
     assert.equal(decoder().state, 'closed');
+  },
+  'a picture that came before touch waits until touch is as old'() {
+    const { camera, decoder, touch } = rig();
+    touch.age = 40;
+    camera.hear(KEY, 9990, now);
+    decoder().put();
+    assert.equal(camera.shown, undefined);
+    assert.deepEqual(timers.map(one => one.ms), [30]);
+    now += 30;
+    timers[0].does();
+    assert.deepEqual(camera.shown, { stamp: 9990, at: 10030, age: 40 });
+  },
+  'no picture is shown after a newer one, nor after its session'() {
+    const { camera, decoder, touch } = rig();
+    touch.age = 40;
+    camera.hear(KEY, 9990, now);
+    decoder().put();
+    touch.age = 0;
+    camera.hear(DELTA, 9995, now);
+    decoder().put();
+    timers[0].does();
+    assert.equal(camera.shown.stamp, 9995);
+    touch.age = 40;
+    camera.hear(DELTA, 9999, now);
+    decoder().put();
+    camera.end();
+    timers[1].does();
+    assert.equal(camera.shown, undefined);
+  },
+  'a decoder keeps places: of pictures that wait there are four at most'() {
+    const { camera, decoder, touch } = rig();
+    touch.age = 900;
+    for (let i = 0; i < 5; i++) {
+      camera.hear(i === 0 ? KEY : DELTA, 9900 + i, now);
+      decoder().put();
+    }
+    assert.equal(timers.length, 4);
+    assert.equal(camera.shown.stamp, 9904);
   },
   'a browser without WebCodecs says so'() {
     const { camera } = rig();

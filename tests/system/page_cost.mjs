@@ -51,7 +51,8 @@ try {
   console.log(`page_cost: first paint after ${median(paints).toFixed(0)} ms (median of ${LOADS}; ${Math.min(...paints).toFixed(0)} to ${Math.max(...paints).toFixed(0)})`);
 
   const page = await browser.open(url);
-  await page.until("document.querySelector('.plane svg') && palpPicture().drawn > 30", 'a map and pictures', 60000);
+  await page.send('Network.disable');  // to be told of each frame would cost more than the page
+  await page.until("document.querySelector('.plane svg') && palpPicture().drawn.length > 30", 'a map and pictures', 60000);
   const shares = [], rates = [];
   for (let n = 0; n < WINDOWS; n++) {
     await page.eval('palpPicture().drawn.length = 0');

@@ -1,9 +1,10 @@
-// The camera in the page: video.mjs BROWSER VIEW_URL tip|jpeg|stops OUT, or, of what it read,
+// The camera in the page: video.mjs BROWSER VIEW_URL tip|step|jpeg|stops OUT, or, of what it read,
 // video.mjs --compare OUT TICKS.csv NAME. PALP_SHOTS: a folder for pictures.
-import { readFileSync, writeFileSync } from 'node:fs';
-import { Browser, pause } from './browser.mjs';
+import { readFileSync } from 'node:fs';
+import { Browser, finish, pause } from './browser.mjs';
 
 const WHOLE_BALL = 0.96 * Math.PI * 40 ** 2;  // pixels
+const NOTICED_MS = 15;  // Di Luca and Mahnan 2019
 const must = (holds, what) => { if (!holds) throw new Error(what); };
 const quantile = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
 
@@ -43,6 +44,19 @@ async function readTips(page, result) {
   const { drawn, video, resets, behind } = await page.eval('window.palpPicture()');
   Object.assign(result, { drawn, video, resets, behind, way: await page.eval('window.palpWay()') });
   result.words = await page.text('camera');
+}
+
+/** Pictures that touch waits for: how far they are behind it. */
+async function readStep(page, result) {
+  await page.until('window.palpPicture().video?.touch_held_ms > 0', 'touch that waits', 30000);
+  await pause(8000);
+  const apart = [];
+  for (const end = Date.now() + 12000; Date.now() < end; await pause(90)) apart.push(await page.eval('window.palpPicture().behind'));
+  const sizes = apart.map(Math.abs), held = await page.eval('window.palpPicture().video.touch_held_ms');
+  result.said = `touch waits for ${held.toFixed(1)} ms, pictures ${quantile(apart, 0.5).toFixed(1)} ms behind it (p50; 95 % within ${quantile(sizes, 0.95).toFixed(1)} ms)`;
+  must(Math.abs(quantile(apart, 0.5)) < 5, result.said);
+  must(quantile(sizes, 0.95) < NOTICED_MS, result.said);
+  must(/in step/.test(await page.text('camera')), `the page says "${await page.text('camera')}"`);
 }
 
 async function readJpeg(page, result) {
@@ -90,13 +104,11 @@ const [program, url, kind, out] = process.argv.slice(2);
 const browser = await Browser.start(program), result = {};
 try {
   const page = await browser.open(url);
-  await { tip: readTips, jpeg: readJpeg, stops: readStop }[kind](page, result);
+  await { tip: readTips, step: readStep, jpeg: readJpeg, stops: readStop }[kind](page, result);
   if (process.env.PALP_SHOTS) await page.picture(`${process.env.PALP_SHOTS}/video-${kind}.png`);
   must(page.errors.length === 0, `the page wrote: ${page.errors.join('; ')}`);
 } catch (error) {
   result.fault = error.message;
 } finally {
-  writeFileSync(out, JSON.stringify(result, null, 2));
-  await browser.stop();
+  await finish(browser, out, result);
 }
-if (result.fault) { console.log(result.fault); process.exit(1); }

@@ -4,9 +4,26 @@
 /** What a decoder may have waiting: frames, and [ms] of age beyond the newest shown. */
 const WAITING_MAX = 4, WAITING_AGE_MS = 150;
 const ASK_AGAIN_MS = 2500;
+/** Pictures that wait for touch: more would leave the decoder without places. */
+const EARLY_MAX = 4;
 const KEPT = 900;  // ages of drawn pictures, for whoever measures
 
 export interface Shown { stamp: number; at: number; age: number }
+
+/** What a camera asks of the page. */
+export interface Around {
+  /** [ms] of a stamp at that page time. */
+  age(stamp: number, now: number): number;
+  /** [ms] until touch is as old as a picture of that age; 0: it does not wait for pictures. */
+  early(age: number): number;
+  /** For a key frame. */
+  ask(): void;
+  /** A picture was drawn. */
+  drew(now: number): void;
+}
+
+/** A decoded picture, which keeps its place in the decoder until it is closed. */
+interface Decoded { width: number; height: number; source: CanvasImageSource; close(): void }
 
 /** Of each NAL unit in Annex B: where its header stands. */
 function* units(frame: Uint8Array): Generator<number> {
@@ -37,8 +54,7 @@ export class Camera {
   private askedAt = -1e9;
   private jpegUnderWay = false;
 
-  /** `age`: [ms] of a stamp at that page time. `ask`: for a key frame. */
-  constructor(private readonly age: (stamp: number, now: number) => number, private readonly ask: () => void) {}
+  constructor(private readonly around: Around) {}
 
   /** A frame as it came, H.264 in Annex B. */
   hear(frame: Uint8Array, stamp: number, now: number): void {
@@ -62,8 +78,7 @@ export class Camera {
     this.jpegUnderWay = true;
     try {
       const picture = await createImageBitmap(new Blob([frame as BlobPart], { type: 'image/jpeg' }));
-      this.draw(picture, picture.width, picture.height, stamp);
-      picture.close();
+      this.show({ source: picture, width: picture.width, height: picture.height, close: () => picture.close() }, stamp);
     } catch { /* the next one may be whole */ }
     this.jpegUnderWay = false;
   }
@@ -71,6 +86,7 @@ export class Camera {
   /** What was shown is of another session, or nobody looks. */
   end(): void {
     this.close();
+    this.session++;
     this.shown = undefined;
   }
 
@@ -81,11 +97,9 @@ export class Camera {
       output: frame => {
         const at = this.decoder === decoder ? this.waiting.indexOf(frame.timestamp) : -1;
         this.heardAt = performance.now();
-        if (at >= 0) {
-          this.waiting.splice(0, at + 1);
-          this.draw(frame, frame.displayWidth, frame.displayHeight, frame.timestamp / 1000);
-        }
-        frame.close();
+        if (at < 0) return frame.close();
+        this.waiting.splice(0, at + 1);
+        this.show({ source: frame, width: frame.displayWidth, height: frame.displayHeight, close: () => frame.close() }, frame.timestamp / 1000);
       },
       error: () => { if (this.decoder === decoder) this.giveUp(performance.now()); },
     });
@@ -116,17 +130,37 @@ export class Camera {
   private askForKey(now: number): void {
     if (now - this.askedAt < ASK_AGAIN_MS) return;
     this.askedAt = now;
-    this.ask();
+    this.around.ask();
   }
 
-  private draw(picture: CanvasImageSource, width: number, height: number, stamp: number): void {
-    const now = performance.now();
-    this.shown = { stamp, at: now, age: this.age(stamp, now) };
+  /** Draws it, now or when touch is as old. */
+  private show(picture: Decoded, stamp: number): void {
+    const session = this.session, early = this.kept < EARLY_MAX ? this.around.early(this.around.age(stamp, performance.now())) : 0;
+    if (early < 1) return this.draw(picture, stamp);
+    this.kept++;
+    setTimeout(() => {
+      this.kept--;
+      if (this.session === session) this.draw(picture, stamp); else picture.close();
+    }, early);
+  }
+  private kept = 0;     // pictures that wait for touch
+  private session = 0;  // one more: what waits is of another
+
+  private draw(picture: Decoded, stamp: number): void {
+    const now = performance.now(), { source, width, height } = picture;
+    if (this.shown && stamp < this.shown.stamp) return picture.close();
+    this.paint(source, width, height);
+    picture.close();
+    this.shown = { stamp, at: now, age: this.around.age(stamp, now) };
     this.drawn.push(this.shown.age);
     if (this.drawn.length > KEPT) this.drawn.shift();
+    this.around.drew(now);
+  }
+
+  private paint(source: CanvasImageSource, width: number, height: number): void {
     if (!this.canvas) return;
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
-    this.canvas.getContext('2d', { alpha: false })!.drawImage(picture, 0, 0);
+    this.canvas.getContext('2d', { alpha: false })!.drawImage(source, 0, 0);
   }
 }
 

@@ -2,6 +2,7 @@
 import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
+import { onBeat } from './beat';
 import { color } from './look';
 import type { Model, Trace } from './model';
 
@@ -35,10 +36,10 @@ function Strip({ title, unit, lines, model, least }: { title: string; unit: stri
     };
     make();
     scheme.addEventListener('change', make);
-    const watch = new ResizeObserver(() => plot?.setSize({ width: box.current!.clientWidth, height: Math.max(60, box.current!.clientHeight) }));
+    const watch = new ResizeObserver(() => { if (box.current) plot?.setSize({ width: box.current.clientWidth, height: Math.max(60, box.current.clientHeight) }); });
     watch.observe(box.current!);
-    const timer = setInterval(() => { if (!document.hidden) plot?.setData(data(model, lines), true); }, FRAME_MS);
-    return () => { clearInterval(timer); watch.disconnect(); scheme.removeEventListener('change', make); plot?.destroy(); };
+    const end = onBeat(FRAME_MS, () => plot?.setData(data(model, lines), true));
+    return () => { end(); watch.disconnect(); scheme.removeEventListener('change', make); plot?.destroy(); };
   }, [model.patient]);
   return <section class="card strip">
     <header><h2>{title}</h2><span class="unit">{unit}</span>

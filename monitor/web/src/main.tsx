@@ -1,5 +1,6 @@
 import { render, type ComponentChildren } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
+import { beat, onBeat } from './beat';
 import { ForceStrip, PlaceStrip } from './charts';
 import { Camera } from './camera';
 import { Client } from './client';
@@ -9,11 +10,13 @@ import { Picture } from './picture';
 import { Pilot } from './pilot';
 import { Section } from './section';
 import { Sound } from './sound';
+import { Answering, ForceBar, StudyPage, type StudyView } from './study';
 import { wordsOf } from './words';
 import './style.css';
 
 const FORCE_LIMIT_N = 8.5, FORCE_SCALE_N = 3;
-const TEXT_MS = 100;
+/** Figures are read at this pace; what is news is drawn at once. */
+const TEXT_MS = 200;
 const TOKEN = 'palp-token';
 
 /** From the address once, then kept by this tab alone. */
@@ -28,29 +31,52 @@ function token(): string {
 
 const model = new Model(), sound = new Sound();
 let wantsPointer = true, askedAt = -1e9;
+let study: StudyView | undefined;  // what a study shows; undefined: there is none
 const say = (text: string, tone: '' | 'warn' | 'bad' = '') => model.happen(Date.now(), text, tone);
 
-const camera: Camera = new Camera((stamp, now) => model.ageOf(stamp, now), () => {
-  client.follow(PICTURES, false);
-  client.follow(PICTURES, true);
+const camera: Camera = new Camera({
+  age: (stamp, now) => model.ageOf(stamp, now),
+  early: age => model.early(age),
+  ask: () => { client.follow(PICTURES, false); client.follow(PICTURES, true); },
+  drew: beat,
 });
 
 const client: Client = new Client(token(), {
-  greeted: greeting => { model.begin(greeting); camera.end(); },
+  greeted: greeting => { model.begin(greeting); camera.end(); study = undefined; },
   heard: (topic, stamp, message) => {
     const now = performance.now();
     if (topic === 'camera') return camera.hear(message.data as Uint8Array, stamp, now);
     if (topic === 'camera_jpeg') return void camera.hearJpeg(message.data as Uint8Array, stamp);
+    if (topic === 'study') {
+      study = message as unknown as StudyView;
+      return redrawPage();
+    }
     model.hear(topic, stamp, message, now);
+    tellNews();
     if (topic !== 'status') return;
     const s = model.status!;
-    sound.play(model.patient ? 0 : Math.abs(s.force_n));
+    sound.play(model.patient || model.inStudy ? 0 : Math.abs(s.force_n));
     if (wantsPointer && model.hasPointer && s.pilot === 0 && now - askedAt > 1000) void takePointer(now);
   },
   said: sentence => say(sentence, 'warn'),
   ended: refused => { pilot.up(); model.refused = refused && !model.greeting; },
 });
 const pilot = new Pilot(client, model);
+const forceBar = new ForceBar();
+const answering = new Answering((trial, choice) => {
+  void client.call('study/answer', { trial, choice }).then(answer => { if (!answer.ok) say(answer.why, 'warn'); });
+});
+
+/** Draws the page at once where a word on it has changed. */
+let redrawPage = () => {}, told = '';
+function tellNews(): void {
+  const s = model.status, newest = model.happenings[0];
+  const words = [s?.state, s?.link, s?.refused, s?.pilot, s?.pilot_obstacle, s?.recording, newest?.at, newest?.text,
+    model.depth?.number, model.map?.number, model.strokes.length, model.video?.state].join();
+  if (words === told) return;
+  told = words;
+  redrawPage();
+}
 
 // Nobody looks at a hidden page: its pictures are not sent.
 const PICTURES = ['camera', 'camera_jpeg'];
@@ -78,7 +104,8 @@ addEventListener('keydown', e => {
   if (key === 'escape' && model.mayControl) void ask('stop');
   else if (key === 'm' && model.mayControl) void ask('mark');
   else if (key === 'r' && model.mayControl && model.status?.state === 'STOPPED') void ask('reset');
-  else if (key === 's') sound.toggle();
+  else if (key === 's' && !model.inStudy) sound.toggle();
+  else if (/^[1-9]$/.test(key)) answering.choose(study, Number(key));
 });
 
 function Row({ name, id, unit, tone, kind, children }: { name: string; id?: string; unit?: string; tone?: string; kind?: string; children: ComponentChildren }) {
@@ -188,6 +215,7 @@ function VideoCard() {
       <Row name="Pictures" unit="/s">{v ? v.fps.toFixed(0) : '-'}</Row>
       <Row name="Repaired" unit="%">{v && v.delivered > 0 ? (v.repaired / v.delivered * 100).toFixed(1) : '-'}</Row>
       <Row name="Not shown" unit="%">{seen > 0 ? (v!.not_shown / seen * 100).toFixed(1) : '-'}</Row>
+      {v && v.touch_held_ms > 0 && <Row name="Touch waits for it" unit="ms">{v.touch_held_ms.toFixed(0)}</Row>}
     </dl>
   </section>;
 }
@@ -221,9 +249,9 @@ function Bar({ stale }: { stale: boolean }) {
   return <header class="bar">
     <span class="brand">Palp<small>{model.greeting ? `${model.patient ? 'patient' : 'surgeon'} site${model.mayControl ? '' : ', only to look'}` : 'monitor'}</small></span>
     <span class={'state ' + words.tone} role={alarm ? 'alert' : 'status'} id="state" data-state={stale ? 'STALE' : s!.state}><b aria-hidden="true">{words.icon}</b><strong>{words.word}</strong><span>{words.text}</span></span>
-    <span class={'chip ' + (live ? 'ok' : 'bad')}><b aria-hidden="true">{live ? '✓' : '▲'}</b>Link {stale ? 'unknown' : s!.link.toLowerCase()} <em>{s && !stale ? `${s.round_trip_ms.toFixed(0)} ms` : ''}</em></span>
+    {!model.inStudy && <span class={'chip ' + (live ? 'ok' : 'bad')}><b aria-hidden="true">{live ? '✓' : '▲'}</b>Link {stale ? 'unknown' : s!.link.toLowerCase()} <em>{s && !stale ? `${s.round_trip_ms.toFixed(0)} ms` : ''}</em></span>}
     <span class={'chip ' + (s?.recording && !stale ? 'rec' : '')}><b aria-hidden="true">{s?.recording && !stale ? '●' : '○'}</b>{stale ? 'Recording unknown' : s?.recording ? 'Recording' : 'Not recording'}</span>
-    {!model.patient && <button class="ghost" aria-pressed={sound.on} onClick={() => sound.toggle()}>{sound.on ? 'Sound on' : 'Sound off'} <kbd>S</kbd></button>}
+    {!model.patient && !model.inStudy && <button class="ghost" aria-pressed={sound.on} onClick={() => sound.toggle()}>{sound.on ? 'Sound on' : 'Sound off'} <kbd>S</kbd></button>}
     {model.mayControl && <button class="ghost" id="mark" onClick={() => void ask('mark')}>Mark <kbd>M</kbd></button>}
     {model.mayControl && s?.state === 'STOPPED' && <button id="reset" onClick={() => void ask('reset')}>Reset <kbd>R</kbd></button>}
     {model.mayControl && <button class="stop" id="stop" onClick={() => void ask('stop')}>Stop <kbd>Esc</kbd></button>}
@@ -232,8 +260,17 @@ function Bar({ stale }: { stale: boolean }) {
 
 function Page() {
   const [, redraw] = useState(0);
-  useEffect(() => { const timer = setInterval(() => redraw(n => n + 1), TEXT_MS); return () => clearInterval(timer); }, []);
+  useEffect(() => {
+    redrawPage = () => redraw(n => n + 1);
+    return onBeat(TEXT_MS, redrawPage);
+  }, []);
   const s = model.status, stale = model.stale(performance.now());
+  if (model.inStudy) {
+    return <div class={'page' + (stale ? ' stale' : '')}>
+      <Bar stale={stale} />
+      {study && <StudyPage model={model} pilot={pilot} view={study} answering={answering} bar={forceBar} />}
+    </div>;
+  }
   return <div class={'page' + (stale ? ' stale' : '')}>
     <Bar stale={stale} />
     <main>

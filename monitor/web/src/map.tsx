@@ -1,4 +1,5 @@
 import { useEffect, useRef } from 'preact/hooks';
+import { onBeat } from './beat';
 import type { Model } from './model';
 import { PlaneView, type Plane } from './plane';
 import { mapWords } from './words';
@@ -10,11 +11,10 @@ export function MapCard({ model }: { model: Model }) {
   const box = useRef<HTMLDivElement>(null), view = useRef<PlaneView | undefined>(undefined);
   const known = model.plane, plane = known && { ...known, says: mapWords(model.map!) };
   useEffect(() => {
-    const timer = setInterval(() => {
-      const s = model.status, known = s && (model.patient || s.peer_sampled) && !document.hidden;
+    return onBeat(MOVE_MS, () => {
+      const s = model.status, known = s && (model.patient || s.peer_sampled);
       view.current?.move(known ? { x: model.tipX(s), y: model.tipY(s) } : undefined);
-    }, MOVE_MS);
-    return () => clearInterval(timer);
+    });
   }, []);
   const shown = useRef<Plane | undefined>(undefined);
   useEffect(() => {

@@ -15,7 +15,7 @@ export interface Status {
 }
 
 /** How the camera's pictures come. */
-export interface Video { sending: boolean; state: string; age_ms: number; kbps: number; fps: number; standing_ms: number; delivered: number; repaired: number; not_shown: number }
+export interface Video { sending: boolean; state: string; age_ms: number; kbps: number; fps: number; standing_ms: number; touch_held_ms: number; delivered: number; repaired: number; not_shown: number }
 export interface Depth { number: number; verdict: string; reason: string; depth: number; low: number; high: number; x: number; y: number }
 /** What the strokes at three places or more say together of one round inclusion. */
 export interface TissueMap { number: number; places: number; ball: Ball | undefined; doubts: string[]; next: Spot | undefined }
@@ -67,6 +67,8 @@ export class Model {
   get patient(): boolean { return this.greeting?.metadata.site === 'patient'; }
   get mayControl(): boolean { return this.greeting?.metadata.right === 'control'; }
   get hasPointer(): boolean { return this.mayControl && this.greeting?.metadata.pointer === 'yes'; }
+  /** A study gives trials here: its page shows nothing else. */
+  get inStudy(): boolean { return this.greeting?.metadata.study === 'yes'; }
   get client(): number { return Number(this.greeting?.metadata.client ?? 0); }
   get pilots(): boolean { return this.client !== 0 && this.status?.pilot === this.client; }
 
@@ -84,9 +86,13 @@ export class Model {
   /** [ms] how old what is shown of the other site is: its way here, and the silence since. */
   age(s: Status): number {
     const way = number(this.link.delay_in_ns) / 1e6 || s.round_trip_ms / 2;
-    return this.patient ? 0 : way + s.gap_ms;
+    return this.patient ? 0 : way + s.gap_ms + this.held;
   }
 
+  /** [ms] that touch is held back to be as old as the picture. */
+  private get held(): number { return this.video?.touch_held_ms ?? 0; }
+  /** [ms] until touch is as old as a picture of that age; 0 where it does not wait for pictures. */
+  early(age: number): number { return this.held > 0 ? Math.max(0, this.way + this.held - age) : 0; }
   /** [ms] of the way between the sites. */
   get way(): number { return number(this.link.delay_in_ns) / 1e6 || (this.status?.round_trip_ms ?? 0) / 2; }
   /** [ms] since the site's instant `stamp`: messages that took least tell the site's clock. */

@@ -1,12 +1,14 @@
 // The tissue in section: what was felt where, where the inclusion lies, where the tip is. Also the
 // pad to palpate with.
+import type { ComponentChildren } from 'preact';
 import { useEffect, useRef } from 'preact/hooks';
+import { onBeat } from './beat';
 import { cividis, color } from './look';
 import type { Model, Stroke } from './model';
 import type { Span } from './plane';
 import type { Pilot } from './pilot';
 
-const SPAN_MM = 52, ABOVE_MM = 9;
+export const SPAN_MM = 52, ABOVE_MM = 9;
 const FRAME_MS = 50;
 
 /** Least and most stiffness felt [N/m]; a little apart at least. */
@@ -17,46 +19,56 @@ export function stiffnessRange(strokes: Stroke[]): [number, number] {
   return [low, Math.max(high, low + 20)];
 }
 
-export function Section({ model, pilot, control }: { model: Model; pilot: Pilot; control: boolean }) {
+/** Draws into both canvases, of so many pixels: what stands below, and what moves above it. */
+export type Paint = (under: HTMLCanvasElement, over: HTMLCanvasElement, w: number, h: number) => void;
+
+/** What one palpates on by pointer and keys: `SPAN_MM` wide. `control`: it moves the hand. */
+export function Pad({ pilot, control, label, paint, children }: { pilot: Pilot; control: boolean; label: string; paint: Paint; children?: ComponentChildren }) {
   const pad = useRef<HTMLDivElement>(null), over = useRef<HTMLCanvasElement>(null), under = useRef<HTMLCanvasElement>(null);
-  const scale = useRef(0.1);  // [mm/px]
+  const scale = useRef(0.1), painter = useRef(paint);  // [mm/px]
+  painter.current = paint;
   useEffect(() => {
-    const view = { left: -16 };
-    // No animation frames: asking for them makes a browser without a GPU make all 60 a second.
-    const timer = setInterval(() => {
-      const { clientWidth: w, clientHeight: h } = pad.current!;
-      if (w < 20 || h < 20 || document.hidden) return;
+    return onBeat(FRAME_MS, () => {
+      const { clientWidth: w, clientHeight: h } = pad.current ?? { clientWidth: 0, clientHeight: 0 };
+      if (w < 20 || h < 20) return;
       scale.current = SPAN_MM / w;
-      draw(model, pilot, control, view, under.current!, over.current!, w, h);
-    }, FRAME_MS);
-    return () => clearInterval(timer);
-  }, [control]);
+      painter.current(under.current!, over.current!, w, h);
+    });
+  }, []);
+  return <div ref={pad} class="pad" id="pad" tabIndex={control ? 0 : -1} role="application" aria-label={label}
+    onPointerDown={e => {
+      if (!control || e.button !== 0 || !e.isPrimary) return;
+      (e.currentTarget as HTMLElement).focus();
+      (e.currentTarget as HTMLElement).setPointerCapture(e.pointerId);
+      pilot.down(e.pointerId, e.clientX, e.clientY);
+      e.preventDefault();
+    }}
+    onPointerMove={e => pilot.draw(e.pointerId, e.buttons, e.clientX, e.clientY, scale.current, e.shiftKey)}
+    onPointerUp={() => pilot.up()} onPointerCancel={() => pilot.up()} onLostPointerCapture={() => pilot.up()}
+    onContextMenu={e => e.preventDefault()}
+    onKeyDown={e => { if (control && (e.repeat || pilot.key(e.key, true)) && e.key !== 'Escape' && e.key !== 'Tab') e.preventDefault(); }}
+    onKeyUp={e => { if (control && pilot.key(e.key, false)) e.preventDefault(); }}
+    onBlur={() => pilot.up()}>
+    <canvas ref={under} aria-hidden="true" /><canvas ref={over} aria-hidden="true" />
+    {children}
+  </div>;
+}
+
+export function Section({ model, pilot, control }: { model: Model; pilot: Pilot; control: boolean }) {
+  const view = useRef({ left: -16 });
   const [low, high] = stiffnessRange(model.strokes);
   return <section class="card section">
     <header><h2>Tissue in section</h2><span class="unit">stiffness felt, N/m</span>
       <span class="scale"><i>{low}</i><b /><i>{high}</i></span></header>
-    <div ref={pad} class="pad" id="pad" tabIndex={control ? 0 : -1} role="application"
-      aria-label={control ? 'Palpation pad. Hold Space to engage, arrow keys move the finger, release Space to let go, Escape stops.' : 'Section through the tissue'}
-      onPointerDown={e => {
-        if (!control || e.button !== 0 || !e.isPrimary) return;
-        (e.currentTarget as HTMLElement).focus();
-        (e.currentTarget as HTMLElement).setPointerCapture(e.pointerId);
-        pilot.down(e.pointerId, e.clientX, e.clientY);
-        e.preventDefault();
-      }}
-      onPointerMove={e => pilot.draw(e.pointerId, e.buttons, e.clientX, e.clientY, scale.current, e.shiftKey)}
-      onPointerUp={() => pilot.up()} onPointerCancel={() => pilot.up()} onLostPointerCapture={() => pilot.up()}
-      onContextMenu={e => e.preventDefault()}
-      onKeyDown={e => { if (control && (e.repeat || pilot.key(e.key, true)) && e.key !== 'Escape' && e.key !== 'Tab') e.preventDefault(); }}
-      onKeyUp={e => { if (control && pilot.key(e.key, false)) e.preventDefault(); }}
-      onBlur={() => pilot.up()}>
-      <canvas ref={under} aria-hidden="true" /><canvas ref={over} aria-hidden="true" />
+    <Pad pilot={pilot} control={control}
+      label={control ? 'Palpation pad. Hold Space to engage, arrow keys move the finger, release Space to let go, Escape stops.' : 'Section through the tissue'}
+      paint={(under, over, w, h) => draw(model, pilot, control, view.current, under, over, w, h)}>
       {control && <p class="hint"><kbd>hold</kbd> to engage, <kbd>drag down</kbd> to press, <kbd>sideways</kbd> to move, <kbd>release</kbd> to let go</p>}
-    </div>
+    </Pad>
   </section>;
 }
 
-function prepare(canvas: HTMLCanvasElement, w: number, h: number): CanvasRenderingContext2D {
+export function prepare(canvas: HTMLCanvasElement, w: number, h: number): CanvasRenderingContext2D {
   const k = devicePixelRatio || 1, wide = Math.round(w * k), high = Math.round(h * k);
   if (canvas.width !== wide || canvas.height !== high) { canvas.width = wide; canvas.height = high; }
   const g = canvas.getContext('2d')!;
@@ -217,8 +229,8 @@ function indenter(g: CanvasRenderingContext2D, x: number, y: number, mm: number,
   g.globalAlpha = 1;
 }
 
-/** Between the tip, which is, and the finger, which is wanted: its length is the force. */
-function spring(g: CanvasRenderingContext2D, tx: number, ty: number, fx: number, fy: number, force: number, engaged: boolean): void {
+/** Between the tip, which is, and the finger, which is wanted: its length is the force; undefined: that is not told. */
+export function spring(g: CanvasRenderingContext2D, tx: number, ty: number, fx: number, fy: number, force: number | undefined, engaged: boolean): void {
   const turns = 9;
   g.strokeStyle = color(engaged ? '--hand' : '--muted');
   g.lineWidth = 2.25;
@@ -232,13 +244,13 @@ function spring(g: CanvasRenderingContext2D, tx: number, ty: number, fx: number,
   g.stroke();
   g.fillStyle = color('--halo');
   g.beginPath();
-  g.arc(fx, fy + 11, 13 + 14 * Math.min(3, force), 0, 7);
+  g.arc(fx, fy + 11, 13 + 14 * Math.min(3, force ?? 0), 0, 7);
   g.fill();
   g.lineWidth = 2.5;
   g.beginPath();
   g.arc(fx, fy + 11, 11, 0, 7);
   g.stroke();
-  if (engaged) {
+  if (engaged && force !== undefined) {
     g.font = '600 13px system-ui';
     g.fillStyle = color('--text');
     g.fillText(`${force.toFixed(2)} N`, fx + 18 + 14 * Math.min(3, force), fy + 15);

@@ -22,12 +22,23 @@ TEST(LocateSessionTest, NineTapsOverALinkFindTheBall) {
   EXPECT_EQ(one.coordinates[0].truth, -2e-3);
 }
 
-TEST(LocateSessionTest, ASearchEndsByItself) {
-  const LocateCase one =
-      first_case({.count = 1, .seed = 3, .script = "search", .round_trip = 0.2, .loss = 0.05});
-  EXPECT_TRUE(one.right());
-  EXPECT_GE(one.strokes, 3U);
-  EXPECT_LT(one.strokes, 20U);
+/// It ends where one standard deviation is 1 mm, so that some are not right within 1 mm.
+TEST(LocateSessionTest, ASearchEndsByItselfAndMostAreRight) {
+  constexpr std::uint32_t kBalls = 4;
+  LocateStudy study{
+      .count = kBalls, .seed = 3, .script = "search", .round_trip = 0.2, .loss = 0.05};
+  ASSERT_TRUE(take_ball("depth=5 radius=14 ratio=500 at=-2,5", study));
+  const auto bench = LocateBench::make(study);
+  ASSERT_TRUE(bench);
+  std::uint32_t right = 0;
+  for (std::uint32_t i = 0; i < kBalls; ++i) {
+    const LocateCase one = bench->run(i);
+    right += one.right() ? 1U : 0U;
+    EXPECT_TRUE(one.found);
+    EXPECT_GE(one.strokes, 3U);
+    EXPECT_LT(one.strokes, 20U);
+  }
+  EXPECT_GE(right, 3U);
 }
 
 TEST(LocateSessionTest, PlainTissueHasNoBall) {

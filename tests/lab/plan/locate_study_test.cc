@@ -55,6 +55,21 @@ TEST(LocateStudyTest, ReportsCountWhatWasFoundAndWhatWasNot) {
   EXPECT_EQ(locate_figure(cases).panels.size(), 3U);
 }
 
+TEST(LocateStudyTest, ARuleOfTheNextTapGoesWithNoSessionAndIsReported) {
+  LocateFlags flags;
+  flags.rule = "gp";
+  flags.script = "map";
+  EXPECT_EQ(run_locate(flags, {}).code, config::ExitCode::BadInput);
+  const LocateStudy study{.count = 1, .rule = TapRule::Gp};
+  std::vector<LocateCase> cases{told(0, true, true), told(1, true, true), told(2, true, true)};
+  cases[0].searched.known = 9;
+  cases[1].searched.known = 12;
+  const std::string report = locate_report(study, cases, "");
+  EXPECT_THAT(report, testing::HasSubstr("\"next_tap\": \"gp\""));
+  EXPECT_THAT(report, testing::HasSubstr("\"touches_known_p50\": 12.0")) << "never is late";
+  EXPECT_THAT(report, testing::HasSubstr("\"touches_near_p50\": 0.0"));
+}
+
 TEST(LocateStudyTest, TheCommandTakesItsFlags) {
   LocateFlags flags;
   config::CommandLine line{"palp-lab", ""};

@@ -42,8 +42,8 @@ TEST(DeviceTimingTest, ASessionWithSlowDevicesIsStable) {
   for (const Case& one : plan->cases) {
     const auto scenario = make_case(*plan, one);
     ASSERT_TRUE(scenario) << scenario.error().text;
-    EXPECT_FALSE(scenario->hand_timing.at_once());
-    EXPECT_EQ(hand_facts_of(*scenario).rate, scenario->hand_timing.rate);
+    EXPECT_FALSE(scenario->timings.hand.at_once());
+    EXPECT_EQ(hand_facts_of(*scenario).rate, scenario->timings.hand.rate);
     EXPECT_GT(patient_devices_of(*scenario).stage.lag, scenario->tissue.stage_lag);
     EXPECT_FALSE(simulate(*scenario).metrics.unstable);
   }

@@ -37,7 +37,9 @@ Bytes axes_bytes(std::int16_t position, bool pedal, std::size_t length = 25) {
 class ForceFeedbackBoardTest : public testing::Test {
  protected:
   ForceFeedbackBoardTest()
-      : bench_{std::make_unique<ForceFeedbackBoard>(0), ForceFeedbackBoard::address(), built_in()} {
+      : bench_{std::make_unique<ForceFeedbackBoard>(0, AnswerButtons{{5, 63}}),
+               ForceFeedbackBoard::address(),
+               built_in()} {
     fake_hid::Device made;
     made.path = "board";
     made.vendor = 0x1209;
@@ -127,6 +129,21 @@ TEST_F(ForceFeedbackBoardTest, AStillHandleIsNotSilentAndAQuarterSecondIs) {
   }
   for (int i = 0; i < 250; ++i) reading = bench_.step();
   EXPECT_EQ(reading.why, "it fell silent");
+}
+
+TEST_F(ForceFeedbackBoardTest, AnyOfItsButtonsMayAnswer) {
+  EXPECT_EQ(until_ready().answers, 0U) << "the pedal is held, and is no answer";
+  Bytes first = axes_bytes(0, true);
+  first[1] |= 1U << 5U;
+  Bytes second = axes_bytes(0, true);
+  second[8] = 0x80;
+  raw_->input.push_back(first);
+  EXPECT_EQ(bench_.step().answer, 1U);
+  raw_->input.push_back(second);
+  const MasterReading reading = bench_.step();
+  EXPECT_EQ(reading.answer, 2U);
+  EXPECT_EQ(reading.answers, 2U);
+  EXPECT_TRUE(reading.pedal_held);
 }
 
 TEST_F(ForceFeedbackBoardTest, PositionAndPedalOfBothBuilds) {

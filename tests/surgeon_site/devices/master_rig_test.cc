@@ -24,6 +24,7 @@ TEST(MasterRigTest, TellsByNameThatTheMasterIsNotThere) {
   EXPECT_EQ(news->sentence, "master (Teensy paddle): absent, cannot be opened");
   EXPECT_FALSE(rig.news());
   EXPECT_FALSE(rig.ready());
+  EXPECT_FALSE(rig.take_answer());
   EXPECT_FALSE(rig.hopeless(std::chrono::seconds{1}));
   EXPECT_EQ(rig.hopeless(std::chrono::seconds{6}), news->sentence);
   EXPECT_TRUE(rig.device().read(clock.now()).faulted);

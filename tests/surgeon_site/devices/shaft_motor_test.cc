@@ -52,7 +52,8 @@ class ShaftBench {
     return make_master_plan(*master_named("orca"),
                             "master { address: \"tcp:127.0.0.1:5020\" "
                             "zero_mm: 60 travel_min_mm: -60 force_max_n: 20 "
-                            "pedal { vendor: 1523 product: 255 byte: 1 mask: 2 } }",
+                            "pedal { vendor: 1523 product: 255 byte: 1 mask: 2 } "
+                            "answer { button: 0 } answer { button: 10 } }",
                             "hand")
         .value();
   }
@@ -135,6 +136,20 @@ TEST(ShaftMotorTest, ThePedalIsABitOfTheOtherDevicesReports) {
   const std::uint64_t before = shaft.reading.number;
   shaft.pedal->input.push_back({0, 1});
   EXPECT_EQ(shaft.step(0).number, before + 1) << "it is no reading of the shaft";
+}
+
+// A pedal of three switches: one engages, two answer.
+TEST(ShaftMotorTest, FurtherBitsOfThePedalAnswer) {
+  ShaftBench shaft;
+  (void)shaft.steps(40, 0);
+  shaft.pedal->input.push_back({0, 2});
+  EXPECT_EQ(shaft.step(0).answers, 0U);
+  shaft.pedal->input.push_back({1, 2});
+  EXPECT_EQ(shaft.step(0).answer, 1U);
+  shaft.pedal->input.push_back({0, 6});
+  EXPECT_EQ(shaft.step(0).answer, 2U);
+  EXPECT_EQ(shaft.reading.answers, 2U);
+  EXPECT_TRUE(shaft.reading.pedal_held);
 }
 
 TEST(ShaftMotorTest, OnTheWayOutItSleeps) {

@@ -19,7 +19,7 @@ MasterInstallation built_in() {
 class SpaceMouseTest : public testing::Test {
  protected:
   SpaceMouseTest()
-      : bench_{std::make_unique<SpaceMouse>(SpaceMouse::Rates{}),
+      : bench_{std::make_unique<SpaceMouse>(SpaceMouse::Rates{}, AnswerButtons{{1, 8}}),
                SpaceMouse::addresses()[0],
                built_in()} {
     fake_hid::Device made;
@@ -50,6 +50,22 @@ TEST_F(SpaceMouseTest, AtRestItSaysNothingAndStandsWhereItBegan) {
   EXPECT_EQ(reading.state, MasterState::Ready);
   EXPECT_EQ(reading.position, -10e-3);
   EXPECT_EQ(reading.velocity, 0);
+}
+
+// A press counts once, however long it lasts; a pedal is no answer.
+TEST_F(SpaceMouseTest, ItsOtherButtonsAnswer) {
+  MasterReading reading = run_for_ms(30, bytes_of("03 01 00 00 00 00 00"));
+  EXPECT_TRUE(reading.pedal_held);
+  EXPECT_EQ(reading.answers, 0U);
+  reading = run_for_ms(30, bytes_of("03 03 00 00 00 00 00"));
+  EXPECT_TRUE(reading.pedal_held);
+  EXPECT_EQ(reading.answers, 1U);
+  EXPECT_EQ(reading.answer, 1U);
+  reading = run_for_ms(30, bytes_of("03 00 00 00 00 00 00"));
+  EXPECT_EQ(reading.answers, 1U) << "letting go is no answer";
+  reading = run_for_ms(30, bytes_of("03 00 01 00 00 00 00"));
+  EXPECT_EQ(reading.answers, 2U);
+  EXPECT_EQ(reading.answer, 2U);
 }
 
 TEST_F(SpaceMouseTest, FullyDeflectedItGoesAtItsRate) {

@@ -1,0 +1,75 @@
+#include "study/person_trial.h"
+
+namespace palp::study {
+namespace {
+
+constexpr double kContact = 0.1;  // [N], above the noise and the steps of a sensor
+
+PersonStage stage_of(TrialStage stage) noexcept {
+  switch (stage) {
+    case TrialStage::Travel:
+      return PersonStage::Travel;
+    case TrialStage::Explore:
+      return PersonStage::Touch;
+    case TrialStage::Answer:
+      return PersonStage::Answer;
+    case TrialStage::Told:
+      return PersonStage::Told;
+    case TrialStage::Done:
+      return PersonStage::Done;
+    case TrialStage::Ended:
+      break;
+  }
+  return PersonStage::Press;
+}
+
+}  // namespace
+
+void PersonTrial::begin_anew(PersonNotice why) noexcept {
+  trial_.reset();
+  notice_ = why;
+  stage_ = PersonStage::Press;
+}
+
+void PersonTrial::tick(TimePoint now, const SiteNews& news, std::optional<std::size_t> answer) {
+  if (stage_ == PersonStage::Done) return;
+  if (!offered_at_) offered_at_ = now;
+  if (!trial_) {
+    const bool touches = news.contact_force > kContact;
+    stage_ = news.engaged && touches ? PersonStage::Lift : PersonStage::Press;
+    if (!news.engaged || touches) return;
+    trial_.emplace(plan_.places.size(), plan_.taps, plan_.practice, plan_.times, plan_.choices);
+    ++attempts_;
+  }
+  step(now, news, answer);
+}
+
+void PersonTrial::step(TimePoint now, const SiteNews& news, std::optional<std::size_t> answer) {
+  trial_->tick(now,
+               {.force = news.force,
+                .contact = news.contact_force > kContact,
+                .pedal = news.engaged,
+                .answer = answer});
+  if (trial_->stage() == TrialStage::Ended) return begin_anew(PersonNotice::LetGo);
+  const PersonStage next = stage_of(trial_->stage());
+  const bool came = stage_ == PersonStage::Travel && next == PersonStage::Touch;
+  if (came && distance(news.stands, plan_.places[trial_->interval()]) > kSamePlace) {
+    return begin_anew(PersonNotice::HeldUp);
+  }
+  stage_ = next;
+  if (stage_ == PersonStage::Travel) {
+    place_ = trial_->by_decoy(now) ? plan_.decoy : plan_.places[trial_->interval()];
+  }
+}
+
+TrialOutcome PersonTrial::outcome(TimePoint now) const {
+  return {.chosen = *trial_->answer(),
+          .onset = 0,
+          .duration = seconds(now - *offered_at_),
+          .response_time = seconds(trial_->response_time()),
+          .taps = trial_->taps(),
+          .force_max = trial_->force_max(),
+          .contact = seconds(trial_->contact())};
+}
+
+}  // namespace palp::study

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/core/result.h"
+#include "common/core/time.h"
+#include "common/io/process/child_program.h"
+#include "common/io/process/message_pipe.h"
+#include "common/record/notes.h"
+#include "study/person_trial.h"
+#include "study/study_file.h"
+
+/// Both sites of a session, as programs of this machine.
+namespace palp::study {
+
+/// The hand's device, as for palp-surgeon.
+struct HandSetting {
+  std::string master{"pointer"};
+  std::string devices{};             ///< file; empty: none is needed
+  std::uint16_t monitor_port{8080};  ///< 0: any free one
+};
+
+struct SiteSetting {
+  std::string programs{};  ///< folder of palp-surgeon and palp-patient
+  std::string work{};      ///< folder of one's own: what the programs read and say
+  std::string tissue{};    ///< as tray_csv() has it
+  std::string traces{};    ///< beginning of the session files' paths
+  HandSetting hand{};
+};
+
+/// An answer as it came from the page, or by a button of the hand's device.
+struct SiteAnswer {
+  std::uint32_t trial{};   ///< as show() numbered it; 0: by a button, of the trial that asks
+  std::uint32_t choice{};  ///< from 1
+  TimePoint at{};
+};
+
+/// palp-patient with a simulated tissue and palp-surgeon, which what arrives at each reaches as the
+/// condition's link lets it. They end with it. Blocks while they start. Thread: its maker's.
+class SiteSession {
+ public:
+  /// Waits until the page can be opened. The error is a CannotOpen with the program's own sentence.
+  [[nodiscard]] static Result<SiteSession> start(const Condition& condition,
+                                                 const SiteSetting& setting);
+
+  /// Of the participant's page.
+  [[nodiscard]] const std::string& page() const noexcept { return page_; }
+  /// Takes what came; waits 20 ms where nothing has.
+  void listen();
+  /// As last heard.
+  [[nodiscard]] const SiteNews& news() const noexcept { return news_; }
+  /// The oldest that was not taken.
+  [[nodiscard]] std::optional<SiteAnswer> take_answer() noexcept;
+  void send_place(const Place& place);
+  /// JSON for the page.
+  void show(const std::string& view);
+  void note(record::NoteCode code, double detail, TimePoint at);
+  /// Nothing: both sites run. Else why not.
+  [[nodiscard]] std::optional<Error> fault();
+  /// Lets both sites close their files.
+  void stop();
+
+ private:
+  SiteSession(io::ChildProgram patient, io::ChildProgram surgeon, io::MessagePipe pipe) noexcept
+      : patient_{std::move(patient)}, surgeon_{std::move(surgeon)}, pipe_{std::move(pipe)} {}
+  void hear(const std::string& message);
+
+  io::ChildProgram patient_;
+  io::ChildProgram surgeon_;
+  std::optional<io::MessagePipe> pipe_;  ///< none once it was stopped
+  std::string log_;                      ///< of the surgeon's program
+  std::string page_;
+  SiteNews news_;
+  std::optional<SiteAnswer> answer_;
+};
+
+}  // namespace palp::study

@@ -1,0 +1,114 @@
+#include "common/coupling/contradiction.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "common/coupling/mmt.h"
+#include "tests/common/coupling/hand_loop.h"
+
+namespace palp::coupling {
+namespace {
+
+TEST(ContradictionTest, WhoLearnsTakesNothingBack) {
+  Contradiction contradiction;
+  for (int news = 0; news < 1000; ++news) {
+    contradiction.tell(2e-3 + (news % 2 == 0 ? 0.02 : -0.02));  // 2 N in all, and noise
+    contradiction.age(1e-3);
+  }
+  EXPECT_EQ(contradiction.taken_back(), 0);
+}
+
+TEST(ContradictionTest, WhatIsRaisedAndLoweredAgainIsTakenBack) {
+  for (const double first : {0.5, -0.5}) {
+    Contradiction contradiction;
+    contradiction.tell(first);
+    EXPECT_EQ(contradiction.taken_back(), 0);
+    contradiction.tell(-first);
+    EXPECT_NEAR(contradiction.taken_back(), 0.44, 1e-9) << "less the play, to either side";
+    contradiction.tell(first);
+    contradiction.tell(-first);
+    EXPECT_NEAR(contradiction.taken_back(), 0.88, 1e-9);
+  }
+}
+
+TEST(ContradictionTest, IsForgottenWithinSomeSeconds) {
+  Contradiction contradiction;
+  contradiction.tell(0.5);
+  contradiction.tell(-0.5);
+  const double at_first = contradiction.taken_back();
+  for (int tick = 0; tick < 30'000; ++tick) contradiction.age(1e-3);
+  EXPECT_NEAR(contradiction.taken_back() / at_first, 0.05, 0.001);
+}
+
+/// What a patient site tells after a time [s].
+using Story = std::function<ModelPayload(double)>;
+
+/// How far a light hand that holds in the tissue is moved to and fro in the last two of eight
+/// seconds [m].
+double moved(const Story& story, const MmtConfig& config) {
+  hand_loop::Hand hand{.stiffness = 100};
+  MmtSurgeon law{config};
+  law.begin_epoch(hand.position);
+  double force = 0;
+  double least = 1;
+  double most = -1;
+  for (std::uint64_t tick = 0; tick < 8000; ++tick) {
+    const double at = 1e-3 * static_cast<double>(tick);
+    hand.live(std::min(4e-3, -3e-3 + 10e-3 * at), force);
+    Incoming incoming;
+    incoming.sample.payload = story(at);
+    incoming.fresh = true;
+    const std::array arrived{incoming};
+    SurgeonInput in;
+    in.state = SiteState::Engaged;
+    in.position = hand.position;
+    in.force_applied = force;
+    in.arrived = arrived;
+    force = law.step(in, std::chrono::milliseconds{1}).force;
+    if (tick < 6000) continue;
+    least = std::min(least, hand.position);
+    most = std::max(most, hand.position);
+  }
+  return most - least;
+}
+
+ModelPayload soft_or_stiff(double at) {
+  return {.version = 1, .c = {0, std::fmod(at, 0.4) < 0.2 ? 0.05 : 0.3}, .depth_max = 5e-3};
+}
+
+ModelPayload another_breath(double at) {
+  return {.version = 1,
+          .c = {0, 0.15},
+          .depth_max = 5e-3,
+          .swing = std::fmod(at, 0.4) < 0.2 ? 2e-3 : -2e-3,
+          .swing_quadrature = std::fmod(at, 0.4) < 0.2 ? 2e-3 : -2e-3,
+          .swing_rate = 6};
+}
+
+TEST(MmtSurgeonTest, APeerThatTakesBackWhatItToldMovesNoHand) {
+  MmtConfig all_believed;
+  all_believed.believed = 1e9;
+  for (const Story& story : {Story{soft_or_stiff}, Story{another_breath}}) {
+    const double unguarded = moved(story, all_believed);
+    EXPECT_GT(unguarded, 0.5e-3) << "there is something to hold back";
+    EXPECT_LT(moved(story, {}), 0.25 * unguarded);
+  }
+}
+
+TEST(MmtSurgeonTest, APeerThatLearnsIsFollowedAtOnce) {
+  MmtConfig all_believed;
+  all_believed.believed = 1e9;
+  // Of ever more, as a tissue is found: half of it comes after 6.5 s.
+  const auto learned = [](double at) {
+    return ModelPayload{.version = 1, .c = {0, at < 6.5 ? 0.1 : 0.2}, .depth_max = 5e-3};
+  };
+  EXPECT_GT(moved(learned, {}), 0.2e-3);
+  EXPECT_EQ(moved(learned, {}), moved(learned, all_believed));
+}
+
+}  // namespace
+}  // namespace palp::coupling
