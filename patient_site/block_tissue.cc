@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "common/core/check.h"
 #include "common/core/conventions.h"
 #include "common/core/number_text.h"
 #include "common/core/random.h"
@@ -65,6 +64,11 @@ Result<void> check(const BlockTissue& tissue) {
   const std::vector<PlacedInclusion>& all = tissue.inclusions;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (auto ok = tissue.database->contains(all[i].body); !ok) return ok;
+    const double under = all[i].body.depth + 2 * all[i].body.radius;
+    if (all[i].body.shape == fem::InclusionShape::Ball && tissue.height && under > *tissue.height) {
+      return fail("ball " + std::to_string(i + 1) +
+                  number_text(" reaches down to ", under / kMillimetre, 1, " mm, below the block"));
+    }
     if (all[i].body.shape == fem::InclusionShape::Ball && !tissue.database->solved_beside()) {
       return fail(
           "the depth database knows no force beside a ball; build it with palp-fem database "
@@ -82,7 +86,7 @@ Result<void> check(const BlockTissue& tissue) {
   return {};
 }
 
-ForceTable plain_table(const BlockTissue& tissue) {
+Result<ForceTable> plain_table(const BlockTissue& tissue) {
   constexpr double kStep = 20e-6;  // [m]; the table's own interpolation is exact to 1e-5 then
   const depth::DepthDatabase& database = *tissue.database;
   const fem::DepthGrid& grid = database.grid();
@@ -101,8 +105,8 @@ ForceTable plain_table(const BlockTissue& tissue) {
     rows.push_back({d, force});
   }
   Result<ForceTable> table = ForceTable::make(std::move(rows));
-  PALP_CHECK(table.has_value(), "a block makes a sound table");
-  return std::move(*table);
+  if (!table) return fail("the block's force", table.error());
+  return table;
 }
 
 BlockField::BlockField(const BlockTissue& tissue, const ForceTable& plain, double viscous_factor)

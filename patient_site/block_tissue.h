@@ -58,11 +58,13 @@ struct BlockTissue {
 };
 
 /// Whether the database knows its inclusions, none is nearer to another than the smaller one is
-/// wide, and the surface is as even as it was computed: slopes to 20 degrees, radii of four tips.
+/// wide, no ball reaches below the block, and the surface is as even as it was computed: slopes to
+/// 20 degrees, radii of four tips.
 [[nodiscard]] Result<void> check(const BlockTissue& tissue);
 
 /// The block's force without inclusions and where E is `youngs_modulus`, across its surface.
-[[nodiscard]] ForceTable plain_table(const BlockTissue& tissue);
+/// Errors: of ForceTable::make, where the database presses too little or too hard for a table.
+[[nodiscard]] Result<ForceTable> plain_table(const BlockTissue& tissue);
 
 /// The tip comes along the normal of the stage's plane. On a sloping surface
 ///   F(d) = cos t F_n(d cos t), the contact walking d sin t downhill,

@@ -71,22 +71,22 @@ double solved_depth(const BlockTissue& block) {
 }
 
 /// The force at one place over the indentation. [m]
-ForceTable table_at(const TissueField& field, const Place& place, double depth) {
+std::vector<ForceRow> rows_at(const TissueField& field, const Place& place, double depth) {
   constexpr double kStep = 20e-6;  // [m]
   std::vector<ForceRow> rows;
   const int count = static_cast<int>(depth / kStep + 1e-6);
   for (int i = 0; i <= count; ++i)
     rows.push_back({i * kStep, field.elastic_force(place, i * kStep)});
-  Result<ForceTable> table = ForceTable::make(std::move(rows));
-  PALP_CHECK(table.has_value(), "a field makes sound tables");
-  return std::move(*table);
+  return rows;
 }
 
 Result<Phantom> block_phantom(std::string_view spec, std::string_view text) {
   auto described = parse_tissue_words(text);
   if (!described) return fail("phantom '" + std::string{spec} + "'", described.error());
   BlockTissue block = std::move(described->block);
-  ForceTable plain = plain_table(block);
+  auto made = plain_table(block);
+  if (!made) return fail("phantom '" + std::string{spec} + "'", made.error());
+  const ForceTable& plain = *made;
   Phantom phantom{.name = std::string{spec},
                   .plain = plain,
                   .over = plain,
@@ -104,7 +104,12 @@ Result<Phantom> block_phantom(std::string_view spec, std::string_view text) {
     phantom.ratio = first.body.ratio;
     phantom.shape = std::string{to_string(first.body.shape)};
   }
-  phantom.over = table_at(BlockField{block, plain, 0}, phantom.axis, solved_depth(block));
+  auto over =
+      ForceTable::make(rows_at(BlockField{block, plain, 0}, phantom.axis, solved_depth(block)));
+  if (!over) {
+    return fail("phantom '" + std::string{spec} + "': the force above the inclusion", over.error());
+  }
+  phantom.over = std::move(*over);
   phantom.block = std::move(block);
   phantom.words = std::string{text};
   return phantom;
@@ -198,9 +203,9 @@ Result<Phantom> random_phantom(std::string_view spec, std::string_view seed_text
   return drawn_tissue(seed);
 }
 
-void append_rows(std::string& text, const Place& place, const ForceTable& table) {
+void append_rows(std::string& text, const Place& place, std::span<const ForceRow> rows) {
   std::array<char, 96> line{};
-  for (const ForceRow& row : table.rows()) {
+  for (const ForceRow& row : rows) {
     std::snprintf(line.data(),
                   line.size(),
                   "%.9g,%.9g,%.9g,%.9g\n",
@@ -269,11 +274,12 @@ Result<Phantom> make_phantom(std::string_view spec) {
 
 std::string tissue_csv(const Phantom& phantom) {
   std::string text = "x_mm,y_mm,d_mm,F_N\n";
-  for (const PlacedCurve& curve : phantom.survey) append_rows(text, curve.place, curve.table);
+  for (const PlacedCurve& curve : phantom.survey)
+    append_rows(text, curve.place, curve.table.rows());
   if (!phantom.survey.empty()) return text;
   if (!phantom.block) {
-    append_rows(text, kSiteA, phantom.plain);
-    append_rows(text, phantom.axis, phantom.over);
+    append_rows(text, kSiteA, phantom.plain.rows());
+    append_rows(text, phantom.axis, phantom.over.rows());
     return text;
   }
   std::vector<Place> places{kSiteA};
@@ -282,7 +288,7 @@ std::string tissue_csv(const Phantom& phantom) {
   }
   const BlockField field{*phantom.block, phantom.plain, 0};
   for (const Place& place : places)
-    append_rows(text, place, table_at(field, place, phantom.depth_max()));
+    append_rows(text, place, rows_at(field, place, phantom.depth_max()));
   return text;
 }
 

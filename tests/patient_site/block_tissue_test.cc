@@ -10,6 +10,7 @@
 
 #include "fem/off_axis_curve.h"
 #include "patient_site/phantom.h"
+#include "patient_site/tissue_words.h"
 
 namespace palp::patient {
 namespace {
@@ -179,6 +180,8 @@ TEST(BlockTissueTest, WhatNobodyComputedIsRefused) {
            {"surface slope_x=19 slope_y=19", "more than 20 degrees"},
            {"surface radius=10", "below 20 mm, four tip radii"},
            {"surface slope_x=21", "is not a number from -20 to 20"},
+           {"block height=15; ball depth=6 radius=5", "ball 1 reaches down to 16.0 mm, below"},
+           {"surface radius=19", "four tip radii, which nobody computed"},
            {"block e_kpa=soft", "is not a number from 0.1 to 1000"},
            {"block law=jelly", "there is no law 'jelly'"},
            {"block depth=3", "'depth' is unknown of a block; there are e_kpa, height"},
@@ -191,6 +194,15 @@ TEST(BlockTissueTest, WhatNobodyComputedIsRefused) {
     EXPECT_THAT(phantom.error().text, HasSubstr(sentence));
     EXPECT_THAT(phantom.error().text, HasSubstr(std::string{"phantom '"} + words));
   }
+}
+
+TEST(BlockTissueTest, ABlockThatPressesHarderThanATableHoldsIsRefused) {
+  BlockTissue block = parse_tissue_words("block e_kpa=1000")->block;
+  EXPECT_TRUE(plain_table(block));
+  block.youngs_modulus = 1e12;
+  const auto plain = plain_table(block);
+  ASSERT_FALSE(plain);
+  EXPECT_THAT(plain.error().text, HasSubstr("the block's force: row 2"));
 }
 
 }  // namespace
