@@ -94,6 +94,10 @@ Result<DepthTable> start_table(const DatabaseFlags& flags) {
     if (::access(name.c_str(), F_OK) != 0) continue;
     auto found = load_table(name);
     if (!found) return found;
+    if (found->made_by != table.made_by) {
+      return fail(name + " was made by \"" + printable(found->made_by) + "\", asked for is \"" +
+                  table.made_by + "\"; remove it first");
+    }
     if (auto merged = merge_table(table, *found); !merged) {
       return fail(name + ": " + merged.error().text + " than asked for; remove it first");
     }
@@ -238,7 +242,8 @@ ExitStatus run_database(const DatabaseFlags& flags) {
   if (auto added = add_shape_if_asked(*table, flags); !added) {
     return bad_input(added.error().text);
   }
-  ExitStatus exit_status = save(*table, flags);
+  const ExitStatus exit_status = save(*table, flags);
+  if (exit_status.code != ExitCode::Done) return exit_status;  // the parts are all there is
   for (std::size_t core = 0; core < flags.cores; ++core) {
     static_cast<void>(std::remove(part_name(flags.out, core).c_str()));
   }

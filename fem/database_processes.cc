@@ -171,7 +171,9 @@ Result<void> solve_on_all_cores(const DepthTable& table,
     failed = sentence;
     --running;
   }
-  if (!failed.empty()) return fail(failed + "; what was solved is kept, start again to go on");
+  if (!failed.empty()) {
+    return fail(failed + "; what its part files hold is kept, start again to go on");
+  }
   return {};
 }
 

@@ -142,6 +142,16 @@ TEST(DatabaseBuilderTest, LeavesOutWhatDoesNotFit) {
   EXPECT_NEAR(indentation_limit(grid, 20e-3), 5e-3, 1e-12);
 }
 
+TEST(DatabaseCommandTest, AFileOfAnotherAccuracyIsNotGoneOnWith) {
+  const std::string out = testing::TempDir() + "depth_table_normal.bin";
+  DepthTable normal = small_table();
+  normal.made_by = "accuracy normal";
+  std::ofstream{out, std::ios::binary} << table_bytes(normal);
+  const auto fine = run_database({.out = out, .accuracy = "fine"});
+  EXPECT_EQ(fine.code, config::ExitCode::BadInput);
+  EXPECT_NE(fine.text.find("was made by \"accuracy normal\""), std::string::npos) << fine.text;
+}
+
 TEST(DatabaseCommandTest, RefusesAShardThatIsNone) {
   EXPECT_EQ(run_database({.shard = "3/2"}).code, config::ExitCode::BadInput);
 }
