@@ -242,7 +242,7 @@ ExitStatus run_database(const DatabaseFlags& flags) {
   if (auto added = add_shape_if_asked(*table, flags); !added) {
     return bad_input(added.error().text);
   }
-  const ExitStatus exit_status = save(*table, flags);
+  ExitStatus exit_status = save(*table, flags);
   if (exit_status.code != ExitCode::Done) return exit_status;  // the parts are all there is
   for (std::size_t core = 0; core < flags.cores; ++core) {
     static_cast<void>(std::remove(part_name(flags.out, core).c_str()));
