@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <limits>
 
 #include "common/core/check.h"
 #include "common/core/conventions.h"
+#include "common/core/formatted.h"
 #include "common/core/whole_file.h"
 #include "depth/axis_stencil.h"
 #include "depth/embedded_database.h"
@@ -23,11 +23,7 @@ std::size_t shape_index(fem::InclusionShape shape) {
   return shape == fem::InclusionShape::Cylinder ? 1 : 0;
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+std::string number(double value) { return formatted("%.4g", value); }
 
 fem::Specimen specimen_of(const fem::DepthGrid& grid, const DepthDatabase::Query& query) {
   return {.block = grid.block,
@@ -78,6 +74,7 @@ Result<DepthDatabase> DepthDatabase::make(const fem::DepthTable& table) {
 DepthDatabase::DepthDatabase(const fem::DepthTable& table) : grid_{table.grid} {
   const auto log_of = [](const std::vector<double>& values) {
     std::vector<double> out;
+    out.reserve(values.size());
     for (const double value : values) out.push_back(std::log(value));
     return out;
   };
@@ -139,14 +136,16 @@ void DepthDatabase::fill_gaps(std::size_t shape) {
   }
 }
 
-Result<void> DepthDatabase::contains(const Query& query) const {
+Result<void> DepthDatabase::contains(const Query& query, double block_height) const {
   for (const auto& ok :
        {in_range("the inclusion's depth", query.depth, grid_.depths, kMillimetre, " mm"),
         in_range("the inclusion's radius", query.radius, grid_.radii, kMillimetre, " mm"),
         in_range("the stiffness ratio", query.ratio, grid_.ratios, 1, "")}) {
     if (!ok) return ok;
   }
-  return fem::check(specimen_of(grid_, query));
+  fem::Specimen specimen = specimen_of(grid_, query);
+  specimen.block.height = block_height;
+  return fem::check(specimen);
 }
 
 DepthDatabase::Curve DepthDatabase::plain() const {

@@ -27,7 +27,11 @@ class DepthDatabase {
     double ratio{};   ///< [-]
   };
   /// In range and inside the block; the sentence names field, value and limits.
-  [[nodiscard]] Result<void> contains(const Query& query) const;
+  [[nodiscard]] Result<void> contains(const Query& query) const {
+    return contains(query, grid_.block.height);
+  }
+  /// The same of a block of another height. [m]
+  [[nodiscard]] Result<void> contains(const Query& query, double block_height) const;
 
   /// One force curve, a value of its own.
   struct Curve {

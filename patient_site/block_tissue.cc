@@ -62,13 +62,9 @@ Result<void> check(const BlockTissue& tissue) {
                             " mm, four tip radii, which nobody computed"));
   }
   const std::vector<PlacedInclusion>& all = tissue.inclusions;
+  const double height = tissue.height.value_or(tissue.database->grid().block.height);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (auto ok = tissue.database->contains(all[i].body); !ok) return ok;
-    const double under = all[i].body.depth + 2 * all[i].body.radius;
-    if (all[i].body.shape == fem::InclusionShape::Ball && tissue.height && under > *tissue.height) {
-      return fail("ball " + std::to_string(i + 1) +
-                  number_text(" reaches down to ", under / kMillimetre, 1, " mm, below the block"));
-    }
+    if (auto ok = tissue.database->contains(all[i].body, height); !ok) return ok;
     if (all[i].body.shape == fem::InclusionShape::Ball && !tissue.database->solved_beside()) {
       return fail(
           "the depth database knows no force beside a ball; build it with palp-fem database "

@@ -58,7 +58,7 @@ struct BlockTissue {
 };
 
 /// Whether the database knows its inclusions, none is nearer to another than the smaller one is
-/// wide, no ball reaches below the block, and the surface is as even as it was computed: slopes to
+/// wide, each lies inside the block, and the surface is as even as it was computed: slopes to
 /// 20 degrees, radii of four tips.
 [[nodiscard]] Result<void> check(const BlockTissue& tissue);
 

@@ -180,7 +180,10 @@ TEST(BlockTissueTest, WhatNobodyComputedIsRefused) {
            {"surface slope_x=19 slope_y=19", "more than 20 degrees"},
            {"surface radius=10", "below 20 mm, four tip radii"},
            {"surface slope_x=21", "is not a number from -20 to 20"},
-           {"block height=15; ball depth=6 radius=5", "ball 1 reaches down to 16.0 mm, below"},
+           {"block height=15; ball depth=6 radius=5",
+            "reaches 16 mm below the surface, expected at most 14.94 mm in a block of height 15 "
+            "mm"},
+           {"block height=15; cylinder depth=6 radius=12", "in a block of height 15 mm"},
            {"surface radius=19", "four tip radii, which nobody computed"},
            {"block e_kpa=soft", "is not a number from 0.1 to 1000"},
            {"block law=jelly", "there is no law 'jelly'"},
