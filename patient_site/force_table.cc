@@ -1,10 +1,8 @@
 #include "patient_site/force_table.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -12,6 +10,7 @@
 #include "common/core/byte_order_mark.h"
 #include "common/core/check.h"
 #include "common/core/conventions.h"
+#include "common/core/formatted.h"
 #include "common/core/whole_file.h"
 
 namespace palp::patient {
@@ -24,11 +23,7 @@ constexpr double kForceMax = 1000;             // [N]; likewise
 constexpr double kIntervalMin = 1e-7;          // [m]; closer rows make slopes of rounding errors
 constexpr std::size_t kTextSizeMax = 4 << 20;  // [bytes]
 
-std::string number_text(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.9g", value);
-  return text.data();
-}
+std::string number_text(double value) { return formatted("%.9g", value); }
 
 std::string row_error(std::size_t index, const std::string& what) {
   return "row " + std::to_string(index + 1) + ": " + what;
