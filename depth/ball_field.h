@@ -15,6 +15,9 @@ namespace palp::depth {
 inline constexpr std::size_t kCurveNodes = kCurveTerms;
 using NodalCurve = std::array<double, kCurveNodes>;
 
+/// The node by which a whole curve is judged roughly: 2.3 mm.
+inline constexpr std::size_t kMiddleNode = 3;
+
 [[nodiscard]] const NodalCurve& node_indentations() noexcept;  ///< [m], rising
 /// terms of a curve = sum over nodes of its value * node_terms()[node].
 [[nodiscard]] const std::array<CurveTerms, kCurveNodes>& node_terms() noexcept;

@@ -11,7 +11,6 @@ namespace {
 constexpr double kScanStep = 4e-3;  // [m], of the places where a ball is first looked for
 constexpr std::size_t kScanDepths = 6;
 constexpr std::size_t kScanRadii = 3;
-constexpr std::size_t kScanNode = 3;       // of a curve: 2.3 mm
 constexpr double kScanOffset = 0.5e-3;     // [m]
 constexpr std::size_t kScanOffsets = 160;  // 80 mm, beyond which a ball has no effect
 constexpr double kScanRatio = 0.6;         // [-], of the logarithm's range
@@ -67,7 +66,7 @@ class CellMaker {
         const auto ball = field_.at(log_depth, radius, effect_of(std::exp(log_ratio)));
         for (std::size_t step = 0; step <= kScanOffsets; ++step) {
           const double offset = static_cast<double>(step) * kScanOffset;
-          kind.told.push_back(std::log(ball.ratio(offset)[kScanNode]));
+          kind.told.push_back(std::log(ball.ratio(offset)[kMiddleNode]));
         }
         kinds.push_back(std::move(kind));
       }

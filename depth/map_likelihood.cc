@@ -10,7 +10,6 @@
 namespace palp::depth {
 namespace {
 
-constexpr std::size_t kMiddle = 3;  // a node: 2.3 mm
 constexpr int kTissuePasses = 3;
 constexpr double kStepOffset = 10e-6;  // [m], for slopes
 constexpr double kStepDepth = 1e-3;    // [-], of the logarithm
@@ -121,7 +120,7 @@ auto MapLikelihood::under(std::size_t guess,
 }
 
 double MapLikelihood::middle_of(const NodalCurve& ratio) noexcept {
-  return std::log(ratio[kMiddle]);
+  return std::log(ratio[kMiddleNode]);
 }
 
 /// The force where the tissue is as last found, and what its shapes add.

@@ -6,12 +6,11 @@ namespace palp::depth {
 namespace {
 
 constexpr std::size_t kBalls = 200;
-constexpr std::size_t kJudgedNode = 3;  // a node of the curve
 
 }  // namespace
 
 double SeenBall::log_ratio(const Place& place) const noexcept {
-  return std::log(effect.ratio(distance(ball.place, place))[kJudgedNode]);
+  return std::log(effect.ratio(distance(ball.place, place))[kMiddleNode]);
 }
 
 std::vector<SeenBall> seen_balls(const BallField& field, const MapPosterior& posterior) {
