@@ -257,7 +257,7 @@ ExitStatus run_depth(const DepthFlags& flags, const Machine& machine) {
     return {ExitCode::CannotOpen, "palp-lab: " + can.error().text};
   }
   const auto rows = run_all(*study, flags, machine);
-  if (!rows) return config::refusal("palp-lab", rows.error());
+  if (!rows) return refusal(rows.error());
   ExitStatus exit_status = finish_depth(*rows, flags);
   if (exit_status.code == ExitCode::Done) remove_partial_rows(flags.cases);
   return exit_status;
@@ -269,11 +269,11 @@ ExitStatus merge_depth(const std::vector<std::string>& files, const DepthFlags& 
     const auto text = read_whole_file(path, kCasesSizeMax);
     if (!text) return {ExitCode::CannotOpen, "palp-lab: " + text.error().text};
     if (auto read = read_depth_cases(*text, path, rows); !read) {
-      return config::refusal("palp-lab", read.error());
+      return refusal(read.error());
     }
   }
   if (auto whole = check_complete(rows); !whole) {
-    return config::refusal("palp-lab", whole.error());
+    return refusal(whole.error());
   }
   warn_of_makers({rows.makers.begin(), rows.makers.end()});
   return finish_depth(rows, flags);

@@ -75,7 +75,7 @@ void declare_impedance(config::CommandLine& line, ImpedanceFlags& flags) {
 
 ExitStatus run_impedance(const ImpedanceFlags& flags, const Machine& machine) {
   auto study = study_of(flags);
-  if (!study) return config::refusal("palp-lab", study.error());
+  if (!study) return refusal(study.error());
   auto can = config::can_write_files({flags.report, flags.csv});
   if (can) can = plot::can_write_picture(flags.picture);
   if (!can) return {ExitCode::CannotOpen, "palp-lab: " + can.error().text};

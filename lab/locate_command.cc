@@ -51,7 +51,7 @@ void declare_locate(config::CommandLine& line, LocateFlags& flags) {
               "worlds that are not as the estimator assumes, instead of phantoms as it does");
   line.choice("--next-tap",
               flags.rule,
-              {"search", "gp", "raster"},
+              {kTapRuleNames.begin(), kTapRuleNames.end()},
               "a field of 50 x 50 mm tap by tap: as a site proposes, by a Gaussian process, or row "
               "by row");
   line.choice("--session",
@@ -85,24 +85,24 @@ ExitStatus run_locate(const LocateFlags& flags, const Machine& machine) {
   }
   if (study.rule && (study.mismatch || !study.script.empty())) {
     const Result<void> both = fail("--next-tap goes neither with --set nor with --session");
-    return config::refusal("palp-lab", both.error());
+    return refusal(both.error());
   }
   const bool pattern = !study.rule && study.script.empty();
   if (flags.length_mm < kLengthLeastMm && !(pattern && flags.length_mm == 0)) {
     const Result<void> short_length =
         fail("--stiffness-length-mm is 2 or more, or 0 where the places are those of a pattern");
-    return config::refusal("palp-lab", short_length.error());
+    return refusal(short_length.error());
   }
   if (!flags.ball.empty()) {
     if (const auto ball = take_ball(flags.ball, study); !ball) {
-      return config::refusal("palp-lab", ball.error());
+      return refusal(ball.error());
     }
   }
   auto can = config::can_write_files({flags.report, flags.csv});
   if (can) can = plot::can_write_picture(flags.picture);
   if (!can) return {ExitCode::CannotOpen, "palp-lab: " + can.error().text};
   const auto bench = LocateBench::make(study);
-  if (!bench) return config::refusal("palp-lab", bench.error());
+  if (!bench) return refusal(bench.error());
   const Progress progress = shown_progress(machine);
   std::vector<LocateCase> cases(case_count(study));
   std::size_t done = 0;

@@ -18,17 +18,14 @@ constexpr std::array kOwns{0.003, 0.01, 0.025, 0.05};                           
 }  // namespace
 
 StiffnessReading stiffness_reading(const depth::PlaceData& place) noexcept {
-  double information = 0;
-  double pull = 0;
-  for (std::size_t a = 0; a < depth::kCurveNodes; ++a) {
-    for (std::size_t b = 0; b < depth::kCurveNodes; ++b) information += place.information[a][b];
-    pull += place.pull[a];
-  }
+  depth::NodalCurve plain{};
+  plain.fill(1);
+  const depth::FactorTold told = depth::factor_told(place, plain, 0);
   // A force of nothing or less is noise.
-  const double ratio = std::max(pull / information, 0.1);
+  const double ratio = std::max(told.pull / told.information, 0.1);
   return {.place = place.place,
           .value = std::log(ratio),
-          .stddev = 1 / (ratio * std::sqrt(information))};
+          .stddev = 1 / (ratio * std::sqrt(told.information))};
 }
 
 StiffnessProcess::StiffnessProcess(std::vector<StiffnessReading> readings, const Kernel& kernel)
