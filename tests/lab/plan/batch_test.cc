@@ -20,6 +20,7 @@
 #include "lab/run/adversary.h"
 #include "lab/run/valve.h"
 #include "lab/verbs.h"
+#include "tests/lab/empty_cases.h"
 
 namespace palp::lab {
 namespace {
@@ -55,20 +56,6 @@ TEST(BatchTest, MergedShardsAreTheWholeSet) {
   EXPECT_TRUE(check_complete(read, merged));
   // Set, seed, coupling and tissue included, and every number of every metric.
   EXPECT_EQ(batch_report(read, merged, {}), batch_report(small_plan(3), whole, {}));
-}
-
-/// As many cases as the plan has, and nothing in them.
-std::vector<CaseResult> empty_cases(const Plan& plan) {
-  std::vector<CaseResult> results;
-  for (const Case& one : plan.cases) {
-    CaseResult result;
-    result.index = one.index;
-    result.seed = one.seed;
-    result.labels = one.labels;
-    result.values.assign(judge::metric_table().size(), judge::kUndefined);
-    results.push_back(std::move(result));
-  }
-  return results;
 }
 
 TEST(MergeTest, AShardThatIsMissingOrGivenTwiceIsNoticedAlsoTheLast) {

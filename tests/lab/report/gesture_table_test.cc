@@ -5,6 +5,7 @@
 
 #include "judge/metric_table.h"
 #include "lab/report/batch_report.h"
+#include "tests/lab/empty_cases.h"
 
 namespace palp::lab {
 namespace {
@@ -12,26 +13,13 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// Nothing was felt in any case.
-std::vector<CaseResult> silent_cases(const Plan& plan) {
-  std::vector<CaseResult> results;
-  for (const Case& one : plan.cases) {
-    CaseResult result;
-    result.index = one.index;
-    result.labels = one.labels;
-    result.values.assign(judge::metric_table().size(), judge::kUndefined);
-    results.push_back(std::move(result));
-  }
-  return results;
-}
-
 void set(CaseResult& result, std::string_view metric, double value) {
   result.values[*judge::metric_index(metric)] = value;
 }
 
 TEST(GestureTableTest, HasARowForEachGestureAndRoundTripAndAColumnForEachGrip) {
   const Plan plan = make_set("gestures", {}).value();
-  auto results = silent_cases(plan);
+  auto results = empty_cases(plan);
   set(results[0], "tap1_a_error", -0.0312);
   set(results[1], "tap1_a_error", 0.214);
   results[1].unstable = true;
@@ -51,15 +39,15 @@ TEST(GestureTableTest, HasARowForEachGestureAndRoundTripAndAColumnForEachGrip) {
 
 TEST(GestureTableTest, StandsInTheSummaryOfItsSetAlone) {
   const Plan plan = make_set("gestures", {}).value();
-  EXPECT_THAT(batch_summary(plan, silent_cases(plan), {}), HasSubstr("| second tap | 20 |"));
+  EXPECT_THAT(batch_summary(plan, empty_cases(plan), {}), HasSubstr("| second tap | 20 |"));
   const Plan other = make_set("table", {}).value();
-  EXPECT_THAT(batch_summary(other, silent_cases(other), {}), Not(HasSubstr("| second tap")));
+  EXPECT_THAT(batch_summary(other, empty_cases(other), {}), Not(HasSubstr("| second tap")));
 }
 
 TEST(GestureTableTest, AShardHasTheRowsOfItsCases) {
   Plan plan = make_set("gestures", {}).value();
   keep_shard(plan, {.part = 3, .count = 100});
-  const std::string table = gesture_table(plan, silent_cases(plan));
+  const std::string table = gesture_table(plan, empty_cases(plan));
   EXPECT_THAT(table, HasSubstr("| first tap of a place | 0 | | | | - |\n"));
 }
 
