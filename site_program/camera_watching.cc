@@ -74,7 +74,7 @@ class CameraWatching::Io {
   monitor::CameraFeed& feed_;
   std::function<void()> arrived_;
   ForceSeen force_;
-  video::TouchHold step_;
+  video::TouchHold hold_;
   std::optional<Session> session_;
   std::unique_ptr<io::DatagramSocket> socket_;
   monitor::VideoShown shown_;
@@ -138,7 +138,7 @@ void CameraWatching::Io::show(video::ReceivedFrame&& frame, TimePoint now) {
                                  .jpeg = frame.jpeg,
                                  .bytes = std::move(frame.bytes)};
   session_->age = now - shown.captured_at;
-  if (touch_hold_ != nullptr) step_.add(session_->age, force_.way);
+  if (touch_hold_ != nullptr) hold_.add(session_->age, force_.way);
   const bool recorded = recording_.frames().offer(shown);
   const bool looked_at = feed_.frames.offer(shown);
   arrived_();
@@ -195,7 +195,7 @@ void CameraWatching::Io::tell(TimePoint now) {
     }
   }
   if (touch_hold_ != nullptr) {
-    shown_.touch_held = step_.wanted(now);
+    shown_.touch_held = hold_.wanted(now);
     touch_hold_->put(shown_.touch_held);
   }
   feed_.shown.put(shown_);

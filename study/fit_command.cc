@@ -108,8 +108,6 @@ Json row_json(const Row& row, const Task& task) {
   return out;
 }
 
-/// A Weber fraction: what the logarithm of a ratio is as a percentage.
-
 std::string row_text(const Row& row, const Task& task) {
   std::array<char, 256> line{};
   std::snprintf(line.data(),

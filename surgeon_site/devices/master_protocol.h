@@ -18,10 +18,9 @@ struct MasterSample {
   Place place{};          ///< on the undeformed surface
   bool pedal_held{};
   bool emergency_stop{};
-  std::uint8_t
-      answers_held{};        ///< buttons of a study's answers, bit 0 the first (answer_buttons.h)
-  std::string_view trouble;  ///< why it is not fit, a text that lives for ever; empty: fit
-  std::uint16_t sequence{};  ///< the device's own
+  std::uint8_t answers_held{};  ///< of a study, bit 0 the first; see answer_buttons.h
+  std::string_view trouble;     ///< why it is not fit, a text that lives for ever; empty: fit
+  std::uint16_t sequence{};     ///< the device's own
   bool sequence_known{};
 };
 
