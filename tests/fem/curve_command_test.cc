@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/own_path.h"
+
 namespace palp::fem {
 namespace {
 
@@ -76,7 +78,7 @@ TEST(CurveCommandTest, AStepThatDoesNotConvergeNamesHowFarItWent) {
 }
 
 TEST(CurveCommandTest, NoFileIsLeftWhereOneCannotBeWritten) {
-  const std::string vtu = testing::TempDir() + "curve_command_test.vtu";
+  const std::string vtu = test::own_path("curve_command_test.vtu");
   const auto exit_status = run_curve(
       {.model = "l1", .indentations_mm = "1", .csv = "/nonexistent/curve.csv", .vtu = vtu});
   EXPECT_EQ(exit_status.code, config::ExitCode::CannotOpen);

@@ -7,6 +7,7 @@
 
 #include "fem/database_builder.h"
 #include "fem/database_command.h"
+#include "tests/support/own_path.h"
 
 namespace palp::fem {
 namespace {
@@ -28,7 +29,7 @@ TEST(DatabaseCommandTest, AMissingFileCannotBeOpenedAForeignOneIsBadInput) {
   const auto merged = run_merge({.files = {"/nonexistent/file.bin"}});
   EXPECT_EQ(merged.code, config::ExitCode::CannotOpen);
   EXPECT_NE(merged.text.find("/nonexistent/file.bin"), std::string::npos);
-  const std::string foreign = testing::TempDir() + "depth_table_test.bin";
+  const std::string foreign = test::own_path("depth_table_test.bin");
   std::ofstream{foreign} << "no database";
   EXPECT_EQ(run_info({.file = foreign}).code, config::ExitCode::BadInput);
 }
@@ -120,9 +121,8 @@ TEST(DepthTableTest, AMergeThatAddsNothingKeepsTheStatementOfError) {
 }
 
 TEST(DatabaseCommandTest, ADatabaseGivenTwiceIsRefusedAndNothingWritten) {
-  const std::string folder = testing::TempDir();
-  const std::string one = folder + "depth_table_one.bin";
-  const std::string out = folder + "depth_table_out.bin";
+  const std::string one = test::own_path("depth_table_one.bin");
+  const std::string out = test::own_path("depth_table_out.bin");
   std::filesystem::remove(out);
   std::ofstream{one, std::ios::binary} << table_bytes(small_table());
   const auto merged = run_merge({.out = out, .files = {one, one}});
@@ -143,7 +143,7 @@ TEST(DatabaseBuilderTest, LeavesOutWhatDoesNotFit) {
 }
 
 TEST(DatabaseCommandTest, AFileOfAnotherAccuracyIsNotGoneOnWith) {
-  const std::string out = testing::TempDir() + "depth_table_normal.bin";
+  const std::string out = test::own_path("depth_table_normal.bin");
   DepthTable normal = small_table();
   normal.made_by = "accuracy normal";
   std::ofstream{out, std::ios::binary} << table_bytes(normal);

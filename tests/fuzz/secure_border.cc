@@ -12,6 +12,7 @@
 #include "common/io/secure/credentials.h"
 #include "common/io/secure/dtls_session.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/support/own_path.h"
 
 namespace palp::io {
 namespace {
@@ -28,8 +29,7 @@ std::unique_ptr<Credentials> read_key(const std::filesystem::path& folder, Role 
 /// Made once: a bench's key, because certificates would cost most of the time.
 struct Keys {
   Keys() {
-    const auto folder =
-        std::filesystem::temp_directory_path() / ("palp-fuzz-" + std::to_string(::getpid()));
+    const auto folder = palp::test::own_path("fuzz");
     const auto made = make_pre_shared_key(folder);
     if (!made) throw std::runtime_error{made.error().text};
     surgeon = read_key(folder, Role::Surgeon);

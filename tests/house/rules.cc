@@ -187,6 +187,14 @@ Violations shared_ownership(const Source& source) {
                          {});
 }
 
+Violations temporary_files(const Source& source) {
+  if (!source.is_under("tests")) return {};
+  return forbidden_words(source,
+                         {"TempDir", "temp_directory_path"},
+                         "tests run at once; take test::own_path()",
+                         {"tests/support/own_path.h"});
+}
+
 Violations using_namespace(const Source& source) {
   Violations found = forbidden_words(source, {"using namespace"}, "name what you use", {});
   std::erase_if(found, [&](const Violation& violation) {  // literals have no other way in

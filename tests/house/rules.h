@@ -19,6 +19,7 @@ inline std::ostream& operator<<(std::ostream& out, const Rule& rule) { return ou
 [[nodiscard]] Violations randomness(const Source& source);
 [[nodiscard]] Violations threads(const Source& source);
 [[nodiscard]] Violations shared_ownership(const Source& source);
+[[nodiscard]] Violations temporary_files(const Source& source);
 [[nodiscard]] Violations using_namespace(const Source& source);
 [[nodiscard]] Violations conditional_code(const Source& source);
 [[nodiscard]] Violations throw_on_rt(const Source& source);

@@ -145,6 +145,12 @@ TEST(RulesTest, SharedOwnershipIsFound) {
       "1");
 }
 
+TEST(RulesTest, ATestsFilesAreItsOwn) {
+  constexpr const char* kShared = "int a;\nauto b = testing::TempDir() + \"b\";\n";
+  EXPECT_EQ(fires(temporary_files, "tests/lab/a_test.cc", kShared), "2");
+  EXPECT_EQ(fires(temporary_files, "lab/a.cc", kShared), "");
+}
+
 TEST(RulesTest, UsingNamespaceIsFoundButForLiterals) {
   EXPECT_EQ(fires(using_namespace,
                   "lab/a.cc",

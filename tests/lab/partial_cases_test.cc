@@ -5,13 +5,13 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "common/config/report.h"
 #include "common/core/whole_file.h"
 #include "judge/metric_table.h"
 #include "lab/plan/plan.h"
 #include "lab/report/batch_report.h"
+#include "tests/support/own_path.h"
 
 // Goal: what an interrupted batch has made is not made again, and nothing else is taken for it.
 
@@ -34,9 +34,7 @@ CaseResult result_for(const Case& one) {
 }
 
 std::string fresh_path() {
-  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  const std::string path =
-      testing::TempDir() + "palp_" + info->name() + std::to_string(getpid()) + ".csv";
+  const std::string path = test::own_path("cases.csv");
   remove_partial_rows(path);
   return path;
 }

@@ -3,16 +3,16 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "common/core/whole_file.h"
 #include "lab/report/checked_rows.h"
+#include "tests/support/own_path.h"
 
 namespace palp::lab {
 namespace {
 
 TEST(PartialRowsTest, GoesOnBelowTheRowsThatAreWhole) {
-  const std::string path = testing::TempDir() + "palp_partial_rows" + std::to_string(::getpid());
+  const std::string path = test::own_path("partial_rows");
   const std::string row = with_check("1,x") + "\n";
   {
     auto rows = PartialRows::open(path, false);

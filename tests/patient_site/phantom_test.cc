@@ -6,7 +6,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
+
+#include "tests/support/own_path.h"
 
 namespace palp::patient {
 namespace {
@@ -57,8 +58,7 @@ TEST(PhantomTest, ClosedFormIsItsLaw) {
 }
 
 TEST(PhantomTest, AFileIsSiteBBesideThePapersBlock) {
-  const std::string path =
-      ::testing::TempDir() + "palp_phantom_test_" + std::to_string(::getpid()) + ".csv";
+  const std::string path = test::own_path("phantom_test.csv");
   std::ofstream{path} << "d_mm,F_N\n0,0\n1,0.1\n2,0.3\n4,1\n";
   const auto phantom = make_phantom("file:" + path);
   ASSERT_TRUE(phantom) << phantom.error().text;
@@ -80,8 +80,7 @@ TEST(PhantomTest, AFileIsSiteBBesideThePapersBlock) {
 }
 
 TEST(PhantomTest, AFileMayHoldTheWordsOfATissue) {
-  const std::string path =
-      ::testing::TempDir() + "palp_phantom_words_" + std::to_string(::getpid()) + ".txt";
+  const std::string path = test::own_path("phantom_words.txt");
   const std::string words = "# two balls\nball depth=6 at=20,0\nball depth=9 radius=5 at=-15,0\n";
   std::ofstream{path} << words;
   const auto phantom = make_phantom("file:" + path);
@@ -100,8 +99,7 @@ TEST(PhantomTest, AFileMayHoldTheWordsOfATissue) {
 }
 
 TEST(PhantomTest, AFileMaySayWhereItsCurvesLie) {
-  const std::string path =
-      ::testing::TempDir() + "palp_phantom_places_" + std::to_string(::getpid()) + ".csv";
+  const std::string path = test::own_path("phantom_places.csv");
   std::ofstream{path} << "x_mm,y_mm,d_mm,F_N\n0,0,0,0\n0,0,1,0.1\n0,0,2,0.3\n0,0,4,1\n"
                       << "5,-2,0,0\n5,-2,1,0.2\n5,-2,2,0.6\n5,-2,3,2\n";
   const auto phantom = make_phantom("file:" + path);

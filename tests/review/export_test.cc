@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/review/session_samples.h"
+#include "tests/support/own_path.h"
 
 namespace palp::review {
 namespace {
@@ -25,8 +26,7 @@ class ExportTest : public testing::Test {
     return {std::istreambuf_iterator<char>{file}, {}};
   }
 
-  std::string path_ = testing::TempDir() + "palp_export_" +
-                      testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::string path_ = palp::test::own_path("export");
   test::SampleFiles files_ = test::sample_session({.taps_per_place = 1});
 };
 

@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 
 #include "tests/review/session_samples.h"
+#include "tests/support/own_path.h"
 
 namespace palp::review {
 namespace {
@@ -19,8 +20,7 @@ namespace fs = std::filesystem;
 class PalpReviewTest : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = testing::TempDir() + "palp_review_test_" +
-              testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = palp::test::own_path("review");
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     const auto files = test::sample_session();

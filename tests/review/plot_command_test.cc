@@ -7,6 +7,7 @@
 
 #include "common/core/whole_file.h"
 #include "tests/review/session_samples.h"
+#include "tests/support/own_path.h"
 
 namespace palp::review {
 namespace {
@@ -26,8 +27,7 @@ class PlotCommandTest : public testing::Test {
                static_cast<std::streamsize>(bytes.size()));
   }
 
-  std::string folder_ = testing::TempDir() + "plot_command_test_" +
-                        testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::string folder_ = palp::test::own_path("plot");
   PlotFlags flags_{.sessions = {.surgeon = folder_ + "/s.mcap", .patient = folder_ + "/p.mcap"},
                    .picture = {.svg = folder_ + "/p.svg"}};
 };

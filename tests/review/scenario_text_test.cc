@@ -5,10 +5,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "proto/config.pb.h"
 #include "tests/review/lab_files.h"
+#include "tests/support/own_path.h"
 
 namespace palp::review {
 namespace {
@@ -47,8 +47,7 @@ class ScenarioTextTest : public testing::Test {
     return lab::make_scenario("again", document).value();
   }
 
-  const std::string path_{testing::TempDir() + "scenario_text_test." + std::to_string(getpid()) +
-                          ".mcap"};
+  const std::string path_{palp::test::own_path("scenario_text_test.mcap")};
   lab::Scenario scenario_;
   test::LabFiles files_;
   lab::RunResult run_;

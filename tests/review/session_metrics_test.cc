@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/review/lab_files.h"
+#include "tests/support/own_path.h"
 
 namespace palp::review {
 namespace {
@@ -51,10 +52,10 @@ TEST(SessionMetricsTest, FindsTheLabsTapsAndForcesInTheFiles) {
 }
 
 TEST(SessionMetricsTest, AScriptOfAFileIsTheOneThatWasPlayed) {
-  const std::filesystem::path file = std::filesystem::path{testing::TempDir()} / "played.txt";
+  const std::string file = palp::test::own_path("played.txt");
   const auto write = [&](const char* text) { std::ofstream{file} << text; };
   write("move -2 0.5\ntaps 3 4 1 0.5\nlift 1 0.5\n");
-  lab::Scenario scenario = test::lab_scenario(12s, {"surgeon.hand.master=script:" + file.string()});
+  lab::Scenario scenario = test::lab_scenario(12s, {"surgeon.hand.master=script:" + file});
   const test::LabFiles files = test::lab_files(scenario);
   const auto looked = [&] {
     auto surgeon = load_site(files.surgeon.bytes(), "s", link::Role::Surgeon).value();

@@ -17,14 +17,14 @@
 #include "common/record/mapped_file.h"
 #include "common/record/notes.h"
 #include "common/record/session_reader.h"
+#include "tests/support/own_path.h"
 
 namespace palp::site_program {
 namespace {
 
-/// A name in the test's own folder; nothing is there yet.
+/// Nothing is there yet.
 std::string fresh_file() {
-  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  const std::string path = testing::TempDir() + "palp_" + info->name() + ".mcap";
+  const std::string path = test::own_path("recording.mcap");
   std::filesystem::remove(path);
   return path;
 }

@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "common/io/process/diagnostics.h"
+#include "tests/support/own_path.h"
 
 namespace palp::site_program {
 namespace {
@@ -146,8 +146,7 @@ TEST(FinishTest, ARecordingThatFailedIsNoSuccess) {
 }
 
 TEST(FinishTest, WritesTheReportAlsoOfAFailure) {
-  const std::string path =
-      testing::TempDir() + "palp_finish_" + std::to_string(::getpid()) + ".json";
+  const std::string path = test::own_path("finish.json");
   SiteReport report;
   report.exit_status = cannot_start("the port is taken");
   io::start_diagnostics("test");

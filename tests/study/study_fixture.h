@@ -5,10 +5,9 @@
 #include <sstream>
 #include <string>
 
-#include <unistd.h>
-
 #include "study/plan_command.h"
 #include "study/run_command.h"
+#include "tests/support/own_path.h"
 
 namespace palp::study::test {
 
@@ -35,8 +34,7 @@ inline std::string content_of(const std::string& path) {
 class PlannedFolder {
  public:
   explicit PlannedFolder(const std::string& text = kStudyText)
-      : root_{std::filesystem::temp_directory_path() /
-              ("palp-study-" + std::to_string(::getpid()) + "-" + std::to_string(++count()))} {
+      : root_{palp::test::own_path("study" + std::to_string(++count()))} {
     std::filesystem::create_directories(root_);
     std::ofstream{root_ / "study.textproto"} << text;
     planned_ = run_plan({.file = root_ / "study.textproto", .folder = folder()}, "a test");

@@ -5,9 +5,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "surgeon_site/drawn_script.h"
+#include "tests/support/own_path.h"
 
 namespace palp::surgeon {
 namespace {
@@ -22,8 +22,7 @@ TEST(ScriptSourceTest, LoadsByNameAndByFile) {
   EXPECT_EQ(load_script("script:standard", setting)->length(), 33700ms);
   EXPECT_TRUE(load_script("script:demo", setting));
   EXPECT_TRUE(load_script("script:map", setting));
-  const std::string path =
-      ::testing::TempDir() + "palp_script_reader_test_" + std::to_string(::getpid()) + ".txt";
+  const std::string path = test::own_path("script_reader_test.txt");
   std::ofstream{path} << "hold 1\nhold x\n";
   EXPECT_THAT(load_script("script:" + path, setting).error().text,
               AllOf(HasSubstr(path), HasSubstr("line 2")));

@@ -8,6 +8,7 @@
 #include "common/record/mapped_file.h"
 #include "common/record/notes.h"
 #include "common/record/session_reader.h"
+#include "tests/support/own_path.h"
 
 namespace palp::surgeon {
 namespace {
@@ -26,7 +27,7 @@ struct Still final : HapticDevice {
 
 /// Nothing is there yet.
 std::string fresh_file() {
-  const std::string path = testing::TempDir() + "palp_study_port.mcap";
+  const std::string path = test::own_path("study_port.mcap");
   std::filesystem::remove(path);
   return path;
 }

@@ -9,6 +9,7 @@
 
 #include "common/config/report.h"
 #include "proto/config.pb.h"
+#include "tests/support/own_path.h"
 
 namespace palp::config {
 namespace {
@@ -263,9 +264,7 @@ class SettingsFlagsTest : public testing::Test {
 
   Document document_{patient_document()};
   CommandLine line_{"palp-patient", "the patient site"};
-  std::string file_{(std::filesystem::temp_directory_path() /
-                     ("palp_command_line_test_" + std::to_string(::getpid()) + ".conf"))
-                        .string()};
+  std::string file_{test::own_path("command_line_test.conf")};
 };
 
 TEST_F(SettingsFlagsTest, FlagsBeatSetWhichBeatsTheFileWhichBeatsDefaults) {

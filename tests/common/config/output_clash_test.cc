@@ -5,7 +5,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
+
+#include "tests/support/own_path.h"
 
 namespace palp::config {
 namespace {
@@ -31,7 +32,7 @@ class OutputClashTest : public testing::Test {
   }
 
  private:
-  std::string folder_ = testing::TempDir() + "palp_clash_" + std::to_string(::getpid());
+  std::string folder_ = test::own_path("clash");
 };
 
 TEST_F(OutputClashTest, AFileThatIsReadOrWrittenIsNotTakenByAnother) {

@@ -5,11 +5,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "common/config/report.h"
 #include "common/config/settings_text.h"
 #include "common/core/whole_file.h"
+#include "tests/support/own_path.h"
 
 namespace palp::config {
 namespace {
@@ -39,7 +39,7 @@ class ProgramRunTest : public testing::Test {
   [[nodiscard]] std::string written() const { return read_whole_file(file_).value_or(""); }
 
  private:
-  std::string file_ = testing::TempDir() + "palp_run_test_" + std::to_string(::getpid());
+  std::string file_ = test::own_path("run_test");
   CommandLine line_{"palp-x", "does x"};
   std::string report_;
   std::string input_;

@@ -11,6 +11,7 @@
 
 #include "common/config/settings_text.h"
 #include "common/core/whole_file.h"
+#include "tests/support/own_path.h"
 
 namespace palp::config {
 namespace {
@@ -33,9 +34,7 @@ class ReportTest : public testing::Test {
   }
 
  private:
-  std::filesystem::path folder_{std::filesystem::temp_directory_path() /
-                                ("palp_report_test_" + std::to_string(::getpid()) + '_' +
-                                 testing::UnitTest::GetInstance()->current_test_info()->name())};
+  std::filesystem::path folder_{test::own_path("report")};
 };
 
 TEST_F(ReportTest, WritesWholeFilesAndLeavesNothingElse) {

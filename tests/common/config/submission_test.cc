@@ -7,9 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include "common/core/whole_file.h"
+#include "tests/support/own_path.h"
 
 namespace palp::config {
 namespace {
@@ -37,7 +37,7 @@ class SubmissionTest : public testing::Test {
     return refused ? *refused : command.run();
   }
 
-  std::string folder_{testing::TempDir() + "palp_submission_" + std::to_string(::getpid())};
+  std::string folder_{test::own_path("submission")};
   Submission submission_{
       .form = kForm,
       .engine = "print",

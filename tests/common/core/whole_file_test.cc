@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "tests/support/own_path.h"
+
 namespace palp {
 namespace {
 
@@ -26,9 +28,7 @@ TEST(WholeFileTest, SaysWhyItCannotRead) {
 }
 
 TEST(WholeFileTest, APipeNobodyWritesToIsGivenUp) {
-  const std::string pipe =
-      (std::filesystem::temp_directory_path() / ("palp_pipe_" + std::to_string(::getpid())))
-          .string();
+  const std::string pipe = test::own_path("pipe");
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_EQ(read_whole_file(pipe, kMiB).error().text,
             "cannot read " + pipe.substr(0, 80) + ": it gives nothing for 2 s");

@@ -5,16 +5,16 @@
 #include <gtest/gtest.h>
 
 #include "common/core/whole_file.h"
+#include "tests/support/own_path.h"
 
 namespace palp::plot {
 namespace {
 
-std::string file(const char* name) { return ::testing::TempDir() + "picture_test_" + name; }
-
 const Figure kFigure{.panels = {{.axes = {.x_name = "x [m]"}, .curves = {}}}};
 
 TEST(PictureTest, EveryFileThatWasAskedForIsWritten) {
-  const PictureFlags flags{.svg = file("both.svg"), .pdf = file("both.pdf"), .style = "single"};
+  const PictureFlags flags{
+      .svg = test::own_path("both.svg"), .pdf = test::own_path("both.pdf"), .style = "single"};
   ASSERT_TRUE(write_picture(kFigure, flags));
   const auto svg = read_whole_file(flags.svg);
   ASSERT_TRUE(svg);
@@ -37,15 +37,16 @@ TEST(PictureTest, WhatCannotBeWrittenIsToldBeforehandAndLeavesNothing) {
     EXPECT_FALSE(can_write_picture(flags));
     EXPECT_FALSE(write_picture(kFigure, flags));
   }
-  EXPECT_TRUE(can_write_picture({.svg = file("none.svg"), .pdf = file("none.pdf")}));
-  EXPECT_FALSE(std::filesystem::exists(file("none.svg")));
-  EXPECT_FALSE(std::filesystem::exists(file("none.pdf")));
+  EXPECT_TRUE(
+      can_write_picture({.svg = test::own_path("none.svg"), .pdf = test::own_path("none.pdf")}));
+  EXPECT_FALSE(std::filesystem::exists(test::own_path("none.svg")));
+  EXPECT_FALSE(std::filesystem::exists(test::own_path("none.pdf")));
 }
 
 TEST(PictureTest, APdfThatNobodyCanMakeIsToldBeforehand) {
   const std::string path = std::getenv("PATH");
   ASSERT_EQ(setenv("PATH", "/no/such/folder", 1), 0);
-  const auto can = can_write_picture({.pdf = file("none.pdf")});
+  const auto can = can_write_picture({.pdf = test::own_path("none.pdf")});
   ASSERT_EQ(setenv("PATH", path.c_str(), 1), 0);
   ASSERT_FALSE(can);
   EXPECT_TRUE(can.error().unreachable);

@@ -4,15 +4,15 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "common/record/mapped_file.h"
+#include "tests/support/own_path.h"
 
 namespace palp::record {
 namespace {
 
 TEST(FileBytesTest, WhatWasForgottenIsThereAgainWhenItIsLookedAt) {
-  const std::string path = testing::TempDir() + "file_bytes_" + std::to_string(getpid());
+  const std::string path = test::own_path("file_bytes");
   std::FILE* const out = std::fopen(path.c_str(), "wb");
   ASSERT_NE(out, nullptr);
   for (int k = 0; k < 100'000; ++k) (void)std::fputc(k % 251, out);

@@ -8,6 +8,7 @@
 #include "common/record/mapped_file.h"
 #include "common/record/mcap_reader.h"
 #include "common/record/mcap_writer.h"
+#include "tests/support/own_path.h"
 
 namespace palp::record {
 namespace {
@@ -83,7 +84,7 @@ std::size_t growth(const auto& work) {
 TEST(McapLimitsTest, OfALongAttachmentOnlyAPieceIsInMemory) {
   constexpr std::size_t kSize = std::size_t{96} << 20U;  // [bytes]
   constexpr std::size_t kMost = 24 * 1024;               // [kB]
-  const std::string base = testing::TempDir() + "long_attachment_" + std::to_string(getpid());
+  const std::string base = test::own_path("long_attachment");
   std::ofstream{base + ".bin"}.close();
   ASSERT_EQ(truncate((base + ".bin").c_str(), kSize), 0);
   const auto data = MappedFile::open(base + ".bin");

@@ -10,7 +10,6 @@
 #include <set>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "common/config/report.h"
 #include "judge/metric_table.h"
@@ -21,6 +20,7 @@
 #include "lab/run/valve.h"
 #include "lab/verbs.h"
 #include "tests/lab/empty_cases.h"
+#include "tests/support/own_path.h"
 
 namespace palp::lab {
 namespace {
@@ -135,7 +135,7 @@ TEST(MergeTest, ARowThatWasNotWrittenWholeIsRefused) {
 
 TEST(MergeTest, FilesMayBeAsLongAsTheLargestSet) {
   const Plan plan = small_plan(20'000);
-  const std::string path = testing::TempDir() + "palp_cases_" + std::to_string(::getpid()) + ".csv";
+  const std::string path = test::own_path("cases.csv");
   const std::string rows = cases_csv(plan, empty_cases(plan));
   ASSERT_GT(rows.size(), 2U << 20U) << "longer than settings may be";
   ASSERT_TRUE(config::write_whole_file(path, rows));

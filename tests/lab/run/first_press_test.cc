@@ -11,6 +11,7 @@
 #include "lab/plan/scenario_file.h"
 #include "lab/run/run.h"
 #include "surgeon_site/script_reader.h"
+#include "tests/support/own_path.h"
 
 /// Goal: a first press that stays in contact is felt whole as soon as the tank can pay for holding
 /// it, and for as long as it lasts; the bound of energy stands all the same.
@@ -122,7 +123,7 @@ TEST(FirstPressTest, IsFeltWholeWhereTheEnergyOfHoldingItIsThere) {
 
 /// Ten times as stiff as the tissue that the law knows best: a blind hand goes beyond the limit.
 TEST(FirstPressTest, InStiffTissueTheTipDoesNotHammerAtItsLimit) {
-  const std::string table = testing::TempDir() + "stiff.csv";
+  const std::string table = test::own_path("stiff.csv");
   std::ofstream{table} << "d_mm,F_N\n0,0\n1,1.5\n2,3\n4,6\n8,12\n";
   for (const char* grip : {"mid", "firm"}) {
     for (const int round_trip_ms : {100, 200, 500}) {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "lab/plan/scenario_file.h"
 #include "lab/run/run.h"
+#include "tests/support/own_path.h"
 #include "tests/support/surveyed_tissue.h"
 
 /// Goal: a session in the plane, over a tissue that a file gives at several places.
@@ -18,9 +18,8 @@ namespace palp::lab {
 namespace {
 
 Scenario plane_scenario(const char* coupling) {
-  const std::string folder = ::testing::TempDir();
-  const std::string tissue = folder + "palp_plane_tissue_" + std::to_string(::getpid()) + ".csv";
-  const std::string script = folder + "palp_plane_script_" + std::to_string(::getpid()) + ".txt";
+  const std::string tissue = test::own_path("plane_tissue.csv");
+  const std::string script = test::own_path("plane_script.txt");
   std::ofstream{tissue} << test::surveyed_tissue_csv();
   std::ofstream{script} << test::kPlaneScript;
   auto document = load_scenario("metro");

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "tests/support/own_path.h"
+
 namespace palp::netem {
 namespace {
 
@@ -20,7 +22,7 @@ class ControlTokenTest : public ::testing::Test {
     fs::permissions(path_, mode);
   }
   static constexpr fs::perms kOwner = fs::perms::owner_read | fs::perms::owner_write;
-  const std::string path_ = ::testing::TempDir() + "palp-token-" + std::to_string(::getpid());
+  const std::string path_ = test::own_path("token");
 };
 
 TEST_F(ControlTokenTest, OneIsMadeOnceAndIsItsOwnersOnly) {

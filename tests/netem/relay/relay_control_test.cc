@@ -13,6 +13,7 @@
 
 #include "netem/relay/relay_program.h"
 #include "tests/netem/relay/control_line.h"
+#include "tests/support/own_path.h"
 
 namespace palp::netem {
 namespace {
@@ -20,9 +21,7 @@ namespace {
 const std::string kToken = "0123456789abcdef";
 
 /// A name for a socket of this process.
-std::string socket_name(const std::string& name) {
-  return "unix:" + ::testing::TempDir() + "palp-" + name + std::to_string(::getpid());
-}
+std::string socket_name(const std::string& name) { return "unix:" + test::own_path(name); }
 
 std::optional<std::string> heard(std::string_view line, std::uint64_t) {
   return "heard " + std::string{line};
@@ -129,7 +128,7 @@ TEST(RelayControlTest, ALineWithoutABreakAtTheEndIsAnsweredTooAndMayBeLater) {
 }
 
 TEST(RelayControlTest, TakesThePlaceOfASocketThatNobodyAnswersOn) {
-  const std::string path = ::testing::TempDir() + "palp-left-" + std::to_string(::getpid());
+  const std::string path = test::own_path("left");
   {
     sockaddr_un local{};
     local.sun_family = AF_UNIX;
@@ -145,7 +144,7 @@ TEST(RelayControlTest, TakesThePlaceOfASocketThatNobodyAnswersOn) {
 }
 
 TEST(RelayControlTest, LeavesWhatTookThePlaceOfItsSocketAlone) {
-  const std::string path = ::testing::TempDir() + "palp-taken-" + std::to_string(::getpid());
+  const std::string path = test::own_path("taken");
   {
     const auto control = RelayControl::listen("unix:" + path);
     ASSERT_TRUE(control) << control.error().text;
@@ -157,7 +156,7 @@ TEST(RelayControlTest, LeavesWhatTookThePlaceOfItsSocketAlone) {
 }
 
 TEST(RelayControlTest, LeavesAFileThatIsNoSocketAlone) {
-  const std::string path = ::testing::TempDir() + "palp-file-" + std::to_string(::getpid());
+  const std::string path = test::own_path("file");
   std::ofstream{path} << "mine";
   EXPECT_FALSE(RelayControl::listen("unix:" + path));
   EXPECT_EQ(::access(path.c_str(), F_OK), 0);
@@ -168,7 +167,7 @@ TEST(RelayControlTest, ListensOnLoopbackOrInTheFileSystemOnly) {
   EXPECT_FALSE(RelayControl::listen("0.0.0.0:0"));
   EXPECT_FALSE(RelayControl::listen("unix:"));
   EXPECT_FALSE(RelayControl::listen("unix:/no/such/folder/socket"));
-  const std::string path = ::testing::TempDir() + "palp-control-" + std::to_string(::getpid());
+  const std::string path = test::own_path("control");
   {
     const auto control = RelayControl::listen("unix:" + path);
     ASSERT_TRUE(control) << control.error().text;

@@ -17,6 +17,7 @@
 #include "netem/syntax/data_files.h"
 #include "tests/netem/model/datagrams.h"
 #include "tests/netem/model/impairment_builders.h"
+#include "tests/support/own_path.h"
 
 /// Goal: the three hosts decide alike, and what the relay records can be replayed. Method: a real
 /// relay between sockets of the test is recorded; its arrival log is given to the others.
@@ -51,7 +52,7 @@ class RelayRecordingTest : public ::testing::Test {
  protected:
   ~RelayRecordingTest() override { std::filesystem::remove_all(folder_); }
   const std::string folder_ = [] {
-    std::string folder = ::testing::TempDir() + "palp-recording-" + std::to_string(::getpid());
+    std::string folder = test::own_path("recording");
     std::filesystem::create_directories(folder);
     return folder;
   }();
@@ -242,7 +243,7 @@ TEST_F(RelayRecordingTest, WhatIsOnItsWayAtTheEndIsWrittenAndCounted) {
 }
 
 TEST(RecordingWriterTest, AReleaseThatWasMissedStopsNothingForGood) {
-  const std::string prefix = ::testing::TempDir() + "palp-missed-" + std::to_string(::getpid());
+  const std::string prefix = test::own_path("missed");
   RecordingQueue queue;
   RecordingWriter writer{queue, TimePoint{}, {}};
   ASSERT_TRUE(writer.open(prefix));

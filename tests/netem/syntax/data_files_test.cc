@@ -5,14 +5,14 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
+
+#include "tests/support/own_path.h"
 
 namespace palp::netem {
 namespace {
 
 TEST(DataFilesTest, ReadsAFileByItsPathAndSaysWhichIsMissing) {
-  const std::string path =
-      ::testing::TempDir() + "palp_data_files_test_" + std::to_string(::getpid()) + ".csv";
+  const std::string path = test::own_path("data_files_test.csv");
   std::ofstream{path} << "t_ms,delay_ms\n";
   const auto text = read_data_file(path);
   ASSERT_TRUE(text);

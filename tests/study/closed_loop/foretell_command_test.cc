@@ -8,6 +8,7 @@
 #include "common/config/json.h"
 #include "common/core/whole_file.h"
 #include "common/io/process/parallel.h"
+#include "tests/support/own_path.h"
 
 namespace palp::study {
 namespace {
@@ -151,7 +152,7 @@ TEST(ForetellTest, EachDisagreementIsNoticed) {
 }
 
 TEST(ForetellTest, TheReportHasEachConditionsFigures) {
-  const std::string file = testing::TempDir() + "palp_foretell.textproto";
+  const std::string file = palp::test::own_path("foretell.textproto");
   std::ofstream{file} << R"(trials: 2 condition { name: "one" taps: 1 })";
   const std::string report = file + ".json";
   (void)run_foretell({.file = file, .sessions = 2, .observers = 1, .report = report},

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/own_path.h"
+
 namespace palp::study {
 namespace {
 
@@ -15,7 +17,7 @@ TEST(PersonTest, AComparisonWithTheOwnFingerIsRefused) {
 }
 
 TEST(PersonTest, SitesThatDoNotStartAreAReason) {
-  const std::string folder = ::testing::TempDir() + "palp-person";
+  const std::string folder = palp::test::own_path("person");
   const Study study = *parse_study(kStudy, "s");
   const auto person = Person::make(
       study, {.programs = "/no/such/folder", .data = {folder}, .say = [](const std::string&) {}});

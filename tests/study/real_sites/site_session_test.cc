@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "common/io/realtime/steady_clock.h"
+#include "tests/support/own_path.h"
 
 namespace palp::study {
 namespace {
@@ -36,7 +37,7 @@ class StandIns {
     std::ofstream{folder_ / name} << "#!/bin/sh\n" << script;
     fs::permissions(folder_ / name, fs::perms::owner_all);
   }
-  fs::path folder_{fs::temp_directory_path() / ("palp-sites-" + std::to_string(::getpid()))};
+  fs::path folder_{palp::test::own_path("sites")};
 };
 
 const std::string kListens = "echo 'listening on 127.0.0.1:7, as ever'; exec sleep 60\n";

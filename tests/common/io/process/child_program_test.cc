@@ -5,7 +5,8 @@
 #include <sstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
+
+#include "tests/support/own_path.h"
 
 namespace palp::io {
 namespace {
@@ -15,8 +16,7 @@ using std::chrono_literals::operator""s;
 
 /// A log of the test's own.
 struct Log {
-  std::string path{std::filesystem::temp_directory_path() /
-                   ("palp-child-" + std::to_string(::getpid()) + ".log")};
+  std::string path{palp::test::own_path("child.log")};
   ~Log() { std::filesystem::remove(path); }
   [[nodiscard]] std::string text() const {
     std::stringstream out;

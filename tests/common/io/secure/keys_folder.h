@@ -9,6 +9,7 @@
 
 #include "common/io/secure/certificates.h"
 #include "common/io/secure/credentials.h"
+#include "tests/support/own_path.h"
 
 namespace palp::io::test {
 
@@ -16,8 +17,7 @@ namespace palp::io::test {
 class KeysFolder {
  public:
   explicit KeysFolder(const std::string& name, bool bench = false)
-      : folder_{std::filesystem::temp_directory_path() /
-                ("palp-" + name + "-" + std::to_string(::getpid()))} {
+      : folder_{palp::test::own_path(name)} {
     std::filesystem::remove_all(folder_);
     const auto made = bench ? make_pre_shared_key(folder_) : make_certificates(config());
     EXPECT_TRUE(made) << made.error().text;
