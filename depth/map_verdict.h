@@ -18,7 +18,7 @@ struct MapVerdict {
 struct MapVerdictConfig {
   double evidence_min{2};    ///< [-], log of the odds from which there is a ball
   double gain_min{9};        ///< [-], and what the best one must gain: 3 sigma
-  double curve_max{60};      ///< [-], see worst_curve: steps and a hand make them uneven
+  double curve_max{15};      ///< [-], see worst_curve
   double deviation_max{4};   ///< [-], see worst_deviation
   double side_min{0.1};      ///< [-], share of a second mode
   double outside_max{0.25};  ///< [-], share beyond the touched places

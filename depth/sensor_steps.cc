@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "common/core/random.h"
 
@@ -10,6 +11,8 @@ namespace palp::depth {
 namespace {
 
 constexpr double kLeastDither = 0.2;  // of a step: below it single steps show, not their mean
+constexpr double kNoSteps = 0.25;     // of the squares that the least dither makes
+constexpr int kHalvings = 12;         // to 1/5000 of a step
 
 double density(double z) noexcept {
   return std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
@@ -33,6 +36,12 @@ SensorSteps::Reading reading(double force, double noise, double quantum) noexcep
   return {.offset = mean, .slope = slope, .variance = square - mean * mean};
 }
 
+/// Where in its step a force is [-], 0 to 1.
+double phase_of(double force, double quantum) noexcept {
+  const double steps = force / quantum;
+  return steps - std::floor(steps);
+}
+
 }  // namespace
 
 SensorSteps::SensorSteps(double noise, double quantum)
@@ -50,8 +59,7 @@ SensorSteps::SensorSteps(double noise, double quantum)
 
 SensorSteps::Reading SensorSteps::at(double force) const noexcept {
   if (!(quantum_ > 0)) return table_.front();
-  const double steps = force / quantum_;
-  const double place = (steps - std::floor(steps)) * kPhases;
+  const double place = phase_of(force, quantum_) * kPhases;
   const auto entry = std::min(static_cast<std::size_t>(place), kPhases - 1);
   const double share = place - static_cast<double>(entry);
   const Reading& low = table_[entry];
@@ -59,6 +67,52 @@ SensorSteps::Reading SensorSteps::at(double force) const noexcept {
   return {.offset = low.offset + share * (high.offset - low.offset),
           .slope = low.slope + share * (high.slope - low.slope),
           .variance = low.variance + share * (high.variance - low.variance)};
+}
+
+void NoiseInSteps::add(double force, double error, double quantum) noexcept {
+  const double place = quantum > 0 ? phase_of(force, quantum) * kBins : 0;
+  const auto bin = std::min(static_cast<std::size_t>(place), kBins - 1);
+  squares_[bin] += error * error;
+  counts_[bin] += 1;
+}
+
+void NoiseInSteps::add(const NoiseInSteps& other) noexcept {
+  for (std::size_t i = 0; i < kBins; ++i) {
+    squares_[i] += other.squares_[i];
+    counts_[i] += other.counts_[i];
+  }
+}
+
+bool NoiseInSteps::empty() const noexcept {
+  return std::accumulate(counts_.begin(), counts_.end(), 0.0) == 0;
+}
+
+double NoiseInSteps::expected(double dither, double quantum) const noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < kBins; ++i) {
+    if (counts_[i] == 0) continue;
+    const double force = (static_cast<double>(i) + 0.5) / kBins * quantum;
+    const SensorSteps::Reading one = reading(force, dither, quantum);
+    sum += counts_[i] * (one.variance + one.offset * one.offset);
+  }
+  return sum;
+}
+
+/// The dither whose expected squares are those that were seen: they grow with it.
+double NoiseInSteps::rms(double quantum) const noexcept {
+  const double count = std::accumulate(counts_.begin(), counts_.end(), 0.0);
+  const double squares = std::accumulate(squares_.begin(), squares_.end(), 0.0);
+  const double plain = std::sqrt(squares / std::max(count, 1.0));
+  const double from_steps = quantum / std::sqrt(12.0);
+  if (!(quantum > 0) || plain > std::hypot(quantum, from_steps)) return plain;
+  double low = kLeastDither * quantum;
+  if (squares < kNoSteps * expected(low, quantum)) return plain;
+  double high = quantum;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (expected(middle, quantum) < squares ? low : high) = middle;
+  }
+  return std::hypot(0.5 * (low + high), from_steps);
 }
 
 }  // namespace palp::depth

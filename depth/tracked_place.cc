@@ -4,8 +4,6 @@
 #include <cmath>
 #include <span>
 
-#include "depth/sensor_steps.h"
-
 namespace palp::depth {
 namespace {
 
@@ -69,9 +67,7 @@ TouchedPlace TrackedPlace::seen(std::size_t index) const {
           .place = place_,
           .surface = law_->surface,
           .rate_factor = law_->rate_factor,
-          .noise = contact_count_ > 0
-                       ? std::max(kNoiseFloor, std::sqrt(contact_squares_ / contact_count_))
-                       : noise_,
+          .noise = contact_.empty() ? noise_ : std::max(kNoiseFloor, contact_.rms(quantum_)),
           .touches = touches_,
           .touched = touched_,
           .generation = generation_};
@@ -119,8 +115,8 @@ std::optional<double> TrackedPlace::learn_loading(const StrokeCutter& stroke,
   if (touches_.size() == kTouchesKept) touches_.erase(touches_.begin());
   touches_.push_back(touch_of(stroke, reading.force_range));
   ++touched_;
-  contact_squares_ += own.contact_squares;
-  contact_count_ += own.contact_count;
+  contact_.add(own.contact);
+  quantum_ = reading.force_quantum;
   if (++strokes_ == kStrokesMax) {
     curve_.scale(0.5);
     strokes_ /= 2;
@@ -180,8 +176,7 @@ TrackedPlace::Branch TrackedPlace::branch_curve(const StrokeCutter& stroke,
                                                 const PlaceReading& reading,
                                                 ContactCurve::Branch branch,
                                                 const std::optional<ContactLaw>& law) const {
-  Branch out{
-      .curve = ContactCurve{first_contact_}, .noise = 0, .contact_squares = 0, .contact_count = 0};
+  Branch out{.curve = ContactCurve{first_contact_}, .noise = 0, .contact = {}};
   const std::span<const StrokeSample> samples = stroke.samples();
   const SensorSteps steps{noise_, reading.force_quantum};
   double sensed = 0;    // [N], the law behind the transducer's pole
@@ -211,10 +206,8 @@ TrackedPlace::Branch TrackedPlace::branch_curve(const StrokeCutter& stroke,
                    bias;
       const double rest = sample.measured.force - sensed - offset;
       if (loading && sample.read) squares += rest * rest;
-      // In the air the steps hide most of the noise.
-      if (loading && sample.read && sensed > reading.force_quantum) {
-        out.contact_squares += rest * rest;
-        out.contact_count += 1;
+      if (loading && sample.read && sensed > 0) {
+        out.contact.add(sensed, sample.measured.force - sensed, reading.force_quantum);
       }
     }
     if (!sample.read) continue;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "depth/contact_curve.h"
+#include "depth/sensor_steps.h"
 #include "depth/stroke.h"
 #include "depth/stroke_cutter.h"
 #include "depth/surface.h"
@@ -58,9 +59,8 @@ class TrackedPlace {
   /// law was.
   struct Branch {
     ContactCurve curve;
-    double noise{};            ///< [N], rms of measured force minus law, one sample
-    double contact_squares{};  ///< [N^2], sum of the same, in contact alone
-    double contact_count{};    ///< [-]
+    double noise{};        ///< [N], rms of measured force minus law, one sample
+    NoiseInSteps contact;  ///< the same, in contact alone
   };
 
   [[nodiscard]] Branch branch_curve(const StrokeCutter& stroke,
@@ -78,9 +78,9 @@ class TrackedPlace {
   std::vector<Touch> touches_;  ///< of the last strokes
   std::size_t touched_{};       ///< since the generation began
   std::uint64_t generation_;
-  double noise_{};            ///< [N], of one sample, of the last stroke
-  double contact_squares_{};  ///< [N^2], measured force minus law, in contact
-  double contact_count_{};    ///< [-]
+  double noise_{};        ///< [N], of one sample, of the last stroke
+  NoiseInSteps contact_;  ///< measured force minus law
+  double quantum_{};      ///< [N], of the transducer
 };
 
 }  // namespace palp::depth

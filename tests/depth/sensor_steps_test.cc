@@ -36,6 +36,39 @@ TEST(SensorStepsTest, MeanAndVarianceAreThoseOfRoundedReadings) {
   }
 }
 
+/// Readings of a force that rests, or of one that grows evenly through steps.
+NoiseInSteps read_noise(double noise, double quantum, double first, double last) {
+  NoiseInSteps out;
+  constexpr int kCount = 4'000;
+  for (int i = 0; i < kCount; ++i) {
+    const double force = first + (last - first) * i / kCount;
+    const double noisy = force + noise * random_normal(7, 2, static_cast<std::uint64_t>(i));
+    out.add(force, quantum * std::round(noisy / quantum) - force, quantum);
+  }
+  return out;
+}
+
+TEST(NoiseInStepsTest, TheNoiseIsTheSameWhereverTheForceRests) {
+  constexpr double kQuantum = 0.05;
+  for (const double noise : {0.012, 0.015, 0.03, 0.08}) {
+    for (const double force : {0.1, 0.11, 0.115, 0.24}) {
+      const double rms = read_noise(noise, kQuantum, force, force).rms(kQuantum);
+      EXPECT_NEAR(rms, std::hypot(noise, kQuantum / std::sqrt(12.0)), 0.06 * rms) << force;
+    }
+    const double rms = read_noise(noise, kQuantum, 0.05, 0.4).rms(kQuantum);
+    EXPECT_NEAR(rms, std::hypot(noise, kQuantum / std::sqrt(12.0)), 0.03 * rms) << noise;
+  }
+}
+
+TEST(NoiseInStepsTest, WithoutStepsItIsTheErrorsOwn) {
+  NoiseInSteps fine;
+  for (int i = 0; i < 1000; ++i) fine.add(0.1 + 1e-4 * i, i % 2 == 0 ? 1e-3 : -1e-3, 0);
+  EXPECT_NEAR(fine.rms(0), 1e-3, 1e-12);
+  EXPECT_NEAR(fine.rms(0.05), 1e-3, 1e-12) << "the transducer is finer than it says";
+  EXPECT_TRUE(NoiseInSteps{}.empty());
+  EXPECT_FALSE(fine.empty());
+}
+
 TEST(SensorStepsTest, AQuietSensorHasNoSteps) {
   for (const SensorSteps& steps : {SensorSteps{1e-3, 0.05}, SensorSteps{1e-3, 0}}) {
     EXPECT_EQ(steps.at(0.113).offset, 0);
