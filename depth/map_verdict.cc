@@ -41,7 +41,8 @@ MapVerdict map_verdict(const MapLikelihood& likelihood,
   MapVerdict out;
   out.found = posterior.log_evidence > config.evidence_min && posterior.gain > config.gain_min;
   for (const PlaceData& place : likelihood.places()) {
-    const double off = (place.misfit - place.samples) / std::sqrt(2 * std::max(place.samples, 1.0));
+    const double expected = place.samples + config.curve_share * config.curve_share * place.force;
+    const double off = (place.misfit - expected) / std::sqrt(2 * std::max(place.samples, 1.0));
     out.worst_curve = std::max(out.worst_curve, off);
   }
   const auto rest = likelihood.rest(out.found ? &posterior.best : nullptr);

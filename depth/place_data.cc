@@ -205,7 +205,8 @@ std::optional<PlaceData> place_data(const PlaceReadings& readings, const CurveBa
                 .scale = best.scale,
                 .surface = surface,
                 .misfit = best.misfit,
-                .samples = sums.samples()};
+                .samples = sums.samples(),
+                .force = sums.squares()};
   reduce(sums, best, readings.surface - surface, out);
   return out;
 }

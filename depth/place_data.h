@@ -35,6 +35,7 @@ struct PlaceData {
   double surface{};  ///< [m]
   double misfit{};   ///< [-], sum of weighted squares
   double samples{};  ///< [-]
+  double force{};    ///< [-], sum of the weighted squares of the force itself
 };
 
 /// What a place says of a factor on a force.

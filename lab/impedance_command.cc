@@ -67,7 +67,8 @@ void declare_impedance(config::CommandLine& line, ImpedanceFlags& flags) {
               flags.amplitude_mm,
               {.min = 0.01, .max = 2, .unit = "mm"},
               "of the hand's swing, 3 mm deep");
-  line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "threads at a time");
+  line.whole(
+      "--cores", flags.cores, {.min = 1, .max = 256}, "threads; as many as there are processors");
   line.report(flags.report, "palp.impedance/1");
   line.output("--csv", flags.csv, "a line for each law, round trip, frequency and tissue");
   plot::declare_picture(line, flags.picture, "the stiffest tissue and free air over frequency");
@@ -80,7 +81,7 @@ ExitStatus run_impedance(const ImpedanceFlags& flags, const Machine& machine) {
   if (can) can = plot::can_write_picture(flags.picture);
   if (!can) return {ExitCode::CannotOpen, "palp-lab: " + can.error().text};
   machine.for_each_index(
-      study->rows.size(), flags.cores > 0 ? flags.cores : machine.processors, [&](std::size_t i) {
+      study->rows.size(), flags.cores.value_or(machine.processors), [&](std::size_t i) {
         measure(study->rows[i], study->stiffnesses, flags.amplitude_mm * kMillimetre);
       });
   for (const auto& [path, text] : {std::pair{flags.report, impedance_json(*study)},

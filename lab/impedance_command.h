@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "common/config/command_line.h"
@@ -16,7 +17,7 @@ struct ImpedanceFlags {
   std::string frequencies_hz{"1,2,5,10,20"};
   std::string stiffnesses{"100,300,1000"};  ///< [N/m]
   double amplitude_mm{0.2};
-  std::uint64_t cores{};  ///< 0: all
+  std::optional<std::uint64_t> cores{};  ///< nothing: all
   std::string report{};
   std::string csv{};
   plot::PictureFlags picture{};

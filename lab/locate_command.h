@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "common/config/command_line.h"
@@ -13,19 +14,21 @@ namespace palp::lab {
 struct LocateFlags {
   std::uint64_t count{100};
   std::uint64_t seed{1};
-  std::uint64_t rows{3};
+  std::uint64_t taps{9};
   double pitch_mm{7.5};
-  double spread{};  ///< [-]
+  double heterogeneity{};  ///< [-]
   double length_mm{10};
   double assumed_spread{0.05};  ///< [-]
+  double e_kpa{15.3};
   double depth_max_mm{27};
   std::string ball{};
   std::string set{};
+  bool search{};
   std::string rule{};
-  std::string script{};
+  bool session{};
   double round_trip_ms{};
-  double loss{};          ///< [-]
-  std::uint64_t cores{};  ///< 0: all
+  double loss{};                         ///< [-]
+  std::optional<std::uint64_t> cores{};  ///< nothing: all
   std::string report{};
   std::string csv{};
   plot::PictureFlags picture{};

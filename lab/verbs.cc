@@ -114,7 +114,7 @@ Result<Run> run(Plan plan, const BatchArguments& arguments, const Machine& machi
     if (!shard) return tl::unexpected(shard.error());
     keep_shard(plan, *shard);
   }
-  const std::size_t cores = arguments.cores > 0 ? arguments.cores : machine.processors;
+  const std::size_t cores = arguments.cores.value_or(machine.processors);
   plan.made_by = machine.made_by;
   const auto begin = machine.used();
   auto results = run_missing(plan, arguments, machine, cores);
@@ -291,7 +291,10 @@ void declare_common(config::CommandLine& verb, BatchArguments& arguments, const 
 void declare_running(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {
   declare_common(verb, arguments, schema);
   verb.text("--shard", arguments.shard, "I/N", "only every Nth case, from the Ith on");
-  verb.whole("--cores", arguments.cores, {.min = 1, .max = 1024}, "threads; as many as there are");
+  verb.whole("--cores",
+             arguments.cores,
+             {.min = 1, .max = 1024},
+             "threads; as many as there are processors");
 }
 
 void declare_spread(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {

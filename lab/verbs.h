@@ -57,9 +57,9 @@ struct BatchArguments {
   std::optional<std::uint64_t> seed;
   std::uint64_t count{1000};
   std::uint64_t repeats{1};
-  std::uint64_t cores{};
-  bool resume{};          ///< takes only what an interrupted batch has not
-  bool keeps_rows{true};  ///< as they come, beside `cases`
+  std::optional<std::uint64_t> cores{};  ///< nothing: all
+  bool resume{};                         ///< takes only what an interrupted batch has not
+  bool keeps_rows{true};                 ///< as they come, beside `cases`
   config::Submission submission{.form = shard_form()};  ///< of montecarlo, adversary, map, sweep
 };
 

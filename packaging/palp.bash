@@ -21,7 +21,7 @@ _palp() {
         --coupling) candidates="direct wave tdpa mmt" ;;
         --style) candidates="screen single double" ;;
         --grip) candidates="light mid firm arm" ;;
-        --next-tap) candidates="search gp raster" ;;
+        --rule) candidates="gp raster" ;;
         --phantom) candidates="paper-5mm paper-10mm paper-15mm paper-20mm paper-25mm none" ;;
         --master) candidates="script:standard script:demo script:map script:search \
           script:breath script:long pointer" ;;

@@ -10,14 +10,14 @@
 namespace palp::lab {
 namespace {
 
-constexpr double kTissueKpa = 15.3;  // of the database
+constexpr double kKilopascal = 1e3;  // [Pa]
 
 }  // namespace
 
 std::string tissue_words(const LocateSession& session,
                          const depth::DepthDatabase::Query* ball,
                          const Place& axis) {
-  std::string words = formatted("block e_kpa=%.9g", session.scale * kTissueKpa);
+  std::string words = formatted("block e_kpa=%.9g", session.scale * kDatabaseModulus / kKilopascal);
   if (session.spread > 0) {
     words += formatted(" varies=%.9g length=%.9g seed=%llu",
                        session.spread,
@@ -46,6 +46,8 @@ Result<Scenario> locate_scenario(const LocateSession& session,
            {"surgeon.hand.master", "script:" + session.script},
            {"patient.simulated_phantom.phantom",
             tissue_words(session, ball, {kSiteB.x + axis.x, kSiteB.y + axis.y})},
+           {"patient.estimator.youngs_modulus_kpa",
+            formatted("%.9g", session.modulus / kKilopascal)},
            {"patient.estimator.place_spread", formatted("%.9g", session.assumed_spread)},
            {"up.delay_ms", delay},
            {"down.delay_ms", delay},

@@ -10,15 +10,18 @@
 
 namespace palp::lab {
 
+inline constexpr double kDatabaseModulus = 15.3e3;  ///< [Pa], Young's
+
 /// A whole session that palpates for a ball: hand, link, stage and sensor.
 struct LocateSession {
-  std::string script{"map"};  ///< "map", nine taps, or "search", of surgeon::load_script
-  double round_trip{};        ///< [s]
-  double loss{};              ///< [-], each way
-  double assumed_spread{};    ///< [-], of the tissue's stiffness, by the estimator
-  double spread{};            ///< [-], true
-  double length{10e-3};       ///< [m], over which it varies
-  double scale{1};            ///< [-], of Young's modulus
+  std::string script{"map"};         ///< "map", nine taps, or "search", of surgeon::load_script
+  double round_trip{};               ///< [s]
+  double loss{};                     ///< [-], each way
+  double assumed_spread{};           ///< [-], of the tissue's stiffness, by the estimator
+  double spread{};                   ///< [-], true
+  double length{10e-3};              ///< [m], over which it varies
+  double scale{1};                   ///< [-], of Young's modulus over the database's
+  double modulus{kDatabaseModulus};  ///< [Pa], Young's, as the estimator knows it
   std::uint64_t seed{};
 };
 

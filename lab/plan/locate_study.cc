@@ -47,8 +47,14 @@ LocatePhantom draw(const LocateStudy& study,
   truth.axis.x = draws.uniform(-half, half);
   truth.axis.y = draws.uniform(-half, half);
   if (study.axis) truth.axis = *study.axis;
-  truth.scale = 1 + kScaleSpread * draws.normal();
+  truth.scale = study.modulus / kDatabaseModulus * (1 + kScaleSpread * draws.normal());
   return truth;
+}
+
+/// What the estimator knows of the tissue beforehand.
+depth::StiffnessPrior stiffness_of(const LocateStudy& study) {
+  const double scale = study.modulus / kDatabaseModulus;
+  return {.scale = scale, .scale_stddev = kScaleSpread * scale};
 }
 
 /// The bound of each coordinate: what the touches tell at the truth, and the prior as a normal
@@ -120,7 +126,7 @@ LocateBench::LocateBench(const LocateStudy& study, depth::DepthDatabase database
 
 /// One tap at every place of the pattern.
 std::vector<depth::PlaceData> LocateBench::touch_all(const Palpation::TapAt& tap_at) const {
-  Palpation hand{basis_, tap_at};
+  Palpation hand{basis_, stiffness_of(study_), tap_at};
   std::vector<depth::PlaceData> places;
   for (std::uint32_t place = 0; place < study_.rows * study_.rows; ++place) {
     const double middle = 0.5 * (study_.rows - 1);
@@ -149,7 +155,8 @@ std::vector<depth::PlaceData> LocateBench::touch_by_rule(const LocatePhantom& tr
                                                          LocateCase& out) const {
   const auto phantom = patient::make_phantom(words_of(truth, out.inclusion, draws));
   PALP_CHECK(phantom.has_value(), "a study's phantoms are sound");
-  Palpation hand{basis_, [&](const Place& at, TimePoint now, const Feel& feel) {
+  const depth::StiffnessPrior stiffness = stiffness_of(study_);
+  Palpation hand{basis_, stiffness, [&](const Place& at, TimePoint now, const Feel& feel) {
                    const double deepest = phantom->depth_max() - kMargin;
                    const TapMotion search{.clearance = -surgeon::kNearPlace,
                                           .span = seconds(surgeon::kSearchSpan),
@@ -157,14 +164,15 @@ std::vector<depth::PlaceData> LocateBench::touch_by_rule(const LocatePhantom& tr
                    return tap(*phantom, {.start_place = at}, deepest, search, draws, now, feel);
                  }};
   std::vector<depth::PlaceData> places;
-  out.searched = search_field(*study_.rule,
-                              {.field = field_,
-                               .prior = prior_,
-                               .tissue = {.stiffness = {}, .place_spread = study_.assumed_spread},
-                               .config = {.travel = kFieldHalf, .verdict = {}}},
-                              hand,
-                              out.inclusion ? std::optional{truth.axis} : std::nullopt,
-                              places);
+  out.searched =
+      search_field(*study_.rule,
+                   {.field = field_,
+                    .prior = prior_,
+                    .tissue = {.stiffness = stiffness, .place_spread = study_.assumed_spread},
+                    .config = {.travel = kFieldHalf, .verdict = {}}},
+                   hand,
+                   out.inclusion ? std::optional{truth.axis} : std::nullopt,
+                   places);
   return places;
 }
 
@@ -260,6 +268,7 @@ void LocateBench::run_session(const LocatePhantom& truth,
                                          .spread = study_.spread,
                                          .length = study_.length,
                                          .scale = truth.scale,
+                                         .modulus = study_.modulus,
                                          .seed = draws.bits()},
                                         out.inclusion ? &truth.ball : nullptr,
                                         truth.axis);
@@ -287,10 +296,14 @@ void LocateBench::run_session(const LocatePhantom& truth,
 void LocateBench::judge(const LocatePhantom& truth,
                         std::vector<depth::PlaceData> places,
                         LocateCase& out) const {
+  const double begin = study_.clock ? study_.clock() : 0;
   const depth::MapLikelihood likelihood{
-      field_, {.stiffness = {}, .place_spread = study_.assumed_spread}, std::move(places)};
+      field_,
+      {.stiffness = stiffness_of(study_), .place_spread = study_.assumed_spread},
+      std::move(places)};
   const depth::MapPosterior posterior = depth::map_posterior(likelihood, field_, prior_);
   const depth::MapVerdict verdict = depth::map_verdict(likelihood, posterior);
+  if (study_.clock) out.update = study_.clock() - begin;
   out.found = verdict.found;
   for (const MapDoubt doubt : verdict.doubts) out.doubts |= doubts_of(doubt);
   out.log_evidence = posterior.log_evidence;

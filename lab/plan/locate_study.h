@@ -29,7 +29,8 @@ struct LocateStudy {
   double spread{};              ///< [-], of the tissue's stiffness from place to place
   double length{10e-3};         ///< [m], over which it varies; 0: by each place of a pattern anew
   double assumed_spread{0.05};  ///< [-], of it, by the estimator
-  double depth_max{27e-3};      ///< [m], of the balls drawn
+  double modulus{15.3e3};   ///< [Pa], Young's, of the tissue within 10 %, as the estimator knows
+  double depth_max{27e-3};  ///< [m], of the balls drawn
   /// The one ball of all cases; nothing: drawn from what the estimator assumes.
   std::optional<depth::DepthDatabase::Query> ball{};
   std::optional<Place> axis{};  ///< of all balls, from the pattern's middle; nothing: drawn
@@ -38,8 +39,9 @@ struct LocateStudy {
   std::optional<TapRule> rule{};
   /// Whole sessions with that script; empty: the taps alone.
   std::string script{};
-  double round_trip{};  ///< [s], of these
-  double loss{};        ///< [-], of these, each way
+  double round_trip{};              ///< [s], of these
+  double loss{};                    ///< [-], of these, each way
+  std::function<double()> clock{};  ///< [s], to time the answers; null: nobody does
 };
 
 /// Of a coordinate: x, y, depth, radius [m], logarithm of the ratio [-].
@@ -69,6 +71,7 @@ struct LocateCase {
   double worst_curve{};      ///< [-]
   double worst_deviation{};  ///< [-]
   std::uint32_t strokes{};   ///< of a session
+  double update{};           ///< [s], from the last tap to the answer; 0: not timed
   Searched searched{};       ///< of a field palpated by a rule
 
   /// An inclusion where there is none, or an interval of x, y, depth or radius that misses the

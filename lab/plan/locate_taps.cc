@@ -80,7 +80,7 @@ std::optional<depth::PlaceData> Palpation::touch(const Place& at) {
                              .noise = stroke->known.noise,
                              .quantum = strokes.sensor.step,
                              .cut_off = strokes.sensor.pole,
-                             .stiffness = {}},
+                             .stiffness = stiffness_},
                             *basis_);
   });
   return out;

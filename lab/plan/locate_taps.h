@@ -73,15 +73,16 @@ class Palpation {
   /// A tap at a place from `now` on. @returns when the next tap may begin.
   using TapAt = std::function<TimePoint(const Place& at, TimePoint now, const Feel& feel)>;
 
-  /// `basis` outlives it.
-  Palpation(const depth::CurveBasis& basis, TapAt tap_at)
-      : basis_{&basis}, tap_at_{std::move(tap_at)} {}
+  /// `basis` outlives it; `stiffness`: of the tissue, beforehand.
+  Palpation(const depth::CurveBasis& basis, const depth::StiffnessPrior& stiffness, TapAt tap_at)
+      : basis_{&basis}, stiffness_{stiffness}, tap_at_{std::move(tap_at)} {}
 
   /// What all taps there say of the place; nothing: nothing was felt.
   [[nodiscard]] std::optional<depth::PlaceData> touch(const Place& at);
 
  private:
   const depth::CurveBasis* basis_;
+  depth::StiffnessPrior stiffness_;
   TapAt tap_at_;
   depth::StrokeTracker tracker_{depth::StrokeTrackerConfig{}};
   TimePoint now_{};

@@ -43,7 +43,7 @@ std::vector<depth::PlaceData> touched(const depth::CurveBasis& basis,
     std::exit(2);
   }
   LocateDraws draws{seed, 1};
-  Palpation hand{basis, [&](const Place& at, TimePoint now, const Feel& feel) {
+  Palpation hand{basis, {}, [&](const Place& at, TimePoint now, const Feel& feel) {
                    return tap(
                        *phantom, {.start_place = at}, 4.2e-3, std::nullopt, draws, now, feel);
                  }};

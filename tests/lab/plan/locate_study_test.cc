@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/config/json.h"
 #include "lab/locate_command.h"
 #include "lab/report/locate_picture.h"
 
@@ -48,7 +49,12 @@ TEST(LocateStudyTest, ReportsCountWhatWasFoundAndWhatWasNot) {
   cases[0].coordinates[2].high = 5.5e-3;  // misses the depth
   const std::string report = locate_report(study, cases, "");
   EXPECT_THAT(report, testing::HasSubstr("\"false_alarm_rate\": 0.5"));
-  EXPECT_THAT(report, testing::HasSubstr("\"coverage95\": 0.0"));
+  const auto json = config::Json::parse(report);
+  EXPECT_EQ(json["coverage95"]["depth"].number(), 0);
+  EXPECT_EQ(json["coverage95"]["x"].number(), 1);
+  EXPECT_EQ(json["rmse_mm"]["depth"].number(), 0);
+  EXPECT_EQ(json["cells"].parts().size(), 9U);
+  EXPECT_TRUE(json["update_ms"]["p50"].is_null()) << "nobody looked at a clock";
   EXPECT_THAT(locate_table(study, cases), testing::HasSubstr("false alarms 50.00 %"));
   const std::string csv = locate_csv(study, cases);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
@@ -58,23 +64,26 @@ TEST(LocateStudyTest, ReportsCountWhatWasFoundAndWhatWasNot) {
 TEST(LocateStudyTest, ARuleOfTheNextTapGoesWithNoSessionAndIsReported) {
   LocateFlags flags;
   flags.rule = "gp";
-  flags.script = "map";
+  EXPECT_EQ(run_locate(flags, {}).code, config::ExitCode::BadInput);
+  flags.search = flags.session = true;
   EXPECT_EQ(run_locate(flags, {}).code, config::ExitCode::BadInput);
   const LocateStudy study{.count = 1, .rule = TapRule::Gp};
   std::vector<LocateCase> cases{told(0, true, true), told(1, true, true), told(2, true, true)};
   cases[0].searched.known = 9;
   cases[1].searched.known = 12;
   const std::string report = locate_report(study, cases, "");
-  EXPECT_THAT(report, testing::HasSubstr("\"next_tap\": \"gp\""));
-  EXPECT_THAT(report, testing::HasSubstr("\"touches_known_p50\": 12.0")) << "never is late";
-  EXPECT_THAT(report, testing::HasSubstr("\"touches_near_p50\": 0.0"));
+  EXPECT_THAT(report, testing::HasSubstr("\"search\": \"gp\""));
+  const auto json = config::Json::parse(report);
+  EXPECT_EQ(json["taps_to_1mm"]["p50"].number(), 12) << "never is late";
+  EXPECT_TRUE(json["taps_to_1mm"]["p90"].is_null());
+  EXPECT_TRUE(json["taps_to_place"]["p50"].is_null());
 }
 
 TEST(LocateStudyTest, TheCommandTakesItsFlags) {
   LocateFlags flags;
   config::CommandLine line{"palp-lab", ""};
   declare_locate(line.verb("locate", "x"), flags);
-  EXPECT_EQ(flags.rows, 3U);
+  EXPECT_EQ(flags.taps, 9U);
 }
 
 }  // namespace
