@@ -18,10 +18,9 @@ namespace {
 
 constexpr std::size_t kRowsMin = 4;
 constexpr std::size_t kRowsMax = 20'000;
-constexpr double kIndentationMax = 0.1;        // [m]; beyond it a table is not one of an indenter
-constexpr double kForceMax = 1000;             // [N]; likewise
-constexpr double kIntervalMin = 1e-7;          // [m]; closer rows make slopes of rounding errors
-constexpr std::size_t kTextSizeMax = 4 << 20;  // [bytes]
+constexpr double kIndentationMax = 0.1;  // [m]; beyond it a table is not one of an indenter
+constexpr double kForceMax = 1000;       // [N]; likewise
+constexpr double kIntervalMin = 1e-7;    // [m]; closer rows make slopes of rounding errors
 
 std::string number_text(double value) { return formatted("%.9g", value); }
 

@@ -12,6 +12,9 @@
 
 namespace palp::patient {
 
+/// A phantom's file may be so long.
+inline constexpr std::size_t kTextSizeMax = 4 << 20;  ///< [bytes]
+
 /// One row of a force-displacement table.
 struct ForceRow {
   double indentation{};  ///< [m]

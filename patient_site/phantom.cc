@@ -180,7 +180,7 @@ Result<Phantom> file_phantom(std::string_view spec, std::string_view words) {
   const std::string beside{mark == std::string_view::npos ? ""
                                                           : words.substr(mark + kBeside.size())};
   if (path.empty()) return fail("phantom 'file:' names no file; write file:PATH.csv");
-  const auto text = read_whole_file(path);
+  const auto text = read_whole_file(path, kTextSizeMax);
   if (!text) return fail("phantom '" + std::string{spec} + "'", text.error());
   if (are_tissue_words(*text)) return block_phantom(spec, *text);
   auto curves = parse_tissue_curves(*text, path, kSiteB);

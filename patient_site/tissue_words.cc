@@ -71,6 +71,20 @@ Word number(std::string_view name, double low, double high, double unit, double&
           }};
 }
 
+Word whole(std::string_view name, std::uint64_t high, std::uint64_t& to) {
+  return {name, [=, &to](const std::string& text) -> Result<void> {
+            std::uint64_t value = 0;
+            const char* end = text.data() + text.size();
+            const auto [stop, error] = std::from_chars(text.data(), end, value);
+            if (error != std::errc{} || stop != end || value > high) {
+              return fail("'" + std::string{name} + "=" + text +
+                          "' is not a whole number from 0 to " + std::to_string(high));
+            }
+            to = value;
+            return {};
+          }};
+}
+
 /// Of an inclusion: how far each may go says the database.
 Word any_number(std::string_view name, double unit, double& to) {
   return {name, [=, &to](const std::string& text) -> Result<void> {
@@ -139,7 +153,6 @@ Result<void> describe_block(const Part& part, BlockTissue& block) {
   StiffnessVariation& variation = block.variation;
   double modulus = 0;
   double height = 0;
-  double seed = static_cast<double>(variation.seed);
   const Word law{"law", [&](const std::string& text) -> Result<void> {
                    const auto named = plain_law(text);
                    if (!named) {
@@ -155,26 +168,39 @@ Result<void> describe_block(const Part& part, BlockTissue& block) {
                            law,
                            number("varies", 0, 0.5, 1, variation.spread),
                            number("length", 2, 200, kMillimetre, variation.length),
-                           number("seed", 0, 9007199254740991, 1, seed)});
+                           whole("seed", 9007199254740991, variation.seed)});
   if (modulus > 0) block.youngs_modulus = modulus;
   if (height > 0) block.height = height;
-  variation.seed = static_cast<std::uint64_t>(seed);
   return taken;
+}
+
+/// Whether it is too small says the tip.
+Word surface_radius(std::optional<double>& to) {
+  return {"radius", [&to](const std::string& text) -> Result<void> {
+            const auto value = number_in(text);
+            if (!value || *value == 0 || std::abs(*value) > 1e6) {
+              return fail("'radius=" + text +
+                          "' is not a number from -1000000 to 1000000 but 0; a level surface has "
+                          "none");
+            }
+            to = *value * kMillimetre;
+            return {};
+          }};
 }
 
 Result<void> describe_surface(const Part& part, BlockSurface& surface) {
   double x = 0;  // [rad]
   double y = 0;
-  double radius = 0;  // [m]
+  std::optional<double> radius;  // [m]
   constexpr double kDegree = std::numbers::pi / 180;
   auto taken = take_words(part,
                           {number("slope_x", -20, 20, kDegree, x),
                            number("slope_y", -20, 20, kDegree, y),
-                           number("radius", -1e6, 1e6, kMillimetre, radius),
+                           surface_radius(radius),
                            place(surface.apex)});
   surface.slope_x = std::tan(x);
   surface.slope_y = std::tan(y);
-  surface.curvature = radius == 0 ? 0 : 1 / radius;
+  surface.curvature = radius ? 1 / *radius : 0;
   return taken;
 }
 
@@ -185,6 +211,7 @@ Result<void> load_block(const Part& part, BlockTissue& block) {
                     return {};
                   }};
   if (auto taken = take_words(part, {path}); !taken) return taken;
+  if (file.empty()) return fail("'database' names no file; write database file=PATH");
   auto database = depth::load_database(file);
   if (!database) return tl::unexpected<Error>(database.error());
   block.database = std::move(*database);

@@ -191,6 +191,10 @@ TEST(BlockTissueTest, WhatNobodyComputedIsRefused) {
            {"ball depth=12 depth=13", "'depth' is given twice of a ball"},
            {"block e_kpa=18; ball depth=6; block varies=0.05", "'block' is given twice"},
            {"ball depth=6; bell depth=6", "'bell' is unknown; there are ball, cylinder"},
+           {"block seed=1.5", "'seed=1.5' is not a whole number from 0"},
+           {"block seed=-1", "'seed=-1' is not a whole number from 0"},
+           {"surface radius=0", "a level surface has none"},
+           {"database; ball depth=6", "'database' names no file"},
            {"database file=none.bin; ball depth=6", "cannot read none.bin"}}) {
     const auto phantom = make_phantom(words);
     ASSERT_FALSE(phantom) << words;

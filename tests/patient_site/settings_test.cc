@@ -1,12 +1,18 @@
 #include "patient_site/settings.h"
 
+#include <filesystem>
+#include <fstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/config/document.h"
+#include "depth/embedded_database.h"
+#include "fem/depth_table.h"
 #include "surgeon_site/settings.h"
 #include "tests/common/settings/knob_walk.h"
 #include "tests/common/settings/settings_text.h"
+#include "tests/support/own_path.h"
 
 namespace palp::patient {
 namespace {
@@ -190,6 +196,22 @@ TEST(PatientSettingsTest, TheStageStartsClearOfTheSurfaceWhereverThatLies) {
         settings_with({"simulated_phantom.surface_offset_mm=" + offset}).simulation;
     EXPECT_LE(simulation.start_position, simulation.surface_offset - 9.99e-3) << offset;
   }
+}
+
+TEST(PatientSettingsTest, ADatabasesOwnBlockIsTheTissueUnlessItIsSaid) {
+  auto table = fem::parse_table(depth::embedded_database());
+  ASSERT_TRUE(table);
+  table->grid.block.youngs_modulus = 9e3;
+  const std::string file = test::own_path("soft.bin");
+  std::ofstream{file, std::ios::binary} << fem::table_bytes(*table);
+  const std::string database = "estimator.database=" + file;
+  const auto scale = [](const std::vector<std::string>& assignments) {
+    return settings_with(assignments).estimator.bayes.stiffness.scale;
+  };
+  EXPECT_DOUBLE_EQ(scale({database}), 1);
+  EXPECT_DOUBLE_EQ(scale({database, "estimator.youngs_modulus_kpa=18"}), 2);
+  EXPECT_DOUBLE_EQ(scale({"estimator.youngs_modulus_kpa=30.6"}), 2);
+  std::filesystem::remove(file);
 }
 
 TEST(PatientSettingsTest, TheTipStopsShortOfTheTablesEnd) {
