@@ -67,8 +67,7 @@ void declare_impedance(config::CommandLine& line, ImpedanceFlags& flags) {
               flags.amplitude_mm,
               {.min = 0.01, .max = 2, .unit = "mm"},
               "of the hand's swing, 3 mm deep");
-  line.whole(
-      "--cores", flags.cores, {.min = 1, .max = 256}, "threads; as many as there are processors");
+  line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "threads; else one a processor");
   line.report(flags.report, "palp.impedance/1");
   line.output("--csv", flags.csv, "a line for each law, round trip, frequency and tissue");
   plot::declare_picture(line, flags.picture, "the stiffest tissue and free air over frequency");

@@ -133,8 +133,7 @@ void declare_locate(config::CommandLine& line, LocateFlags& flags) {
               {.min = 0, .max = 2000, .unit = "ms"},
               "above 0: of sessions");
   line.number("--loss", flags.loss, {.min = 0, .max = 0.5}, "above 0: of sessions, each way");
-  line.whole(
-      "--cores", flags.cores, {.min = 1, .max = 256}, "threads; as many as there are processors");
+  line.whole("--cores", flags.cores, {.min = 1, .max = 256}, "threads; else one a processor");
   line.report(flags.report, "palp.locate/1");
   line.output("--csv", flags.csv, "a line per case");
   plot::declare_picture(line, flags.picture, "depth, place and radius over the true depth");

@@ -19,7 +19,7 @@ struct LocateFlags {
   double heterogeneity{};  ///< [-]
   double length_mm{10};
   double assumed_spread{0.05};  ///< [-]
-  double e_kpa{15.3};
+  double e_kpa{15.3};           ///< [kPa]
   double depth_max_mm{27};
   std::string ball{};
   std::string set{};

@@ -291,10 +291,7 @@ void declare_common(config::CommandLine& verb, BatchArguments& arguments, const 
 void declare_running(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {
   declare_common(verb, arguments, schema);
   verb.text("--shard", arguments.shard, "I/N", "only every Nth case, from the Ith on");
-  verb.whole("--cores",
-             arguments.cores,
-             {.min = 1, .max = 1024},
-             "threads; as many as there are processors");
+  verb.whole("--cores", arguments.cores, {.min = 1, .max = 1024}, "threads; else one a processor");
 }
 
 void declare_spread(config::CommandLine& verb, BatchArguments& arguments, const char* schema) {
