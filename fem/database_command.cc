@@ -1,6 +1,7 @@
 #include "fem/database_command.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
@@ -11,7 +12,6 @@
 #include "common/config/number.h"
 #include "common/config/report.h"
 #include "common/config/settings_text.h"
-#include "common/core/conventions.h"
 #include "common/core/printable.h"
 #include "common/core/whole_file.h"
 #include "fem/database_builder.h"
@@ -118,6 +118,9 @@ std::size_t wanted_members(const DepthGrid& grid) {
   return cells_of(grid).size() * grid.ratios.size();
 }
 
+/// Without what the last bits say.
+double in_mm(double length) { return std::round(length * 1e9) / 1e6; }
+
 config::Json describe(const DepthTable& table) {
   const DepthGrid& grid = table.grid;
   config::Json out;
@@ -126,13 +129,13 @@ config::Json describe(const DepthTable& table) {
   out["made_by"] = table.made_by;
   out["youngs_modulus_kpa"] = grid.block.youngs_modulus / 1e3;
   out["poisson"] = grid.block.poisson;
-  out["half_width_mm"] = grid.block.half_width / kMillimetre;
-  out["height_mm"] = grid.block.height / kMillimetre;
-  out["indenter_radius_mm"] = grid.indenter_radius / kMillimetre;
-  out["depth_mm"] = {grid.depths.front() / kMillimetre, grid.depths.back() / kMillimetre};
-  out["radius_mm"] = {grid.radii.front() / kMillimetre, grid.radii.back() / kMillimetre};
+  out["half_width_mm"] = in_mm(grid.block.half_width);
+  out["height_mm"] = in_mm(grid.block.height);
+  out["indenter_radius_mm"] = in_mm(grid.indenter_radius);
+  out["depth_mm"] = {in_mm(grid.depths.front()), in_mm(grid.depths.back())};
+  out["radius_mm"] = {in_mm(grid.radii.front()), in_mm(grid.radii.back())};
   out["ratio"] = {grid.ratios.front(), grid.ratios.back()};
-  out["indentation_max_mm"] = grid.indentations.back() / kMillimetre;
+  out["indentation_max_mm"] = in_mm(grid.indentations.back());
   out["members"] = table.members.size();
   out["members_wanted"] = wanted_members(grid);
   out["off_axis_values"] = table.off_axis ? table.off_axis->shape.size() : 0;

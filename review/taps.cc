@@ -207,7 +207,7 @@ std::string tap_table(TimePoint began_at,
       "    time  place      stroke    indentation  force max  stiffness felt    true   error      "
       "h  verdict  depth  95 % interval\n"
       "       s                                mm          N             N/m     N/m       %      "
-      "N              mm\n"};
+      "N          mm, right below the tip\n"};
   std::vector<std::pair<TimePoint, std::string>> rows;
   for (const Tap& tap : touches.taps) rows.emplace_back(tap.began_at, tap_row(tap));
   for (const judge::Excursion& touch : touches.others) {

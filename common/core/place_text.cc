@@ -1,6 +1,7 @@
 #include "common/core/place_text.h"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace palp {
@@ -9,7 +10,9 @@ std::string place_text(const Place& place) {
   if (distance(place, kSiteA) <= kNamedPlace) return "A";
   if (distance(place, kSiteB) <= kNamedPlace) return "B";
   std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.4g,%.4g", place.x * 1e3, place.y * 1e3);
+  // What is left of zero after a hand's way is no place of its own; nor is minus zero.
+  const auto shown = [](double value) { return std::round(value * 1e6) / 1e3 + 0.0; };
+  std::snprintf(text.data(), text.size(), "%.4g,%.4g", shown(place.x), shown(place.y));
   return text.data();
 }
 

@@ -168,7 +168,9 @@ std::string run_summary(const Scenario& scenario,
            place_text(estimate.place).c_str(),
            estimate.hash,
            std::string{to_string(estimate.verdict)}.c_str());
-    if (estimate.verdict == DepthVerdict::Found) append(text, " at %.1f mm", estimate.depth * 1e3);
+    if (estimate.verdict == DepthVerdict::Found) {
+      append(text, " at %.1f mm, if right below the tip", estimate.depth * 1e3);
+    }
     if (estimate.reason != DepthReason::Ok) {
       append(text, " (%s)", std::string{to_string(estimate.reason)}.c_str());
     }
