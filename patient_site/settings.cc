@@ -123,13 +123,18 @@ Result<depth::DepthEstimatorConfig> make_estimator(const proto::config::Estimato
     if (!database) return fail(database.error().text);
     config.database = std::move(*database);
   }
-  // The database's own block has this Young's modulus; every force is proportional to it. Who
-  // says nothing of the tissue but brings a database means its block.
+  // The database's own block has this Young's modulus; every force is proportional to it.
   constexpr double kDatabaseKpa = 15.3;
   const double block =
       config.database ? config.database->grid().block.youngs_modulus / 1e3 : kDatabaseKpa;
-  config.bayes.stiffness.scale =
-      message.has_youngs_modulus_kpa() ? message.youngs_modulus_kpa() / block : 1;
+  const double modulus = message.youngs_modulus_kpa();
+  if (modulus > 0 && modulus < 1) {
+    return fail(number_text("estimator.youngs_modulus_kpa = ",
+                            modulus,
+                            3,
+                            " is neither 1 or more nor 0, which is that of the database"));
+  }
+  config.bayes.stiffness.scale = modulus > 0 ? modulus / block : 1;
   config.map.place_spread = message.place_spread();
   config.bayes.stiffness.scale_stddev =
       config.bayes.stiffness.scale * message.youngs_modulus_spread();

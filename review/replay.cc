@@ -322,6 +322,7 @@ Result<WhatIf> what_if_patient(const RunBytes& files, const PatientParts& parts)
     if (!*tick) break;
     ++report.ticks;
     if (run.estimate()) estimates[run.estimate()->number].other = run.estimate();
+    if (run.map()) report.map_other = run.map()->report;
     const SiteTick* there = tick_of((*tick)->records);
     const SiteTick* here = tick_of(run.again());
     if (there == nullptr || here == nullptr) continue;
@@ -340,6 +341,9 @@ Result<WhatIf> what_if_patient(const RunBytes& files, const PatientParts& parts)
   if (both > 0) report.target_rms = std::sqrt(square / static_cast<double>(both));
   report.estimates.reserve(estimates.size());
   for (const auto& [number, one] : estimates) report.estimates.push_back(one);
+  if (const auto& maps = run.logged().maps; !maps.empty()) {
+    report.map_logged = maps.rbegin()->second.report;
+  }
   report.lack = run.lack();
   return report;
 }

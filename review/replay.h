@@ -8,6 +8,7 @@
 #include "common/core/result.h"
 #include "common/coupling/any_coupling.h"
 #include "common/message/depth.h"
+#include "common/message/map_report.h"
 #include "depth/depth_estimator.h"
 #include "patient_site/patient_control.h"
 #include "review/logged_ticks.h"
@@ -63,6 +64,9 @@ struct WhatIf {
   std::uint64_t gate_acted{};   ///< ticks, of the files
   std::uint64_t gate_would{};   ///< ticks
   std::vector<OtherEstimate> estimates;
+  /// Of all places together, after the last stroke that the files tell one of.
+  std::optional<MapReport> map_logged;
+  std::optional<MapReport> map_other;
   std::string lack;  ///< as a report's
 };
 [[nodiscard]] Result<WhatIf> what_if_patient(const RunBytes& files, const PatientParts& parts);

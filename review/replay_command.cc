@@ -7,6 +7,7 @@
 #include "common/core/number_text.h"
 #include "common/core/place_text.h"
 #include "common/core/printable.h"
+#include "common/message/map_text.h"
 #include "common/record/session_reader.h"
 #include "judge/depth_statement.h"
 #include "patient_site/settings.h"
@@ -123,6 +124,11 @@ std::string describe(const WhatIf& result, const ReplayAsk& ask) {
     const DepthEstimate& stroke = one.logged ? *one.logged : *one.other;
     text += "stroke " + std::to_string(stroke.number) + " at " + place_text(stroke.place) +
             ": the session " + said_of(one.logged) + "; now " + said_of(one.other) + '\n';
+  }
+  if (result.map_logged) {
+    text += "all places together, the session: " + map_sentence(*result.map_logged) + '\n' +
+            "all places together, now: " +
+            (result.map_other ? map_sentence(*result.map_other) : "nothing") + '\n';
   }
   return text;
 }

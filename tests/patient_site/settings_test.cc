@@ -211,6 +211,9 @@ TEST(PatientSettingsTest, ADatabasesOwnBlockIsTheTissueUnlessItIsSaid) {
   EXPECT_DOUBLE_EQ(scale({database}), 1);
   EXPECT_DOUBLE_EQ(scale({database, "estimator.youngs_modulus_kpa=18"}), 2);
   EXPECT_DOUBLE_EQ(scale({"estimator.youngs_modulus_kpa=30.6"}), 2);
+  config::Document document = config::patient_document();
+  ASSERT_TRUE(document.set("estimator.youngs_modulus_kpa=0.5"));
+  EXPECT_THAT(make_settings(document).error().text, HasSubstr("is neither 1 or more nor 0"));
   std::filesystem::remove(file);
 }
 

@@ -44,6 +44,20 @@ TEST(ReplayCommandTest, TellsWhatAnotherSettingWouldHaveSaid) {
   EXPECT_THAT(answer->text, HasSubstr("target of the stage"));
 }
 
+TEST(ReplayCommandTest, TellsWhatAnotherEstimatorWouldHaveSaidOfAllPlaces) {
+  const test::LabFiles nine_taps =
+      test::lab_files(test::lab_scenario(std::chrono::seconds{40}, {}, "map"));
+  const auto bytes = nine_taps.patient.bytes();
+  const auto evener = replay_command({bytes}, {.set = {"estimator.place_spread=0.01"}});
+  ASSERT_TRUE(evener) << evener.error().text;
+  EXPECT_THAT(evener->text, HasSubstr("together, the session: One round inclusion, if the"));
+  EXPECT_THAT(evener->text, HasSubstr("together, now: One round inclusion, if the"));
+  EXPECT_THAT(evener->text, HasSubstr("varies by 1 % from place to place"));
+  const auto papers = replay_command({bytes}, {.estimator = "paper"});
+  ASSERT_TRUE(papers) << papers.error().text;
+  EXPECT_THAT(papers->text, HasSubstr("all places together, now: nothing"));
+}
+
 TEST(ReplayCommandTest, ADamagedFileIsNoDifference) {
   const auto bytes = three_seconds().surgeon.bytes();
   std::vector<std::byte> damaged{bytes.begin(), bytes.end()};
