@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kDrawsPrior = 240;
 constexpr std::size_t kDrawsFirst = 500;   // by the cells' own masses
-constexpr std::size_t kDrawsLater = 1100;  // at most, by what these said of them
+constexpr std::size_t kDrawsLater = 1700;  // at most, by what these said of them
 constexpr double kWorth = 500;             // [-], of even draws: enough
 constexpr double kFirstShare = 0.25;       // [-], of the later draws, by the cells' own masses
 /// Outside of an interval, by side, and on the lower side where the interval reaches the upper end.

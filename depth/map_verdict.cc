@@ -50,7 +50,11 @@ MapVerdict map_verdict(const MapLikelihood& likelihood,
     out.worst_deviation = std::max(out.worst_deviation, std::abs(one));
   }
   if (out.worst_curve > config.curve_max) out.doubts.push_back(MapDoubt::Curve);
-  if (out.worst_deviation > config.deviation_max) out.doubts.push_back(MapDoubt::NotOneBall);
+  // Where hardly any ball explains the places, the few that do so least badly are no posterior.
+  const bool starved = out.found && posterior.balls_worth < config.worth_min;
+  if (out.worst_deviation > config.deviation_max || starved) {
+    out.doubts.push_back(MapDoubt::NotOneBall);
+  }
   if (!out.found) return out;
   if (posterior.modes.size() > 1 && posterior.modes[1].share > config.side_min &&
       distance(posterior.modes[0].place, posterior.modes[1].place) > kApart) {

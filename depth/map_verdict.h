@@ -21,6 +21,7 @@ struct MapVerdictConfig {
   double curve_max{15};      ///< [-], see worst_curve
   double curve_share{0.02};  ///< [-], of the force, by which a curve may be off for want of terms
   double deviation_max{4};   ///< [-], see worst_deviation
+  double worth_min{10};      ///< [-], of MapPosterior::balls_worth: fewer are no posterior
   double side_min{0.1};      ///< [-], share of a second mode
   double outside_max{0.25};  ///< [-], share beyond the touched places
 };
