@@ -102,6 +102,34 @@ TEST(MapEstimatorTest, PlainTissueIsNoInclusionAndTellsNoLengths) {
   EXPECT_EQ(hand.news()->depth, Located{});
 }
 
+/// Nobody said so: the estimator is told of 15.3 kPa.
+TEST(MapEstimatorTest, StiffTissueIsNoInclusionBelowAllPlaces) {
+  for (const char* words : {"block e_kpa=5", "block e_kpa=33", "block e_kpa=40"}) {
+    const auto phantom = make_phantom(words);
+    ASSERT_TRUE(phantom);
+    for (const std::vector<Place>& places : std::vector<std::vector<Place>>{
+             {{-7e-3, -4e-3}, {7e-3, -4e-3}, {0, 8e-3}},
+             {{-10e-3, 0}, {0, 0}, {10e-3, 0}, {0, 10e-3}, {0, -10e-3}}}) {
+      Palpation hand;
+      for (const Place& place : places) hand.tap(*phantom, place);
+      ASSERT_TRUE(hand.news());
+      EXPECT_EQ(hand.news()->verdict, DepthVerdict::None) << words;
+      EXPECT_TRUE(hand.news()->trusted()) << words;
+    }
+  }
+}
+
+TEST(MapEstimatorTest, ABallInStiffTissueIsFoundAsInAny) {
+  const auto phantom = make_phantom("block e_kpa=40; ball depth=5 radius=12 ratio=300 at=2,-3");
+  Palpation hand;
+  hand.raster(*phantom, 10e-3);
+  ASSERT_TRUE(hand.news());
+  EXPECT_EQ(hand.news()->verdict, DepthVerdict::Found);
+  EXPECT_TRUE(hand.news()->trusted());
+  EXPECT_NEAR(hand.news()->x.median, 2e-3, 1e-3);
+  EXPECT_NEAR(hand.news()->depth.median, 5e-3, 1e-3);
+}
+
 TEST(MapEstimatorTest, TwoPlacesAreLeftToTheEstimatorOfTheSinglePlace) {
   const auto phantom = make_phantom("ball depth=5 radius=12 ratio=300 at=0,0");
   Palpation hand;
