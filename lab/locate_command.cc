@@ -43,7 +43,7 @@ Result<void> agreement(const LocateFlags& flags) {
   }
   if (!flags.set.empty() &&
       (flags.search || is_session(flags) || !flags.ball.empty() || flags.heterogeneity > 0 ||
-       flags.e_kpa != usual.e_kpa || flags.depth_max_mm != usual.depth_max_mm)) {
+       flags.e_kpa != usual.e_kpa || flags.told_kpa || flags.depth_max_mm != usual.depth_max_mm)) {
     return fail(
         "--set brings worlds and taps of its own: of the other flags that describe them "
         "only --taps, --pitch-mm and --assumed-spread go with it");
@@ -67,6 +67,7 @@ LocateStudy study_of(const LocateFlags& flags, const Machine& machine) {
                     .length = flags.length_mm * kMillimetre,
                     .assumed_spread = flags.assumed_spread,
                     .modulus = 1e3 * flags.e_kpa,
+                    .told = 1e3 * flags.told_kpa.value_or(flags.e_kpa),
                     .depth_max = flags.depth_max_mm * kMillimetre,
                     .mismatch = flags.set == "mismatch",
                     .round_trip = 1e-3 * flags.round_trip_ms,
@@ -105,7 +106,11 @@ void declare_locate(config::CommandLine& line, LocateFlags& flags) {
   line.number("--e-kpa",
               flags.e_kpa,
               {.min = 1, .max = 200, .unit = "kPa"},
-              "Young's modulus of the tissue, within 10 %, as the estimator is told");
+              "Young's modulus of the tissue, within 10 %");
+  line.number("--told-kpa",
+              flags.told_kpa,
+              {.min = 1, .max = 200, .unit = "kPa"},
+              "what the estimator is told of it; else the same");
   line.number("--depth-max-mm",
               flags.depth_max_mm,
               {.min = 5, .max = 27, .unit = "mm"},

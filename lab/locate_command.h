@@ -18,8 +18,9 @@ struct LocateFlags {
   double pitch_mm{7.5};
   double heterogeneity{};  ///< [-]
   double length_mm{10};
-  double assumed_spread{0.05};  ///< [-]
-  double e_kpa{15.3};           ///< [kPa]
+  double assumed_spread{0.05};       ///< [-]
+  double e_kpa{15.3};                ///< [kPa]
+  std::optional<double> told_kpa{};  ///< [kPa]; nothing: e_kpa
   double depth_max_mm{27};
   std::string ball{};
   std::string set{};

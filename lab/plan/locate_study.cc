@@ -53,7 +53,7 @@ LocatePhantom draw(const LocateStudy& study,
 
 /// What the estimator knows of the tissue beforehand.
 depth::StiffnessPrior stiffness_of(const LocateStudy& study) {
-  const double scale = study.modulus / kDatabaseModulus;
+  const double scale = study.told / kDatabaseModulus;
   return {.scale = scale, .scale_stddev = kScaleSpread * scale};
 }
 
@@ -268,7 +268,7 @@ void LocateBench::run_session(const LocatePhantom& truth,
                                          .spread = study_.spread,
                                          .length = study_.length,
                                          .scale = truth.scale,
-                                         .modulus = study_.modulus,
+                                         .modulus = study_.told,
                                          .seed = draws.bits()},
                                         out.inclusion ? &truth.ball : nullptr,
                                         truth.axis);

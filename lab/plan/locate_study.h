@@ -29,8 +29,9 @@ struct LocateStudy {
   double spread{};              ///< [-], of the tissue's stiffness from place to place
   double length{10e-3};         ///< [m], over which it varies; 0: by each place of a pattern anew
   double assumed_spread{0.05};  ///< [-], of it, by the estimator
-  double modulus{15.3e3};   ///< [Pa], Young's, of the tissue within 10 %, as the estimator knows
-  double depth_max{27e-3};  ///< [m], of the balls drawn
+  double modulus{15.3e3};       ///< [Pa], Young's, of the tissue within 10 %
+  double told{15.3e3};          ///< [Pa], what the estimator is told of it
+  double depth_max{27e-3};      ///< [m], of the balls drawn
   /// The one ball of all cases; nothing: drawn from what the estimator assumes.
   std::optional<depth::DepthDatabase::Query> ball{};
   std::optional<Place> axis{};  ///< of all balls, from the pattern's middle; nothing: drawn

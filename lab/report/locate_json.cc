@@ -72,6 +72,7 @@ std::string locate_report(const LocateStudy& study,
   json["heterogeneity_length_mm"] = study.length / kMillimetre;
   json["assumed_spread"] = study.assumed_spread;
   json["e_kpa"] = study.modulus / 1e3;
+  json["told_kpa"] = study.told / 1e3;
   json["depth_max_mm"] = study.depth_max / kMillimetre;
   json["set"] = study.mismatch ? Json("mismatch") : Json(nullptr);
   json["search"] =
