@@ -21,7 +21,7 @@ constexpr double kLengthLeastMm = 2;  // as the words of a tissue have it
 /// Rows of a square pattern of so many places; 0: it is none.
 std::uint32_t rows_for(std::uint64_t taps) {
   for (std::uint32_t rows = 2; rows <= 10; ++rows) {
-    if (rows * rows == taps) return rows;
+    if (std::uint64_t{rows} * rows == taps) return rows;
   }
   return 0;
 }

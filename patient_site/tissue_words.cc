@@ -114,6 +114,14 @@ std::string doubled(const std::vector<std::string>& names) {
   return {};
 }
 
+Result<void> unknown_word(const std::string& name,
+                          const Part& part,
+                          const std::vector<Word>& known) {
+  std::string names;
+  for (const Word& one : known) names.append(names.empty() ? "" : ", ").append(one.name);
+  return fail("'" + name + "' is unknown of a " + part.name + "; there are " + names);
+}
+
 Result<void> take_words(const Part& part, const std::vector<Word>& known) {
   std::vector<std::string> given;
   for (const auto& [name, text] : part.words) given.push_back(name);
@@ -124,11 +132,7 @@ Result<void> take_words(const Part& part, const std::vector<Word>& known) {
     const auto word = std::find_if(known.begin(), known.end(), [&, &name = name](const Word& one) {
       return one.name == name;
     });
-    if (word == known.end()) {
-      std::string names;
-      for (const Word& one : known) names += (names.empty() ? "" : ", ") + std::string{one.name};
-      return fail("'" + name + "' is unknown of a " + part.name + "; there are " + names);
-    }
+    if (word == known.end()) return unknown_word(name, part, known);
     if (auto taken = word->take(text); !taken) return taken;
   }
   return {};
