@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/core/formatted.h"
 #include "depth/least_squares.h"
 
 namespace palp::depth {
@@ -79,6 +80,37 @@ void add(CurveTerms& sum, const CurveTerms& terms, double weight) noexcept {
 }
 
 }  // namespace
+
+Result<DepthPrior> known_part(const DepthPrior& prior, const fem::DepthGrid& grid) {
+  DepthPrior out = prior;
+  struct Side {
+    const char* name;
+    double DepthPrior::*low;
+    double DepthPrior::*high;
+    const std::vector<double>& axis;
+    double unit;
+    const char* unit_name;
+  };
+  for (const Side& side :
+       {Side{"depth", &DepthPrior::depth_min, &DepthPrior::depth_max, grid.depths, 1e-3, " mm"},
+        Side{"radius", &DepthPrior::radius_min, &DepthPrior::radius_max, grid.radii, 1e-3, " mm"},
+        Side{"ratio", &DepthPrior::ratio_min, &DepthPrior::ratio_max, grid.ratios, 1, ""}}) {
+    out.*side.low = std::max(out.*side.low, side.axis.front());
+    out.*side.high = std::min(out.*side.high, side.axis.back());
+    if (out.*side.low <= out.*side.high) continue;
+    return fail(
+        formatted("no inclusion of the database has a %s of %.6g to %.6g%s, it holds %.6g "
+                  "to %.6g%s",
+                  side.name,
+                  prior.*side.low / side.unit,
+                  prior.*side.high / side.unit,
+                  side.unit_name,
+                  side.axis.front() / side.unit,
+                  side.axis.back() / side.unit,
+                  side.unit_name));
+  }
+  return out;
+}
 
 CurveTerms curve_polynomials(double indentation) noexcept {
   const double t = 2 * std::clamp(indentation / kCurveReach, 0.0, 1.0) - 1;

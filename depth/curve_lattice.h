@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "common/core/result.h"
 #include "depth/depth_database.h"
 
 namespace palp::depth {
@@ -19,6 +20,9 @@ struct DepthPrior {
   double ratio_max{900};     ///< [-]
   fem::InclusionShape shape{fem::InclusionShape::Ball};
 };
+
+/// The part of a prior that a database knows of. A sentence where it knows of nothing in it.
+[[nodiscard]] Result<DepthPrior> known_part(const DepthPrior& prior, const fem::DepthGrid& grid);
 
 /// A curve as a few numbers: force = plain force * sum of c_m P_m(indentation).
 inline constexpr std::size_t kCurveTerms = 7;

@@ -121,6 +121,9 @@ Result<depth::DepthEstimatorConfig> make_estimator(const proto::config::Estimato
   if (!message.database().empty()) {
     auto database = depth::load_database(message.database());
     if (!database) return fail(database.error().text);
+    const auto known = depth::known_part(prior, database->grid());
+    if (!known) return fail(known.error().text);
+    prior = *known;
     config.database = std::move(*database);
   }
   // The database's own block has this Young's modulus; every force is proportional to it.

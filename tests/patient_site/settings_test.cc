@@ -217,6 +217,24 @@ TEST(PatientSettingsTest, ADatabasesOwnBlockIsTheTissueUnlessItIsSaid) {
   std::filesystem::remove(file);
 }
 
+TEST(PatientSettingsTest, BallsThatADatabaseDoesNotHoldAreNotLookedFor) {
+  auto table = fem::parse_table(depth::embedded_database());
+  ASSERT_TRUE(table);
+  for (double& ratio : table->grid.ratios) ratio /= 2;  // 1.5 to 450
+  const std::string file = test::own_path("softer.bin");
+  std::ofstream{file, std::ios::binary} << fem::table_bytes(*table);
+  const std::string database = "estimator.database=" + file;
+  const depth::DepthPrior prior = settings_with({database}).estimator.bayes.prior;
+  EXPECT_DOUBLE_EQ(prior.ratio_min, 3);
+  EXPECT_DOUBLE_EQ(prior.ratio_max, 450);
+  config::Document document = config::patient_document();
+  ASSERT_TRUE(document.set(database));
+  ASSERT_TRUE(document.set("estimator.ratio_min=500"));
+  EXPECT_THAT(make_settings(document).error().text,
+              HasSubstr("has a ratio of 500 to 900, it holds 1.5 to 450"));
+  std::filesystem::remove(file);
+}
+
 TEST(PatientSettingsTest, TheTipStopsShortOfTheTablesEnd) {
   const MotionGateConfig gate = within_tables({}, 1.7e-3, 6e-3);
   EXPECT_LT(gate.travel_max, 7.7e-3);
