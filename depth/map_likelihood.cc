@@ -137,7 +137,7 @@ void MapLikelihood::add_prior(Normal<kTissue>& to) const noexcept {
   const StiffnessPrior& known = prior_.stiffness;
   std::array<double, kTissue> spread{};
   std::array<double, kTissue> expected{};
-  spread[0] = std::max(known.scale_stddev, kModulusSpread * known.scale) / scale_;
+  spread[0] = kModulusSpread * known.scale / scale_;
   expected[0] = known.scale / scale_ - 1;
   for (std::size_t m = 0; m < kTissueShapes; ++m) {
     spread[m + 1] = kTissueShapeSpread[m];

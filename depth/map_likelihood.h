@@ -19,13 +19,13 @@ struct MapBall {
   double log_ratio{};  ///< [-]
 };
 
-/// [-], least standard deviation of Young's modulus over what was said of it: touches at several
-/// places tell it, and tissue twice as stiff as said is no ball below all of them.
+/// [-], standard deviation of Young's modulus over what was said of it, however sure that was:
+/// touches at several places tell it, and tissue twice as stiff is no ball below all of them.
 inline constexpr double kModulusSpread = 1;
 
 /// What is known of a tissue before it was touched.
 struct TissuePrior {
-  StiffnessPrior stiffness;  ///< see kModulusSpread
+  StiffnessPrior stiffness;  ///< its scale_stddev gives way to kModulusSpread
   /// [-], standard deviation of the stiffness from place to place, over its mean; how much of it
   /// this tissue shows is learnt.
   double place_spread{0.05};

@@ -174,7 +174,7 @@ Stroke StrokeTracker::describe_stroke() {
   stroke.indentation_max = measured.position_max - place.law()->surface;
   stroke.hash = hash_of(*place.law());
   stroke.fit_rms = *rms;
-  stroke.known = place.seen(index);
+  stroke.known = place.seen(index, reading_);
   return stroke;
 }
 

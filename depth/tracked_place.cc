@@ -62,12 +62,13 @@ TrackedPlace::TrackedPlace(const Place& place, double first_contact, std::uint64
       curve_{first_contact},
       generation_{generation} {}
 
-TouchedPlace TrackedPlace::seen(std::size_t index) const {
+TouchedPlace TrackedPlace::seen(std::size_t index, const PlaceReading& reading) const {
   return {.index = index,
           .place = place_,
           .surface = law_->surface,
           .rate_factor = law_->rate_factor,
-          .noise = contact_.empty() ? noise_ : std::max(kNoiseFloor, contact_.rms(quantum_)),
+          .noise = contact_.empty() ? noise_
+                                    : std::max(kNoiseFloor, contact_.rms(reading.force_quantum)),
           .touches = touches_,
           .touched = touched_,
           .generation = generation_};
@@ -116,7 +117,6 @@ std::optional<double> TrackedPlace::learn_loading(const StrokeCutter& stroke,
   touches_.push_back(touch_of(stroke, reading.force_range));
   ++touched_;
   contact_.add(own.contact);
-  quantum_ = reading.force_quantum;
   if (++strokes_ == kStrokesMax) {
     curve_.scale(0.5);
     strokes_ /= 2;

@@ -37,7 +37,8 @@ class TrackedPlace {
 
   [[nodiscard]] const Place& place() const noexcept { return place_; }
   [[nodiscard]] const std::optional<ContactLaw>& law() const noexcept { return law_; }
-  [[nodiscard]] TouchedPlace seen(std::size_t index) const;  ///< once there is a law
+  /// Once there is a law.
+  [[nodiscard]] TouchedPlace seen(std::size_t index, const PlaceReading& reading) const;
 
   /// Fits surface and law to this stroke and those before it. `noise` [N], of one sample. Other
   /// tissue than before starts afresh with the next of `generations`.
@@ -80,7 +81,6 @@ class TrackedPlace {
   std::uint64_t generation_;
   double noise_{};        ///< [N], of one sample, of the last stroke
   NoiseInSteps contact_;  ///< measured force minus law
-  double quantum_{};      ///< [N], of the transducer
 };
 
 }  // namespace palp::depth

@@ -9,7 +9,6 @@
 #include "common/core/conventions.h"
 #include "common/core/random.h"
 #include "common/core/small_solver.h"
-#include "lab/plan/locate_session.h"
 #include "lab/plan/locate_taps.h"
 #include "lab/run/run.h"
 #include "patient_site/phantom.h"
@@ -53,8 +52,7 @@ LocatePhantom draw(const LocateStudy& study,
 
 /// What the estimator knows of the tissue beforehand.
 depth::StiffnessPrior stiffness_of(const LocateStudy& study) {
-  const double scale = study.told / kDatabaseModulus;
-  return {.scale = scale, .scale_stddev = kScaleSpread * scale};
+  return {.scale = study.told / kDatabaseModulus};
 }
 
 /// The bound of each coordinate: what the touches tell at the truth, and the prior as a normal
