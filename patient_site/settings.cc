@@ -127,9 +127,7 @@ Result<depth::DepthEstimatorConfig> make_estimator(const proto::config::Estimato
     config.database = std::move(*database);
   }
   // The database's own block has this Young's modulus; every force is proportional to it.
-  constexpr double kDatabaseKpa = 15.3;
-  const double block =
-      config.database ? config.database->grid().block.youngs_modulus / 1e3 : kDatabaseKpa;
+  const fem::Block block = config.database ? config.database->grid().block : fem::Block{};
   const double modulus = message.youngs_modulus_kpa();
   if (modulus > 0 && modulus < 1) {
     return fail(number_text("estimator.youngs_modulus_kpa = ",
@@ -137,7 +135,7 @@ Result<depth::DepthEstimatorConfig> make_estimator(const proto::config::Estimato
                             3,
                             " is neither 1 or more nor 0, which is that of the database"));
   }
-  config.bayes.stiffness.scale = modulus > 0 ? modulus / block : 1;
+  config.bayes.stiffness.scale = modulus > 0 ? modulus / (block.youngs_modulus / 1e3) : 1;
   config.map.place_spread = message.place_spread();
   config.bayes.stiffness.scale_stddev =
       config.bayes.stiffness.scale * message.youngs_modulus_spread();

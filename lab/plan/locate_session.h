@@ -10,7 +10,7 @@
 
 namespace palp::lab {
 
-inline constexpr double kDatabaseModulus = 15.3e3;  ///< [Pa], Young's
+inline constexpr double kDatabaseModulus = fem::Block{}.youngs_modulus;  ///< [Pa], Young's
 
 /// A whole session that palpates for a ball: hand, link, stage and sensor.
 struct LocateSession {

@@ -13,6 +13,7 @@
 #include "depth/depth_database.h"
 #include "depth/map_verdict.h"
 #include "lab/plan/locate_search.h"
+#include "lab/plan/locate_session.h"
 #include "lab/plan/locate_taps.h"
 #include "lab/plan/mismatched_world.h"
 
@@ -29,9 +30,9 @@ struct LocateStudy {
   double spread{};              ///< [-], of the tissue's stiffness from place to place
   double length{10e-3};         ///< [m], over which it varies; 0: by each place of a pattern anew
   double assumed_spread{0.05};  ///< [-], of it, by the estimator
-  double modulus{15.3e3};       ///< [Pa], Young's, of the tissue within 10 %
-  double told{15.3e3};          ///< [Pa], what the estimator is told of it
-  double depth_max{27e-3};      ///< [m], of the balls drawn
+  double modulus{kDatabaseModulus};  ///< [Pa], Young's, of the tissue within 10 %
+  double told{kDatabaseModulus};     ///< [Pa], what the estimator is told of it
+  double depth_max{27e-3};           ///< [m], of the balls drawn
   /// The one ball of all cases; nothing: drawn from what the estimator assumes.
   std::optional<depth::DepthDatabase::Query> ball{};
   std::optional<Place> axis{};  ///< of all balls, from the pattern's middle; nothing: drawn

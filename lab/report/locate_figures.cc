@@ -19,8 +19,8 @@ constexpr double kSizeMost = 15e-3;  // [m], and radius to which
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 template <class Chosen>
-Figures figures(const std::vector<LocateCase>& cases, const Chosen& chosen) {
-  Figures out;
+LocateFigures figures(const std::vector<LocateCase>& cases, const Chosen& chosen) {
+  LocateFigures out;
   for (const LocateCase& one : cases) {
     if (!one.inclusion || !chosen(one)) continue;
     ++out.count;
@@ -30,13 +30,13 @@ Figures figures(const std::vector<LocateCase>& cases, const Chosen& chosen) {
     for (std::size_t i = 0; i < kLocated; ++i) {
       const Located& told = one.coordinates[i];
       const double error = told.median - told.truth;
-      out.squares[i] += error * error;
+      out.rmse[i] += error * error;
       out.bounds[i] += told.bound * told.bound;
       out.inside[i] += told.low <= told.truth && told.truth <= told.high ? 1 : 0;
     }
   }
   for (std::size_t i = 0; i < kLocated && out.found > 0; ++i) {
-    out.squares[i] = std::sqrt(out.squares[i] / static_cast<double>(out.found));
+    out.rmse[i] = std::sqrt(out.rmse[i] / static_cast<double>(out.found));
     out.bounds[i] = std::sqrt(out.bounds[i] / static_cast<double>(out.found));
   }
   return out;
@@ -61,7 +61,7 @@ bool hard_and_near(const LocateCase& one) {
 
 }  // namespace
 
-Figures figures_of_all(const std::vector<LocateCase>& cases) {
+LocateFigures figures_of_all(const std::vector<LocateCase>& cases) {
   return figures(cases, [](const LocateCase&) { return true; });
 }
 
@@ -107,8 +107,8 @@ std::vector<LocateRow> rows_of(const LocateStudy& study, const std::vector<Locat
   return rows;
 }
 
-Alarms alarms(const std::vector<LocateCase>& cases) {
-  Alarms out;
+LocateAlarms alarms(const std::vector<LocateCase>& cases) {
+  LocateAlarms out;
   constexpr MapDoubts kModel = doubts_of(MapDoubt::Curve) | doubts_of(MapDoubt::NotOneBall);
   for (const LocateCase& one : cases) {
     ++out.all;
@@ -121,9 +121,9 @@ Alarms alarms(const std::vector<LocateCase>& cases) {
   return out;
 }
 
-std::vector<Worlds> worlds_of(const std::vector<LocateCase>& cases) {
-  std::vector<Worlds> out(kMismatchNames.size() + 1);
-  const auto add = [](const LocateCase& one, Worlds& to) {
+std::vector<LocateWorlds> worlds_of(const std::vector<LocateCase>& cases) {
+  std::vector<LocateWorlds> out(kMismatchNames.size() + 1);
+  const auto add = [](const LocateCase& one, LocateWorlds& to) {
     ++to.count;
     if (one.confidently_wrong()) ++to.wrong;
     if (one.doubts != 0) ++to.warned;

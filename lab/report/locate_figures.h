@@ -11,19 +11,19 @@
 namespace palp::lab {
 
 /// Of balls that were found.
-struct Figures {
+struct LocateFigures {
   std::size_t count{};
   std::size_t found{};
   std::size_t trusted{};
   std::array<std::size_t, kLocated> inside{};
-  std::array<double, kLocated> squares{};  ///< [as the coordinate], root mean square error
-  std::array<double, kLocated> bounds{};   ///< [as the coordinate], of the bounds; 0: none
+  std::array<double, kLocated> rmse{};    ///< [as the coordinate]
+  std::array<double, kLocated> bounds{};  ///< [as the coordinate], root mean square; 0: none
 };
 
 /// A name and the cases of it.
 struct LocateRow {
   std::string name;
-  Figures figures;
+  LocateFigures figures;
 };
 
 /// A third of the radii and of the depths that are drawn.
@@ -31,34 +31,34 @@ struct LocateCell {
   std::string name;
   std::array<double, 2> radius{};  ///< [m]
   std::array<double, 2> depth{};   ///< [m]
-  Figures figures;
+  LocateFigures figures;
 };
 
-[[nodiscard]] Figures figures_of_all(const std::vector<LocateCase>& cases);
+[[nodiscard]] LocateFigures figures_of_all(const std::vector<LocateCase>& cases);
 [[nodiscard]] std::vector<LocateCell> cells_of(const LocateStudy& study,
                                                const std::vector<LocateCase>& cases);
 /// Hard balls near the surface, anywhere and below the middle place; thirds of the ratio.
 [[nodiscard]] std::vector<LocateRow> rows_of(const LocateStudy& study,
                                              const std::vector<LocateCase>& cases);
 
-struct Alarms {
+struct LocateAlarms {
   std::size_t plain{};
   std::size_t found{};    ///< of those
   std::size_t doubted{};  ///< of all, for any reason
   std::size_t model{};    ///< of all, because the tissue is not as assumed
   std::size_t all{};
 };
-[[nodiscard]] Alarms alarms(const std::vector<LocateCase>& cases);
+[[nodiscard]] LocateAlarms alarms(const std::vector<LocateCase>& cases);
 
 /// Of the worlds of a kind, or of all.
-struct Worlds {
+struct LocateWorlds {
   std::string name;
   std::size_t count{};
   std::size_t wrong{};  ///< confidently
   std::size_t warned{};
   std::size_t alarms{};  ///< plain ones in which something was found, doubted or not
 };
-[[nodiscard]] std::vector<Worlds> worlds_of(const std::vector<LocateCase>& cases);
+[[nodiscard]] std::vector<LocateWorlds> worlds_of(const std::vector<LocateCase>& cases);
 
 [[nodiscard]] std::size_t right_of(const std::vector<LocateCase>& cases);
 [[nodiscard]] std::size_t balls_of(const std::vector<LocateCase>& cases);

@@ -17,7 +17,7 @@ constexpr std::array<const char*, kLocated> kCoordinates{"x", "y", "depth", "rad
 Json number_if(bool told, double value) { return told ? Json(value) : Json(nullptr); }
 
 /// Adds what was found of some balls, and how well.
-void add_figures(const LocateStudy& study, const Figures& f, Json& out) {
+void add_figures(const LocateStudy& study, const LocateFigures& f, Json& out) {
   out["n"] = f.count;
   out["found"] = f.found;
   out["trusted"] = f.trusted;
@@ -25,9 +25,9 @@ void add_figures(const LocateStudy& study, const Figures& f, Json& out) {
     const bool told = f.found > 0 && tells(study, i);
     out["coverage95"][kCoordinates[i]] = number_if(told, share_or_zero(f.inside[i], f.found));
     if (i + 1 == kLocated) continue;
-    out["rmse_mm"][kCoordinates[i]] = number_if(told, f.squares[i] / kMillimetre);
+    out["rmse_mm"][kCoordinates[i]] = number_if(told, f.rmse[i] / kMillimetre);
     out["over_bound"][kCoordinates[i]] =
-        f.bounds[i] > 0 ? Json(f.squares[i] / f.bounds[i]) : Json(nullptr);
+        f.bounds[i] > 0 ? Json(f.rmse[i] / f.bounds[i]) : Json(nullptr);
   }
 }
 
@@ -102,14 +102,14 @@ std::string locate_report(const LocateStudy& study,
   }
   json["strokes_p50"] = number_if(!study.script.empty(), strokes_of(cases));
   json["kinds"] = Json::array();
-  for (const Worlds& one : study.mismatch ? worlds_of(cases) : std::vector<Worlds>{}) {
+  for (const LocateWorlds& one : study.mismatch ? worlds_of(cases) : std::vector<LocateWorlds>{}) {
     json["kinds"].push_back({{"kind", one.name},
                              {"n", one.count},
                              {"confident_wrong", one.wrong},
                              {"warned", one.warned},
                              {"plain_found", one.alarms}});
   }
-  const Alarms told = alarms(cases);
+  const LocateAlarms told = alarms(cases);
   json["plain_count"] = told.plain;
   json["false_alarm_rate"] = share_or_zero(told.found, told.plain);
   json["not_trusted_rate"] = share_or_zero(told.doubted, told.all);

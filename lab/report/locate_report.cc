@@ -7,7 +7,7 @@ namespace palp::lab {
 namespace {
 
 /// A line of the table.
-std::string text_of(const LocateStudy& study, const std::string& name, const Figures& f) {
+std::string text_of(const LocateStudy& study, const std::string& name, const LocateFigures& f) {
   char line[240];
   std::snprintf(line,
                 sizeof line,
@@ -28,13 +28,13 @@ std::string text_of(const LocateStudy& study, const std::string& name, const Fig
   }
   out += "   ";
   for (std::size_t i = 0; i + 1 < kLocated; ++i) {
-    std::snprintf(line, sizeof line, " %6.2f", f.squares[i] / unit_of(i));
+    std::snprintf(line, sizeof line, " %6.2f", f.rmse[i] / unit_of(i));
     out += line;
   }
   out += "   ";
   for (std::size_t i = 0; i + 1 < kLocated; ++i) {
     if (f.bounds[i] > 0) {
-      std::snprintf(line, sizeof line, " %6.2f", f.squares[i] / f.bounds[i]);
+      std::snprintf(line, sizeof line, " %6.2f", f.rmse[i] / f.bounds[i]);
       out += line;
     } else {
       out += "      -";
@@ -45,7 +45,7 @@ std::string text_of(const LocateStudy& study, const std::string& name, const Fig
 
 std::string worlds_text(const std::vector<LocateCase>& cases) {
   std::string out = "kind              n  confidently wrong  warned  plain called an inclusion\n";
-  for (const Worlds& one : worlds_of(cases)) {
+  for (const LocateWorlds& one : worlds_of(cases)) {
     char line[160];
     std::snprintf(line,
                   sizeof line,
@@ -72,7 +72,7 @@ std::string locate_table(const LocateStudy& study, const std::vector<LocateCase>
   }
   for (const LocateRow& row : rows_of(study, cases)) out += text_of(study, row.name, row.figures);
   if (study.mismatch) return out + worlds_text(cases);
-  const Alarms told = alarms(cases);
+  const LocateAlarms told = alarms(cases);
   char line[240];
   std::snprintf(line,
                 sizeof line,

@@ -22,10 +22,11 @@ LocateCase found_at(double x, double depth, double radius, double off = 0) {
 }
 
 TEST(LocateFiguresTest, ErrorsAreTheRootMeanSquareAndIntervalsHoldOrNot) {
-  const Figures all = figures_of_all({found_at(0, 6e-3, 8e-3, 2e-3), found_at(0, 6e-3, 8e-3, 0)});
+  const LocateFigures all =
+      figures_of_all({found_at(0, 6e-3, 8e-3, 2e-3), found_at(0, 6e-3, 8e-3, 0)});
   EXPECT_EQ(all.found, 2U);
   EXPECT_EQ(all.inside[0], 1U);
-  EXPECT_NEAR(all.squares[0], 2e-3 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(all.rmse[0], 2e-3 / std::sqrt(2.0), 1e-12);
   EXPECT_NEAR(all.bounds[0], 0.5e-3, 1e-12);
 }
 
@@ -70,7 +71,7 @@ TEST(LocateFiguresTest, ADoubtOfTheModelIsOneOfAllDoubts) {
   cases[0].doubts = doubts_of(MapDoubt::Curve);
   cases[1].doubts = doubts_of(MapDoubt::Outside);
   cases[2].found = true;
-  const Alarms told = alarms(cases);
+  const LocateAlarms told = alarms(cases);
   EXPECT_EQ(told.all, 4U);
   EXPECT_EQ(told.plain, 4U);
   EXPECT_EQ(told.found, 1U);
