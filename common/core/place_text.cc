@@ -1,19 +1,17 @@
 #include "common/core/place_text.h"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
+
+#include "common/core/formatted.h"
 
 namespace palp {
 
 std::string place_text(const Place& place) {
   if (distance(place, kSiteA) <= kNamedPlace) return "A";
   if (distance(place, kSiteB) <= kNamedPlace) return "B";
-  std::array<char, 64> text{};
   // What is left of zero after a hand's way is no place of its own; nor is minus zero.
   const auto shown = [](double value) { return std::round(value * 1e6) / 1e3 + 0.0; };
-  std::snprintf(text.data(), text.size(), "%.4g,%.4g", shown(place.x), shown(place.y));
-  return text.data();
+  return formatted("%.4g,%.4g", shown(place.x), shown(place.y));
 }
 
 }  // namespace palp

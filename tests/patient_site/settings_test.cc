@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -198,13 +199,24 @@ TEST(PatientSettingsTest, TheStageStartsClearOfTheSurfaceWhereverThatLies) {
   }
 }
 
+/// The program's own database with another grid, on disk as long as this lives.
+struct ChangedDatabase {
+  explicit ChangedDatabase(const std::function<void(fem::DepthGrid& grid)>& change) {
+    auto table = fem::parse_table(depth::embedded_database());
+    EXPECT_TRUE(table);
+    change(table->grid);
+    std::ofstream{file, std::ios::binary} << fem::table_bytes(*table);
+  }
+  ~ChangedDatabase() { std::filesystem::remove(file); }
+  ChangedDatabase(const ChangedDatabase&) = delete;
+  ChangedDatabase& operator=(const ChangedDatabase&) = delete;
+
+  std::string file = test::own_path("changed.bin");
+};
+
 TEST(PatientSettingsTest, ADatabasesOwnBlockIsTheTissueUnlessItIsSaid) {
-  auto table = fem::parse_table(depth::embedded_database());
-  ASSERT_TRUE(table);
-  table->grid.block.youngs_modulus = 9e3;
-  const std::string file = test::own_path("soft.bin");
-  std::ofstream{file, std::ios::binary} << fem::table_bytes(*table);
-  const std::string database = "estimator.database=" + file;
+  const ChangedDatabase soft{[](fem::DepthGrid& grid) { grid.block.youngs_modulus = 9e3; }};
+  const std::string database = "estimator.database=" + soft.file;
   const auto scale = [](const std::vector<std::string>& assignments) {
     return settings_with(assignments).estimator.bayes.stiffness.scale;
   };
@@ -214,16 +226,13 @@ TEST(PatientSettingsTest, ADatabasesOwnBlockIsTheTissueUnlessItIsSaid) {
   config::Document document = config::patient_document();
   ASSERT_TRUE(document.set("estimator.youngs_modulus_kpa=0.5"));
   EXPECT_THAT(make_settings(document).error().text, HasSubstr("is neither 1 or more nor 0"));
-  std::filesystem::remove(file);
 }
 
 TEST(PatientSettingsTest, BallsThatADatabaseDoesNotHoldAreNotLookedFor) {
-  auto table = fem::parse_table(depth::embedded_database());
-  ASSERT_TRUE(table);
-  for (double& ratio : table->grid.ratios) ratio /= 2;  // 1.5 to 450
-  const std::string file = test::own_path("softer.bin");
-  std::ofstream{file, std::ios::binary} << fem::table_bytes(*table);
-  const std::string database = "estimator.database=" + file;
+  const ChangedDatabase softer{[](fem::DepthGrid& grid) {
+    for (double& ratio : grid.ratios) ratio /= 2;  // 1.5 to 450
+  }};
+  const std::string database = "estimator.database=" + softer.file;
   const depth::DepthPrior prior = settings_with({database}).estimator.bayes.prior;
   EXPECT_DOUBLE_EQ(prior.ratio_min, 3);
   EXPECT_DOUBLE_EQ(prior.ratio_max, 450);
@@ -232,7 +241,6 @@ TEST(PatientSettingsTest, BallsThatADatabaseDoesNotHoldAreNotLookedFor) {
   ASSERT_TRUE(document.set("estimator.ratio_min=500"));
   EXPECT_THAT(make_settings(document).error().text,
               HasSubstr("has a ratio of 500 to 900, it holds 1.5 to 450"));
-  std::filesystem::remove(file);
 }
 
 TEST(PatientSettingsTest, TheTipStopsShortOfTheTablesEnd) {

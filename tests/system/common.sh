@@ -3,6 +3,7 @@
 #   background     programs that are stopped when the script ends
 #   address_in     where a program listens, from its log
 #   make_keys      an identity for each site, in $work/keys
+#   fence          what a page shows between ```LANGUAGE and ```
 #   fail           a sentence, the ends of all logs, exit code 1
 #   watch_machine  from now on, notes how long the machine stands still
 #   standstill     the longest time that it stood still since, in whole ms; ends the watch
@@ -42,6 +43,9 @@ address_in() { # log
     sleep 0.05
   done
   return 1
+}
+fence() { # page language
+  sed -n "/^\`\`\`$2\$/,/^\`\`\`\$/p" "$1" | sed '1d;$d'
 }
 make_keys() {
   "$bin/palp-surgeon" certificates --folder "$work/keys" >"$work/keys.log" 2>&1 || fail "no keys"
