@@ -117,6 +117,34 @@ TEST_F(MapTest, ABallIsFoundWithItsPlaceDepthAndSize) {
   EXPECT_GT(found.balls_worth, 100);
 }
 
+bool doubts(const MapVerdict& verdict, MapDoubt doubt) {
+  return std::ranges::find(verdict.doubts, doubt) != verdict.doubts.end();
+}
+
+TEST_F(MapTest, APosteriorOfHardlyAnyBallIsDoubted) {
+  const MapLikelihood felt = likelihood(all_felt({}, pattern(3, 3, 7.5e-3), 1));
+  MapPosterior found = map_posterior(felt, field(), {});
+  EXPECT_FALSE(doubts(map_verdict(felt, found), MapDoubt::NotOneBall));
+  found.balls_worth = 3;
+  EXPECT_TRUE(doubts(map_verdict(felt, found), MapDoubt::NotOneBall));
+}
+
+TEST_F(MapTest, ACurveIsDoubtedByItsNoiseAndByItsForce) {
+  const auto curve_doubted = [](double noises, double of_force) {
+    std::vector<PlaceData> places = all_felt({}, pattern(3, 3, 7.5e-3), 1);
+    PlaceData& one = places.front();
+    one.force = 1e4 * one.samples;  // a hundred times the noise
+    one.misfit =
+        one.samples + noises * std::sqrt(2 * one.samples) + of_force * of_force * one.force;
+    const MapLikelihood felt = likelihood(std::move(places));
+    return doubts(map_verdict(felt, map_posterior(felt, field(), {})), MapDoubt::Curve);
+  };
+  EXPECT_FALSE(curve_doubted(10, 0));
+  EXPECT_TRUE(curve_doubted(25, 0.02));
+  EXPECT_FALSE(curve_doubted(10, 0.02)) << "2 % of the force are the curve's few terms";
+  EXPECT_TRUE(curve_doubted(0, 0.5));
+}
+
 TEST_F(MapTest, SomeBallsStandForThePosterior) {
   const Truth truth;
   const MapPosterior found = posterior(all_felt(truth, pattern(3, 3, 7.5e-3), 1));
