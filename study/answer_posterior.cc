@@ -59,10 +59,13 @@ AnswerTable::AnswerTable(const Task& task,
                          std::vector<double> levels)
     : task_{task},
       levels_{std::move(levels)},
-      ln_jnd_{even_steps(std::log(grid.jnd_min), std::log(grid.jnd_max), grid.jnd_count)},
+      ln_jnd_{even_steps(std::log(grid.jnd_min * level_unit(task)),
+                         std::log(grid.jnd_max * level_unit(task)),
+                         grid.jnd_count)},
       pse_{task.two_sided ? even_steps(-grid.pse_reach, grid.pse_reach, grid.pse_count)
                           : std::vector<double>{0}},
       lapse_{even_steps(0, grid.lapse_max, grid.lapse_count)} {
+  const double ln_median = std::log(prior.jnd * level_unit(task));
   PALP_CHECK(!levels_.empty() && std::ranges::is_sorted(levels_), "levels must increase");
   for (const double pse : pse_) {
     for (const double ln_jnd : ln_jnd_) {
@@ -70,14 +73,14 @@ AnswerTable::AnswerTable(const Task& task,
         // The outermost points stand for half a cell.
         const double width = lapse == lapse_.front() || lapse == lapse_.back() ? 0.5 : 1;
         prior_.push_back(width * std::pow(1 - lapse, prior.lapse_shape - 1) *
-                         std::exp(-0.5 * squared((ln_jnd - std::log(prior.jnd)) / prior.jnd_sd) -
+                         std::exp(-0.5 * squared((ln_jnd - ln_median) / prior.jnd_sd) -
                                   0.5 * squared(pse / prior.pse_sd)));
       }
     }
   }
   normalise(prior_);
   shares_.reserve(levels_.size() * prior_.size());
-  const double guess = task.two_sided ? 0.5 : 1.0 / task.intervals;
+  const double guess = chance(task);
   for (const double level : levels_) {
     for (const double pse : pse_) {
       for (const double ln_jnd : ln_jnd_) {

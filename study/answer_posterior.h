@@ -9,7 +9,7 @@
 namespace palp::study {
 
 /// What is believed of an observer before the first answer. ln JND and PSE: normal; lapse:
-/// Beta(1, lapse_shape), most at 0.
+/// Beta(1, lapse_shape), most at 0. JNDs in level_unit() of the task.
 struct ObserverPrior {
   double jnd{0.15};    ///< [-], > 0: median
   double jnd_sd{1.0};  ///< [-], of ln JND; > 0
@@ -19,7 +19,8 @@ struct ObserverPrior {
   double lapse_shape{45};
 };
 
-/// Where the posterior is held: JND and lapse for a forced choice, the PSE too if two-sided.
+/// Where the posterior is held: JND and lapse for a forced choice, the PSE too if two-sided. JNDs
+/// in level_unit() of the task.
 struct ObserverGrid {
   double jnd_min{0.01};         ///< [-], > 0
   double jnd_max{2.0};          ///< [-]

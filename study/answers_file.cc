@@ -27,6 +27,7 @@ struct Columns {
   std::size_t correct{};
   std::optional<std::size_t> condition;
   std::optional<std::size_t> kind;
+  bool delays{};
 };
 
 Result<Columns> columns_of(std::string_view header, const std::string& name) {
@@ -36,28 +37,39 @@ Result<Columns> columns_of(std::string_view header, const std::string& name) {
     if (at == names.end()) return std::nullopt;
     return static_cast<std::size_t>(at - names.begin());
   };
-  const auto level = find("level_ln");
+  const auto delay = find("level_ms");
+  const auto ratio = find("level_ln");
+  const auto level = delay ? delay : ratio;
   const auto correct = find("correct");
+  if (delay && ratio)
+    return fail(name + " has the columns 'level_ln' and 'level_ms', expected one");
+  for (const std::string_view one : {"kendall_tau", "error_mm"}) {
+    if (!find(one)) continue;
+    return fail(name + " has the column '" + std::string{one} +
+                "': it is of a ranking or a search, fit the folder of its study");
+  }
   if (!level || !correct) {
     return fail(name + " has no column '" + (level ? "correct" : "level_ln") +
                 "' in its first line; columns are separated by tabs");
   }
-  for (const std::string_view one : {"level_ln", "correct", "condition", "trial_type"}) {
+  for (const std::string_view one :
+       {"level_ln", "level_ms", "correct", "condition", "trial_type"}) {
     if (std::ranges::count(names, one) > 1) {
       return fail(name + " names the column '" + std::string{one} + "' twice");
     }
   }
-  return Columns{names.size(), *level, *correct, find("condition"), find("trial_type")};
+  return Columns{
+      names.size(), *level, *correct, find("condition"), find("trial_type"), delay.has_value()};
 }
 
 }  // namespace
 
-Result<std::vector<ConditionAnswers>> parse_answers(std::string_view text,
-                                                    const std::string& name) {
+Result<AnswersFile> parse_answers(std::string_view text, const std::string& name) {
   text = without_byte_order_mark(text);
   const auto columns = columns_of(take_line(text), name);
   if (!columns) return tl::unexpected(columns.error());
-  std::vector<ConditionAnswers> out;
+  AnswersFile file{.conditions = {}, .delays = columns->delays};
+  std::vector<ConditionAnswers>& out = file.conditions;
   for (std::size_t number = 2; !text.empty(); ++number) {
     const std::string_view line = take_line(text);
     if (line.empty()) continue;
@@ -72,8 +84,8 @@ Result<std::vector<ConditionAnswers>> parse_answers(std::string_view text,
     if (correct == "n/a") continue;
     const auto level = config::parse_number(cells[columns->level]);
     if (!level) {
-      return fail(where + ": level_ln is \"" + printable(cells[columns->level]) +
-                  "\", expected a number");
+      return fail(where + ": level_" + level_suffix({.delays = columns->delays}) + " is \"" +
+                  printable(cells[columns->level]) + "\", expected a number");
     }
     if (correct != "0" && correct != "1") {
       return fail(where + ": correct is \"" + printable(correct) + "\", expected 0, 1 or n/a");
@@ -89,7 +101,7 @@ Result<std::vector<ConditionAnswers>> parse_answers(std::string_view text,
   }
   if (out.empty()) return fail(name + " holds no answered trial");
   for (ConditionAnswers& one : out) one.answers = pooled(one.answers);
-  return out;
+  return file;
 }
 
 }  // namespace palp::study

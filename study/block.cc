@@ -41,6 +41,7 @@ TrialAsk Block::next() const {
                .level = 0,
                .stronger = slot.stronger,
                .decoy = slot.decoy,
+               .hidden = slot.hidden,
                .before = trials_,
                .count = plan_->trials.size()};
   const Track& track = tracks_[slot.track];

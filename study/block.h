@@ -13,10 +13,12 @@ struct TrialAsk {
   TrialKind kind{};
   std::size_t number{};  ///< in its block, practice included, from 0
   std::size_t track{};
-  double level{};  ///< [-]
-  /// The interval that holds the stronger stimulus, from 0; yes or no: 1, there is something.
+  double level{};  ///< [as the study's]
+  /// The interval that holds the stronger stimulus, from 0; yes or no: 1, there is something; a
+  /// ranking: the order, of kOrders.
   std::size_t stronger{};
   std::size_t decoy{};   ///< place by way of which the stage travels
+  Place hidden{};        ///< a search: the ball's axis, from the middle of the area
   std::size_t before{};  ///< trials before it, without practice
   std::size_t count{};   ///< of all of the block, likewise
 };

@@ -48,6 +48,22 @@ Json pair_json(const ConditionPair& pair, const std::vector<std::string>& names)
           {"group_tau", pair.group.tau}};
 }
 
+const char* title_of(Measure measure) noexcept {
+  switch (measure) {
+    case Measure::Jnd:
+      return "JND, second over first\n";
+    case Measure::Pse:
+      return "PSE (detect: criterion as a level), second less first\n";
+    case Measure::Tau:
+      return "Kendall's tau, second less first\n";
+    case Measure::Error:
+      return "error of the search, second over first\n";
+    case Measure::Time:
+      break;
+  }
+  return "time of the search, second over first\n";
+}
+
 }  // namespace
 
 std::string standing(const PlannedStudy& planned, const StudyFit& fit) {
@@ -61,14 +77,13 @@ std::string standing(const PlannedStudy& planned, const StudyFit& fit) {
 
 std::string pairs_text(const std::vector<ConditionPair>& pairs,
                        const std::vector<std::string>& names,
-                       bool bias) {
-  std::string text =
-      bias ? "PSE (detect: criterion as a level), second less first\n" : "JND, second over first\n";
+                       Measure measure) {
+  std::string text = title_of(measure);
   text +=
       "pair                        n   value  95 % interval      p (Holm)   p ranks       g  equal "
       "p\n";
   for (const ConditionPair& pair : pairs) {
-    const auto shown = [bias](double value) { return bias ? value : std::exp(value); };
+    const auto shown = [&](double value) { return is_ratio(measure) ? std::exp(value) : value; };
     const std::string of = names[pair.second] + " : " + names[pair.first];
     std::array<char, 256> line{};
     std::snprintf(line.data(),
@@ -134,13 +149,12 @@ ExitStatus run_compare(const std::string& folder) {
               {"standing", standing(planned, fit)},
               {"margin_ln", planned.study.margin}};
   std::string text = standing(planned, fit) + "\n";
-  for (const bool bias : {false, true}) {
-    if (bias && !planned.study.task.two_sided) continue;
-    const auto pairs = compare_study(planned.study, fit, bias);
-    const char* const key = bias ? "pse" : "jnd";
-    report[key] = Json::array();
-    for (const ConditionPair& pair : pairs) report[key].push_back(pair_json(pair, names));
-    text += pairs_text(pairs, names, bias);
+  for (const Measure measure : measures_of(planned.study.task)) {
+    const auto pairs = compare_study(planned.study, fit, measure);
+    Json all = Json::array();
+    for (const ConditionPair& pair : pairs) all.push_back(pair_json(pair, names));
+    report[to_string(measure)] = std::move(all);
+    text += pairs_text(pairs, names, measure);
   }
   const auto written =
       config::write_whole_file(planned.data.derived("compare.json"), report.dump(2) + "\n");

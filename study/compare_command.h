@@ -21,6 +21,6 @@ void declare_compare(config::CommandLine& line, std::string& folder);
 /// A table for people.
 [[nodiscard]] std::string pairs_text(const std::vector<ConditionPair>& pairs,
                                      const std::vector<std::string>& names,
-                                     bool bias);
+                                     Measure measure);
 
 }  // namespace palp::study

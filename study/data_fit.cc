@@ -1,14 +1,35 @@
 #include "study/data_fit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "common/core/conventions.h"
+#include "common/core/formatted.h"
+#include "study/orders.h"
 #include "study/schedule.h"
 
 namespace palp::study {
 namespace {
+
+constexpr double kErrorLeast = 0.1e-3;  // [m], of which a logarithm is taken
+constexpr double kTimeLeast = 0.1;      // [s], likewise
+
+/// Nothing: the block has no such measure.
+std::optional<Measured> measured(const FittedBlock& block, Measure measure) noexcept {
+  switch (measure) {
+    case Measure::Jnd:
+      return Measured{block.ln_jnd.mean, block.ln_jnd.sd};
+    case Measure::Pse:
+      return Measured{block.pse.mean, block.pse.sd};
+    case Measure::Tau:
+      return block.kendall_tau;
+    case Measure::Error:
+    case Measure::Time:
+      break;
+  }
+  if (!block.search) return std::nullopt;
+  return measure == Measure::Error ? block.search->ln_error : block.search->ln_time;
+}
 
 /// The condition of a code.
 std::size_t condition_of(const Study& study, const std::string& code) {
@@ -25,13 +46,56 @@ YesNoCounts counts_of(const std::vector<Answers>& answers) {
   return counts;
 }
 
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+/// The mean of a value of each of the rows, of which there are some.
+template <class Value>
+Measured mean_of_rows(const std::vector<const TrialRow*>& rows, Value value) {
+  constexpr double kSdLeast = 1e-3;  // [-], of values that are all alike
+  const auto n = static_cast<double>(rows.size());
+  double sum = 0;
+  double squares = 0;
+  for (const TrialRow* row : rows) {
+    sum += value(*row);
+    squares += value(*row) * value(*row);
+  }
+  const double variance = std::max(0.0, squares - sum * sum / n) / std::max(1.0, n - 1);
+  return {sum / n, std::max(kSdLeast, std::sqrt(variance / n))};
+}
+
+/// `rows`: not none.
+SearchFigures search_figures(const std::vector<const TrialRow*>& rows) {
+  const auto median_of = [&rows](auto value) {
+    std::vector<double> values;
+    for (const TrialRow* row : rows) values.push_back(value(row->outcome));
+    return median(std::move(values));
+  };
+  return {.error = median_of([](const TrialOutcome& one) { return one.error; }),
+          .time = median_of([](const TrialOutcome& one) { return one.response_time; }),
+          .path = median_of([](const TrialOutcome& one) { return one.path; }),
+          .contacts = median_of([](const TrialOutcome& one) { return one.taps; }),
+          .force_mean = median_of([](const TrialOutcome& one) { return one.force_mean; }),
+          .force_max = median_of([](const TrialOutcome& one) { return one.force_max; }),
+          .ln_error = mean_of_rows(rows,
+                                   [](const TrialRow& row) {
+                                     return std::log(std::max(kErrorLeast, row.outcome.error));
+                                   }),
+          .ln_time = mean_of_rows(rows, [](const TrialRow& row) {
+            return std::log(std::max(kTimeLeast, row.outcome.response_time));
+          })};
+}
+
 FittedBlock fit_block(const Study& study,
                       const AnswerTable& table,
                       std::size_t condition,
                       const ParticipantRows& of) {
   FittedBlock out{.id = of.id, .condition = condition};
   AnswerPosterior posterior{table};
-  std::size_t done = 0;
+  std::vector<const TrialRow*> trials;
   for (const TrialRow& row : of.rows) {
     if (condition_of(study, row.condition) != condition || row.ask.kind == TrialKind::Practice) {
       continue;
@@ -39,14 +103,20 @@ FittedBlock fit_block(const Study& study,
     posterior.told(table.nearest(row.ask.level), row.yes());
     out.answers.push_back({row.ask.level, row.yes() ? std::size_t{1} : 0, 1});
     ++out.trials;
-    done += row.ask.kind == TrialKind::Trial ? 1 : 0;
+    if (row.ask.kind == TrialKind::Trial) trials.push_back(&row);
   }
   out.answers = pooled(out.answers);
-  out.complete = done >= study.trials;
+  out.complete = trials.size() >= study.trials;
   out.ln_jnd = posterior.ln_jnd();
   out.pse = posterior.pse();
   out.lapse = posterior.lapse_mean();
   if (study.task.yes_no) out.sensitivity = sensitivity(counts_of(out.answers));
+  if (study.task.ranks && !trials.empty()) {
+    out.kendall_tau = mean_of_rows(trials, [](const TrialRow& row) {
+      return kendall_tau(row.ask.stronger, row.outcome.chosen);
+    });
+  }
+  if (study.task.places > 0 && !trials.empty()) out.search = search_figures(trials);
   return out;
 }
 
@@ -110,7 +180,30 @@ std::vector<FittedBlock> counted(const StudyFit& fit, std::size_t condition) {
   return out;
 }
 
-std::vector<ConditionPair> compare_study(const Study& study, const StudyFit& fit, bool bias) {
+std::vector<Measure> measures_of(const Task& task) {
+  if (task.places > 0) return {Measure::Jnd, Measure::Error, Measure::Time};
+  if (task.ranks) return {Measure::Jnd, Measure::Tau};
+  if (task.two_sided) return {Measure::Jnd, Measure::Pse};
+  return {Measure::Jnd};
+}
+
+std::string_view to_string(Measure measure) noexcept {
+  switch (measure) {
+    case Measure::Jnd:
+      return "jnd";
+    case Measure::Pse:
+      return "pse";
+    case Measure::Tau:
+      return "tau";
+    case Measure::Error:
+      return "error";
+    case Measure::Time:
+      return "time";
+  }
+  return "?";
+}
+
+std::vector<ConditionPair> compare_study(const Study& study, const StudyFit& fit, Measure measure) {
   std::vector<ConditionPair> out;
   for (std::size_t first = 0; first < study.conditions.size(); ++first) {
     for (std::size_t second = first + 1; second < study.conditions.size(); ++second) {
@@ -120,10 +213,11 @@ std::vector<ConditionPair> compare_study(const Study& study, const StudyFit& fit
       for (const FittedBlock& one : counted(fit, first)) {
         const auto other = std::ranges::find(others, one.id, &FittedBlock::id);
         if (other == others.end()) continue;
-        const Marginal& a = bias ? one.pse : one.ln_jnd;
-        const Marginal& b = bias ? other->pse : other->ln_jnd;
-        differences.push_back(b.mean - a.mean);
-        pair.differences.push_back({b.mean - a.mean, std::hypot(a.sd, b.sd)});
+        const auto a = measured(one, measure);
+        const auto b = measured(*other, measure);
+        if (!a || !b) continue;
+        differences.push_back(b->value - a->value);
+        pair.differences.push_back({b->value - a->value, std::hypot(a->sd, b->sd)});
       }
       pair.participants = differences.size();
       if (pair.participants < 2) continue;
@@ -142,16 +236,21 @@ std::vector<ConditionPair> compare_study(const Study& study, const StudyFit& fit
 std::string fit_table(const Study& study,
                       const StudyFit& fit,
                       const std::vector<std::string>& names) {
-  std::string text =
-      "participant_id\tcondition\ttrials\tcomplete\texcluded\tjnd_ln\tjnd_ln_low\tjnd_ln_high\t"
-      "ln_jnd_mean\tln_jnd_sd\tpse_ln\tpse_ln_low\tpse_ln_high\tlapse_mean\td_prime\t"
-      "d_prime_sd\tcriterion\tcriterion_sd\tdepth_mm\tdepth_mm_low\tdepth_mm_high\n";
+  const std::string jnd = "\tjnd_" + level_suffix(study.task);
+  std::string text = "participant_id\tcondition\ttrials\tcomplete\texcluded" + jnd + jnd + "_low" +
+                     jnd +
+                     "_high\tln_jnd_mean\tln_jnd_sd\tpse_ln\tpse_ln_low\tpse_ln_high\tlapse_mean"
+                     "\td_prime\td_prime_sd\tcriterion\tcriterion_sd\tdepth_mm\tdepth_mm_low"
+                     "\tdepth_mm_high";
+  if (study.task.ranks) text += "\tkendall_tau";
+  if (study.task.places > 0) {
+    text += "\terror_mm\tsearch_s\tpath_mm\tcontacts\tforce_mean_n\tforce_max_n";
+  }
+  text += '\n';
   for (const FittedBlock& block : fit.blocks) {
     const auto why = std::ranges::find(fit.excluded, block.id, &Exclusion::id);
-    const auto number = [&](double value) {
-      std::array<char, 32> digits{};
-      std::snprintf(digits.data(), digits.size(), "\t%.6g", value);
-      text += digits.data();
+    const auto number = [&](std::optional<double> value) {
+      text += '\t' + (value ? formatted("%.6g", *value) : "n/a");
     };
     text += block.id + '\t' + names[block.condition] + '\t' + std::to_string(block.trials) + '\t' +
             (block.complete ? "1" : "0") + '\t' + (why == fit.excluded.end() ? "n/a" : why->why);
@@ -160,24 +259,35 @@ std::string fit_table(const Study& study,
     }
     number(block.ln_jnd.mean);
     number(block.ln_jnd.sd);
-    if (study.task.two_sided) {
-      for (const double pse : {block.pse.median, block.pse.low, block.pse.high}) number(pse);
-    } else {
-      text += "\tn/a\tn/a\tn/a";
+    for (const double pse : {block.pse.median, block.pse.low, block.pse.high}) {
+      number(study.task.two_sided ? std::optional{pse} : std::nullopt);
     }
     number(block.lapse);
-    if (const auto& found = block.sensitivity) {
-      for (const double value :
-           {found->d_prime, found->d_prime_sd, found->criterion, found->criterion_sd}) {
-        number(value);
-      }
-    } else {
-      text += "\tn/a\tn/a\tn/a\tn/a";
+    for (double Sensitivity::*const value : {&Sensitivity::d_prime,
+                                             &Sensitivity::d_prime_sd,
+                                             &Sensitivity::criterion,
+                                             &Sensitivity::criterion_sd}) {
+      number(block.sensitivity ? std::optional{(*block.sensitivity).*value} : std::nullopt);
     }
     // The smaller the JND, the deeper is found what is found.
     for (const double ln : {block.ln_jnd.median, block.ln_jnd.high, block.ln_jnd.low}) {
       const auto depth = depth_found(study, std::exp(ln));
-      depth ? number(1e3 * *depth) : static_cast<void>(text += "\tn/a");
+      number(depth ? std::optional{*depth / kMillimetre} : std::nullopt);
+    }
+    if (study.task.ranks) {
+      number(block.kendall_tau ? std::optional{block.kendall_tau->value} : std::nullopt);
+    }
+    if (study.task.places > 0) {
+      const auto& search = block.search;
+      const auto figure = [&](double SearchFigures::*value, double unit) {
+        number(search ? std::optional{(*search).*value / unit} : std::nullopt);
+      };
+      figure(&SearchFigures::error, kMillimetre);
+      figure(&SearchFigures::time, 1);
+      figure(&SearchFigures::path, kMillimetre);
+      figure(&SearchFigures::contacts, 1);
+      figure(&SearchFigures::force_mean, 1);
+      figure(&SearchFigures::force_max, 1);
     }
     text += '\n';
   }
@@ -196,29 +306,31 @@ std::string condition_text(const Study& study,
     return sum / static_cast<double>(blocks.size());
   };
   const double jnd = std::exp(mean_of([](const FittedBlock& one) { return one.ln_jnd.mean; }));
-  std::array<char, 128> line{};
-  std::snprintf(line.data(),
-                line.size(),
-                "condition %s: %zu participants, JND %.1f %% (geometric mean)",
-                name.c_str(),
-                blocks.size(),
-                100 * std::expm1(jnd));
-  std::string text{line.data()};
+  std::string text = "condition " + name + ": " + std::to_string(blocks.size()) + " participants" +
+                     formatted(", JND %.1f ", said_level(study.task, jnd)) + said_unit(study.task) +
+                     " (geometric mean)";
   if (!study.depths.empty()) {
+    const char* const what = study.task.ranks ? "in order" : "found";
     const auto depth = depth_found(study, jnd);
-    std::snprintf(line.data(),
-                  line.size(),
-                  depth ? ", found down to %.1f mm" : ", found beyond the depths of the study",
-                  1e3 * depth.value_or(0));
-    text += line.data();
+    text += std::string{", "} + what +
+            (depth ? formatted(" down to %.1f mm", *depth / kMillimetre)
+                   : " beyond the depths of the study");
   }
   if (study.task.yes_no) {
-    std::snprintf(line.data(),
-                  line.size(),
-                  ", d' %.2f, criterion %.2f",
-                  mean_of([](const FittedBlock& one) { return one.sensitivity->d_prime; }),
-                  mean_of([](const FittedBlock& one) { return one.sensitivity->criterion; }));
-    text += line.data();
+    text += formatted(", d' %.2f",
+                      mean_of([](const FittedBlock& one) { return one.sensitivity->d_prime; })) +
+            formatted(", criterion %.2f",
+                      mean_of([](const FittedBlock& one) { return one.sensitivity->criterion; }));
+  }
+  if (study.task.ranks) {
+    text += formatted(", Kendall's tau %.2f",
+                      mean_of([](const FittedBlock& one) { return one.kendall_tau->value; }));
+  }
+  if (study.task.places > 0) {
+    text +=
+        formatted(", error %.1f mm",
+                  mean_of([](const FittedBlock& one) { return one.search->error / kMillimetre; })) +
+        formatted(" in %.1f s", mean_of([](const FittedBlock& one) { return one.search->time; }));
   }
   return text + '\n';
 }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "study/answer_posterior.h"
@@ -11,6 +13,35 @@
 
 /// What the answers of a study's participants say. Pure.
 namespace palp::study {
+
+/// What a participant is compared by from one condition to the next.
+enum class Measure : std::uint8_t {
+  Jnd,    ///< ln JND
+  Pse,    ///< two-sided tasks
+  Tau,    ///< rankings: Kendall's, mean
+  Error,  ///< searches: ln of the error, mean
+  Time,   ///< searches: ln of the time, mean
+};
+/// Those of a task, the first one first.
+[[nodiscard]] std::vector<Measure> measures_of(const Task& task);
+/// "jnd".
+[[nodiscard]] std::string_view to_string(Measure measure) noexcept;
+/// Of a measure that is a logarithm: differences are ratios.
+[[nodiscard]] constexpr bool is_ratio(Measure measure) noexcept {
+  return measure != Measure::Pse && measure != Measure::Tau;
+}
+
+/// How a participant searched: medians over the trials.
+struct SearchFigures {
+  double error{};       ///< [m], from what was hidden
+  double time{};        ///< [s]
+  double path{};        ///< [m]
+  double contacts{};    ///< [1]
+  double force_mean{};  ///< [N]
+  double force_max{};   ///< [N]
+  Measured ln_error{};  ///< of metres, mean
+  Measured ln_time{};   ///< of seconds, mean
+};
 
 /// One participant under one condition.
 struct FittedBlock {
@@ -22,6 +53,8 @@ struct FittedBlock {
   Marginal pse{};
   double lapse{};                            ///< [-], mean
   std::optional<Sensitivity> sensitivity{};  ///< yes or no: of all that lay there against nothing
+  std::optional<Measured> kendall_tau{};     ///< a ranking: mean, catch trials left out
+  std::optional<SearchFigures> search{};     ///< a search: catch trials left out
   std::vector<Answers> answers{};            ///< pooled, without practice
 };
 
@@ -45,17 +78,16 @@ struct ConditionPair {
   std::size_t first{};
   std::size_t second{};
   std::size_t participants{};
-  PairedTest test{};  ///< of ln JND, or of the PSE
+  PairedTest test{};  ///< of the measure
   double p_holm{};    ///< [-]
   GroupPosterior group{};
   std::vector<Measured> differences{};  ///< [-], of each participant
 };
 
 /// Each pair of conditions in the order of the study file; none where fewer than two took part.
-/// `bias`: PSEs instead of JNDs.
 [[nodiscard]] std::vector<ConditionPair> compare_study(const Study& study,
                                                        const StudyFit& fit,
-                                                       bool bias);
+                                                       Measure measure);
 
 /// The blocks of one condition that count.
 [[nodiscard]] std::vector<FittedBlock> counted(const StudyFit& fit, std::size_t condition);
@@ -65,8 +97,8 @@ struct ConditionPair {
                                     const StudyFit& fit,
                                     const std::vector<std::string>& names);
 
-/// A line on a condition: JND, and of tasks of detection depth, d' and criterion, over those who
-/// count. Empty: nobody does.
+/// A line on a condition, over those who count: JND, and what else the task measures. Empty: nobody
+/// does.
 [[nodiscard]] std::string condition_text(const Study& study,
                                          const StudyFit& fit,
                                          std::size_t condition,

@@ -38,7 +38,8 @@ std::string psignifit(const std::vector<ParticipantRows>& rows) {
   std::string text;
   for (const ParticipantRows& of : rows) {
     for (const auto& [condition, trials] : by_condition(of)) {
-      text += "# " + of.id + " " + condition + ": level_ln, right, all\n";
+      text += "# " + of.id + " " + condition + ": level_" + level_suffix(trials.front().task) +
+              ", right, all\n";
       for (const Answers& at : pooled_rows(trials)) {
         text += number_text(at.level) + ' ' + std::to_string(at.yes) + ' ' +
                 std::to_string(at.trials) + '\n';

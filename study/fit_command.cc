@@ -86,12 +86,13 @@ Json row_json(const Row& row, const Task& task) {
   Json out{{"condition", row.condition},
            {"trials", row.trials},
            {"yes", row.yes},
-           {"jnd_ln", std::exp(row.ln_jnd.median)},
-           {"jnd_ln_low", std::exp(row.ln_jnd.low)},
-           {"jnd_ln_high", std::exp(row.ln_jnd.high)},
            {"ln_jnd_mean", row.ln_jnd.mean},
            {"ln_jnd_sd", row.ln_jnd.sd},
            {"lapse_mean", row.lapse}};
+  const std::string jnd = "jnd_" + level_suffix(task);
+  out[jnd] = std::exp(row.ln_jnd.median);
+  out[jnd + "_low"] = std::exp(row.ln_jnd.low);
+  out[jnd + "_high"] = std::exp(row.ln_jnd.high);
   if (task.two_sided) {
     out["pse_ln"] = row.pse.median;
     out["pse_ln_low"] = row.pse.low;
@@ -116,9 +117,9 @@ std::string row_text(const Row& row, const Task& task) {
                 harmless_line(row.condition.empty() ? "all" : row.condition).c_str(),
                 row.trials,
                 100.0 * static_cast<double>(row.yes) / static_cast<double>(row.trials),
-                percent_of_level(std::exp(row.ln_jnd.median)),
-                percent_of_level(std::exp(row.ln_jnd.low)),
-                percent_of_level(std::exp(row.ln_jnd.high)),
+                said_level(task, std::exp(row.ln_jnd.median)),
+                said_level(task, std::exp(row.ln_jnd.low)),
+                said_level(task, std::exp(row.ln_jnd.high)),
                 100 * row.lapse);
   std::string text{line.data()};
   if (task.two_sided) {
@@ -147,9 +148,14 @@ std::string header_text(const Task& task, bool curve) {
   std::string text = "condition                 trials   right       JND  95 % interval     lapse";
   if (task.two_sided) text += "      bias  95 % interval   ";
   if (curve) text += "  threshold  95 % interval          width";
-  text += "\n                                       %         %               %       %";
+  text += task.delays
+              ? "\n                                       %        ms              ms       %"
+              : "\n                                       %         %               %       %";
   if (task.two_sided) text += "         %               %   ";
-  if (curve) text += "         ln               ln         ln";
+  if (curve) {
+    text += task.delays ? "         ms               ms         ms"
+                        : "         ln               ln         ln";
+  }
   return text + "\n";
 }
 
@@ -158,7 +164,8 @@ std::string header_text(const Task& task, bool curve) {
 void declare_fit(config::CommandLine& line, FitFlags& flags) {
   line.argument("FILE",
                 flags.file,
-                "trials, tab-separated: level_ln, correct; condition, trial_type if wanted; or the "
+                "trials, tab-separated: level_ln or level_ms, correct; condition, trial_type if "
+                "wanted; or the "
                 "folder of a study, whose fit.tsv is written");
   line.required();
   line.whole("--intervals",
@@ -175,16 +182,18 @@ void declare_fit(config::CommandLine& line, FitFlags& flags) {
   line.report(flags.report, "palp.study_fit/1");
 }
 
-Result<FitStatement> fit_statement(const std::vector<ConditionAnswers>& conditions,
-                                   const FitFlags& flags) {
-  const Task task{.intervals = static_cast<int>(flags.intervals), .two_sided = flags.two_sided};
+Result<FitStatement> fit_statement(const AnswersFile& file, const FitFlags& flags) {
+  const Task task{.intervals = static_cast<int>(flags.intervals),
+                  .two_sided = flags.two_sided,
+                  .delays = file.delays};
+  if (task.delays && task.two_sided) return fail("--two-sided is of levels in level_ln");
   FitStatement out{.text = header_text(task, !flags.curve.empty()), .report = {}};
   Json report{{"schema", "palp.study_fit/1"},
               {"intervals", flags.intervals},
               {"two_sided", flags.two_sided},
               {"curve", flags.curve}};
   report["conditions"] = Json::array();
-  for (const ConditionAnswers& one : conditions) {
+  for (const ConditionAnswers& one : file.conditions) {
     const auto row = row_of(one, task, flags);
     if (!row) {
       return one.condition.empty()
@@ -205,9 +214,9 @@ ExitStatus run_fit(const FitFlags& flags) {
   }
   const auto text = read_whole_file(flags.file, std::size_t{64} << 20);
   if (!text) return config::refusal("palp-study", text.error());
-  const auto conditions = parse_answers(*text, flags.file);
-  if (!conditions) return config::refusal("palp-study", conditions.error());
-  const auto statement = fit_statement(*conditions, flags);
+  const auto file = parse_answers(*text, flags.file);
+  if (!file) return config::refusal("palp-study", file.error());
+  const auto statement = fit_statement(*file, flags);
   if (!statement) return config::refusal("palp-study", statement.error());
   if (!flags.report.empty()) {
     const auto written = config::write_whole_file(flags.report, statement->report);

@@ -26,7 +26,6 @@ struct FitStatement {
   std::string text;
   std::string report;
 };
-[[nodiscard]] Result<FitStatement> fit_statement(const std::vector<ConditionAnswers>& conditions,
-                                                 const FitFlags& flags);
+[[nodiscard]] Result<FitStatement> fit_statement(const AnswersFile& file, const FitFlags& flags);
 
 }  // namespace palp::study

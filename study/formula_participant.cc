@@ -1,8 +1,11 @@
 #include "study/formula_participant.h"
 
+#include <array>
 #include <cmath>
 
 #include "common/core/random.h"
+#include "study/orders.h"
+#include "study/raster.h"
 #include "study/trial.h"
 
 namespace palp::study {
@@ -13,6 +16,8 @@ constexpr std::uint64_t kAnswers = 0x616e737765720000;
 constexpr std::uint64_t kResponse = 0;
 constexpr std::uint64_t kYes = 1;
 constexpr std::uint64_t kWrong = 2;
+constexpr std::uint64_t kSeems = 8;
+constexpr std::uint64_t kWhere = 16;
 
 constexpr double kCriterionSpread = 0.3;                 // [-], from one person to the next
 constexpr std::uint64_t kCriteria = 0x6372697465726961;  // a stream apart
@@ -55,6 +60,64 @@ TrialOutcome live_through(Trial trial, double response_time, std::size_t chosen)
           .contact = seconds(trial.contact())};
 }
 
+/// One of the answers; who is wrong gives each of the others alike.
+std::size_t picked(const Study& study,
+                   const ObserverTraits& traits,
+                   const TrialAsk& ask,
+                   std::uint64_t stream) noexcept {
+  const std::size_t all = choices(study.task);
+  const std::size_t stronger = study.task.two_sided ? 1 : ask.stronger;
+  if (random_uniform(study.seed, stream, kYes) < answer_share(study.task, traits, ask.level)) {
+    return stronger;
+  }
+  return (stronger + 1 + random_bits(study.seed, stream, kWrong) % (all - 1)) % all;
+}
+
+/// The order in which three intervals seem to stand: neighbours are mistaken before the outer ones.
+std::size_t ordered(const Study& study,
+                    const ObserverTraits& traits,
+                    const TrialAsk& ask,
+                    std::uint64_t stream) noexcept {
+  if (random_uniform(study.seed, stream, kYes) < traits.lapse) {
+    return random_bits(study.seed, stream, kWrong) % kOrders.size();
+  }
+  const double step = d_prime_at_jnd(study.task) * ask.level / traits.jnd;
+  std::array<double, kRanked> seems{};
+  for (std::size_t i = 0; i < seems.size(); ++i) {
+    seems[i] = step * static_cast<double>(rank_in(ask.stronger, i)) +
+               random_normal(study.seed, stream, kSeems + i);
+  }
+  return order_of(seems);
+}
+
+/// A search in rows, one touch at each place; what is said lies anywhere where it is right, or
+/// where it is wrong.
+TrialOutcome searched(const Study& study,
+                      const TrialPlace& place,
+                      const TrialAsk& ask,
+                      bool found) {
+  const SearchArea& area = study.search;
+  const std::uint64_t stream = trial_stream(place, ask.number);
+  TrialOutcome out{.chosen = found ? std::size_t{0} : 1};
+  for (std::uint64_t i = 0;; i += 2) {
+    const auto along = [&](std::uint64_t axis) {
+      return area.side * (random_uniform(study.seed, stream, kWhere + i + axis) - 0.5);
+    };
+    out.error = distance({along(0), along(1)}, ask.hidden);
+    if ((out.error <= area.within) == found) break;
+  }
+  const std::size_t touches = raster(area).size();
+  out.taps = static_cast<int>(touches);
+  out.path = raster_length(area);
+  out.force_max = kForce;
+  out.force_mean = kForce;
+  out.contact = static_cast<double>(touches) * seconds(kTap) / 2;
+  out.response_time = static_cast<double>(touches) * seconds(kTap) +
+                      drawn_response_time(study.seed, place, ask.number);
+  out.duration = out.response_time + seconds(TrialTimes{}.travel);
+  return out;
+}
+
 }  // namespace
 
 double drawn_ln_jnd(const PeopleTraits& people,
@@ -81,7 +144,8 @@ double drawn_criterion(std::uint64_t seed, std::size_t participant) noexcept {
 ObserverTraits drawn_traits(const Study& study,
                             const PeopleTraits& people,
                             std::size_t participant) noexcept {
-  const double jnd = std::exp(drawn_ln_jnd(people, study.seed, participant));
+  const double jnd =
+      level_unit(study.task) * std::exp(drawn_ln_jnd(people, study.seed, participant));
   const double criterion = drawn_criterion(study.seed, participant);
   return {.jnd = study.task.yes_no ? jnd * kPerJudgement : jnd,
           .pse = study.task.yes_no ? criterion * jnd * kPerJudgement / kQuartile : 0,
@@ -91,22 +155,18 @@ ObserverTraits drawn_traits(const Study& study,
 Observer formula_participants(const Study& study, const PeopleTraits& people) {
   return [study, people](const TrialPlace& place, const TrialAsk& ask) {
     const ObserverTraits traits = drawn_traits(study, people, place.participant);
-    const bool yes = random_uniform(study.seed, trial_stream(place, ask.number), kYes) <
-                     answer_share(study.task, traits, ask.level);
-    const std::size_t stronger = study.task.two_sided ? 1 : ask.stronger;
-    // Who is wrong chooses each of the others alike.
-    const auto intervals = static_cast<std::size_t>(study.task.intervals);
-    const std::size_t further =
-        yes ? 0
-            : 1 + random_bits(study.seed, trial_stream(place, ask.number), kWrong) %
-                      (intervals - 1);
-    return live_through({study.task.yes_no ? 1 : intervals,
+    const std::uint64_t stream = trial_stream(place, ask.number);
+    if (study.task.places > 0) {
+      return searched(study, place, ask, picked(study, traits, ask, stream) == 0);
+    }
+    return live_through({felt_intervals(study.task),
                          study.conditions[place.condition].taps,
                          ask.kind == TrialKind::Practice,
                          TrialTimes{},
-                         intervals},
+                         choices(study.task)},
                         drawn_response_time(study.seed, place, ask.number),
-                        (stronger + further) % intervals);
+                        study.task.ranks ? ordered(study, traits, ask, stream)
+                                         : picked(study, traits, ask, stream));
   };
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/config/number.h"
+#include "study/stimulus.h"
 
 namespace palp::study {
 namespace {
@@ -30,6 +31,28 @@ ForceTable extended(const ForceTable& table, double depth) {
   return ForceTable::make(std::move(rows)).value();
 }
 
+/// A level, and how deep the ball lies that means it.
+struct LevelDepth {
+  double level{};  // [-]
+  double depth{};  // [m]
+};
+
+std::vector<LevelDepth> depths_of(const Study& study) {
+  std::vector<LevelDepth> out;
+  if (!study.task.ranks) {
+    for (const BallDepth& one : study.depths) out.push_back({one.contrast, one.depth});
+    return out;
+  }
+  const BallDepth& deepest = study.depths.front();
+  const BallDepth& least = study.depths.back();
+  for (const double level : tissue_levels(study)) {
+    const double contrast =
+        std::clamp(middle_contrast(study) + level, deepest.contrast, least.contrast);
+    out.push_back({level, *depth_of(study, contrast)});
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<patient::Phantom> ball_phantom(double radius, double ratio, double depth) {
@@ -44,21 +67,32 @@ Result<LevelCurves> LevelCurves::make(const Study& study) {
   constexpr double kDeep = 8e-3;  // [m], beyond what hands press
   LevelCurves curves;
   if (!study.ball) return curves;
-  for (const BallDepth& one : study.depths) {
-    const auto phantom = ball_phantom(study.ball->radius, study.ball->ratio, one.depth);
+  for (const LevelDepth& one : depths_of(study)) {
+    auto phantom = ball_phantom(study.ball->radius, study.ball->ratio, one.depth);
     if (!phantom) return tl::unexpected(phantom.error());
     curves.plain_ = extended(phantom->plain, kDeep);
-    curves.balls_.push_back({one.contrast, extended(phantom->over, kDeep)});
+    ForceTable above = extended(phantom->over, kDeep);
+    curves.balls_.push_back({one.level, std::move(above), std::move(*phantom)});
   }
+  curves.has_plain_ = !study.task.ranks;
   return curves;
 }
 
+const LevelCurves::BallCurve& LevelCurves::nearest(double level) const {
+  return *std::ranges::min_element(
+      balls_, {}, [level](const BallCurve& one) { return std::abs(one.level - level); });
+}
+
 ForceTable LevelCurves::at(double level) const {
-  if (level == 0) return plain_;
-  if (balls_.empty()) return scaled(plain_, level);
-  return std::ranges::min_element(
-             balls_, {}, [level](const BallCurve& one) { return std::abs(one.level - level); })
-      ->table;
+  if (level == 0 && has_plain_) return plain_;
+  return balls_.empty() ? scaled(plain_, level) : nearest(level).table;
+}
+
+patient::Phantom LevelCurves::hiding(double level, const Place& axis) const {
+  patient::Phantom out = nearest(level).phantom;
+  out.axis = axis;
+  out.block->inclusions.front().axis = axis;
+  return out;
 }
 
 }  // namespace palp::study

@@ -17,21 +17,27 @@ class LevelCurves {
  public:
   /// Plain tissue, and for each level the same times e^level.
   LevelCurves();
-  /// Above a study's ball, where it has one: of each of its depths as the database has it. A
-  /// sentence where the database does not reach so far.
+  /// Above a study's ball, where it has one: of each of its depths as the database has it; of a
+  /// ranking at those between that its levels mean. A sentence where the database does not reach so
+  /// far.
   [[nodiscard]] static Result<LevelCurves> make(const Study& study);
 
-  /// At 0 plain tissue. Of a ball: at the depth with the nearest level.
+  /// Of a ball: at the depth with the nearest level; else 0 is plain tissue.
   [[nodiscard]] patient::ForceTable at(double level) const;
+  /// A study's ball at the depth with the nearest level, below that place.
+  [[nodiscard]] patient::Phantom hiding(double level, const Place& axis) const;
 
  private:
   struct BallCurve {
     double level{};  ///< [-]
     patient::ForceTable table;
+    patient::Phantom phantom;
   };
+  [[nodiscard]] const BallCurve& nearest(double level) const;
 
   patient::ForceTable plain_;
   std::vector<BallCurve> balls_;  ///< none: plain tissue made stiffer
+  bool has_plain_{true};          ///< level 0 is plain tissue, not a ball
 };
 
 }  // namespace palp::study

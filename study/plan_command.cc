@@ -42,7 +42,7 @@ std::string power_table(const Study& study) {
 /// Says of every column what it means, as BIDS wants it.
 std::string sidecar(const Study& study) {
   Json out{{"TaskName", task_name(study)}, {"Instructions", study.instructions}};
-  for (const Column& column : row_columns()) {
+  for (const Column& column : row_columns(study.task)) {
     Json one{{"Description", column.meaning}};
     if (!column.unit.empty()) one["Units"] = Json{column.unit};
     out[column.name] = std::move(one);
@@ -94,7 +94,11 @@ std::string preregistration(const Study& study,
   };
   say("Question", study.question);
   say("Task",
-      std::string{task_name(study)} + ", " + std::to_string(study.task.intervals) + " intervals");
+      std::string{task_name(study)} + ", " +
+          (study.task.places > 0
+               ? "an area of " + number_text(1e3 * study.search.side) + " mm, found within " +
+                     number_text(1e3 * study.search.within) + " mm of the axis"
+               : std::to_string(felt_intervals(study.task)) + " intervals"));
   std::string conditions;
   for (const Condition& one : study.conditions) {
     conditions += (conditions.empty() ? "" : "; ") + one.name;
@@ -104,7 +108,7 @@ std::string preregistration(const Study& study,
       study.task.yes_no      ? "d', criterion, and the depth at d' = 1"
       : study.task.two_sided ? "PSE and ln JND"
                              : (study.depths.empty() ? "ln JND, " : "depth and ln JND, ") +
-                                   per_cent(0.5 + 0.5 / study.task.intervals) + " right");
+                                   per_cent((1 + chance(study.task)) / 2) + " right");
   say("Primary comparison", study.primary);
   say("Participants",
       std::to_string(study.participants) + "; expected sd of differences of ln JND " +

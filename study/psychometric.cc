@@ -6,6 +6,7 @@
 
 #include "common/core/check.h"
 #include "common/core/random.h"
+#include "study/orders.h"
 
 namespace palp::study {
 namespace {
@@ -15,54 +16,83 @@ constexpr int kSteps = 400;    // of the integral, even
 
 double density(double z) noexcept { return std::exp(-0.5 * z * z) * 0.398942280401432678; }
 
-}  // namespace
-
-double forced_choice_share(std::span<const double> d_primes) noexcept {
-  PALP_CHECK(!d_primes.empty() && d_primes.size() <= 7, "a forced choice has 2 to 8 intervals");
-  if (d_primes.size() == 1) return normal_cdf(d_primes.front() / std::sqrt(2.0));
-  // Simpson's rule over the stronger stimulus.
+/// Of a function of a standard normal number, by Simpson's rule.
+template <class Function>
+double mean_of_normal(Function function) noexcept {
   const double step = 2 * kTail / kSteps;
   double sum = 0;
   for (int i = 0; i <= kSteps; ++i) {
     const double z = -kTail + step * i;
-    double told = density(z) * (i == 0 || i == kSteps ? 1 : i % 2 == 1 ? 4 : 2);
-    for (const double d_prime : d_primes) told *= normal_cdf(z + d_prime);
-    sum += told;
+    sum += density(z) * (i == 0 || i == kSteps ? 1 : i % 2 == 1 ? 4 : 2) * function(z);
   }
   return sum * step / 3;
 }
 
-double forced_choice_share(double d_prime, int intervals) noexcept {
-  PALP_CHECK(intervals >= 2 && intervals <= 8, "a forced choice has 2 to 8 intervals");
-  std::array<double, 7> d_primes{};
-  d_primes.fill(d_prime);
-  return forced_choice_share(std::span{d_primes}.first(static_cast<std::size_t>(intervals - 1)));
+/// Of right answers, by who attends.
+double told_share(const Task& task, double d_prime) noexcept {
+  if (task.ranks) return order_share(d_prime, d_prime);
+  return forced_choice_share(d_prime, task.places > 0 ? task.places : task.intervals);
 }
 
-double d_prime_of_share(double share, int intervals) noexcept {
-  if (intervals == 2) return std::sqrt(2.0) * normal_quantile(share);
+}  // namespace
+
+std::size_t felt_intervals(const Task& task) noexcept {
+  return task.yes_no || task.places > 0 ? 1 : static_cast<std::size_t>(task.intervals);
+}
+
+std::size_t choices(const Task& task) noexcept {
+  if (task.yes_no || task.places > 0) return 2;
+  return task.ranks ? kOrders.size() : static_cast<std::size_t>(task.intervals);
+}
+
+double chance(const Task& task) noexcept {
+  if (task.places > 0) return 1 / task.places;
+  return 1 / static_cast<double>(choices(task));
+}
+
+double level_unit(const Task& task) noexcept {
+  constexpr double kMilliseconds = 240;  // [ms], of which 15 % are 36
+  return task.delays ? kMilliseconds : 1;
+}
+
+double forced_choice_share(std::span<const double> d_primes) noexcept {
+  PALP_CHECK(!d_primes.empty() && d_primes.size() <= 7, "a forced choice has 2 to 8 intervals");
+  if (d_primes.size() == 1) return normal_cdf(d_primes.front() / std::sqrt(2.0));
+  return mean_of_normal([d_primes](double z) {
+    double told = 1;
+    for (const double d_prime : d_primes) told *= normal_cdf(z + d_prime);
+    return told;
+  });
+}
+
+double forced_choice_share(double d_prime, double intervals) noexcept {
+  PALP_CHECK(intervals > 1, "a choice is between two at least");
+  if (intervals == 2) return normal_cdf(d_prime / std::sqrt(2.0));
+  return mean_of_normal([=](double z) { return std::pow(normal_cdf(z + d_prime), intervals - 1); });
+}
+
+double order_share(double first_step, double second_step) noexcept {
+  return mean_of_normal(
+      [=](double z) { return normal_cdf(z + first_step) * normal_cdf(second_step - z); });
+}
+
+double d_prime_at_jnd(const Task& task) noexcept {
+  const bool of_two = task.intervals == 2 && !task.ranks && task.places == 0;
+  if (task.two_sided || of_two) return std::sqrt(2.0) * kQuartile;
+  const double wanted = chance(task) + (1 - chance(task)) / 2;
   double low = 0;
   double high = 2 * kTail;
   for (int i = 0; i < 60; ++i) {
     const double middle = (low + high) / 2;
-    (forced_choice_share(middle, intervals) < share ? low : high) = middle;
+    (told_share(task, middle) < wanted ? low : high) = middle;
   }
   return (low + high) / 2;
 }
 
-double d_prime_at_jnd(const Task& task) noexcept {
-  if (task.two_sided || task.intervals == 2) return std::sqrt(2.0) * kQuartile;
-  const double chance = 1.0 / task.intervals;
-  return d_prime_of_share(chance + (1 - chance) / 2, task.intervals);
-}
-
 double answer_share(const Task& task, const ObserverTraits& traits, double level) noexcept {
-  const double told = [&] {
-    if (task.two_sided) return normal_cdf(kQuartile * (level - traits.pse) / traits.jnd);
-    return forced_choice_share(d_prime_at_jnd(task) * level / traits.jnd, task.intervals);
-  }();
-  const double guess = task.two_sided ? 0.5 : 1.0 / task.intervals;
-  return traits.lapse * guess + (1 - traits.lapse) * told;
+  const double told = task.two_sided ? normal_cdf(kQuartile * (level - traits.pse) / traits.jnd)
+                                     : told_share(task, d_prime_at_jnd(task) * level / traits.jnd);
+  return traits.lapse * chance(task) + (1 - traits.lapse) * told;
 }
 
 double jnd_information(const Task& task, const ObserverTraits& traits, double level) noexcept {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 /// Which answers a level draws from an observer. Levels are logarithms of ratios [-]: 0 is "equal",
@@ -28,7 +29,38 @@ struct Task {
   /// there is nothing. The JND is then 0.674 of the level at d' = 1, the PSE the observer's
   /// criterion as a level.
   bool yes_no{};
+  /// Three intervals are put in order; each is one level stronger than the one before it in that
+  /// order, and an answer is one of kOrders.
+  bool ranks{};
+  /// Which interval was delayed: levels are delays [ms] of the round trip on top of the link's.
+  bool delays{};
+  /// > 0: a place is searched for, and found or not: how many places as wide as what counts as
+  /// found the area holds.
+  double places{};
 };
+
+/// Intervals that are felt in a trial.
+[[nodiscard]] std::size_t felt_intervals(const Task& task) noexcept;
+/// Answers there are.
+[[nodiscard]] std::size_t choices(const Task& task) noexcept;
+/// Share of right answers, or of "the second", of who only guesses [-].
+[[nodiscard]] double chance(const Task& task) noexcept;
+
+/// Level that is as hard to tell as an ordinary one of 1 [as the levels]. A delay of 36 ms is
+/// noticed as a spring 15 % stiffer is (Rank, Shi, Mueller and Hirche 2010).
+[[nodiscard]] double level_unit(const Task& task) noexcept;
+
+/// A level as people say it [% or ms], and what of.
+[[nodiscard]] inline double said_level(const Task& task, double level) noexcept {
+  return task.delays ? level : percent_of_level(level);
+}
+[[nodiscard]] inline const char* said_unit(const Task& task) noexcept {
+  return task.delays ? "ms" : "%";
+}
+/// At the end of names of columns and fields that hold levels: "ln" or "ms".
+[[nodiscard]] inline std::string level_suffix(const Task& task) {
+  return task.delays ? "ms" : "ln";
+}
 
 /// Of one observer in one condition.
 struct ObserverTraits {
@@ -46,13 +78,16 @@ struct Answers {
 
 /// Share of right answers where the stronger stimulus stands `d_prime` [-] standard deviations
 /// above the others, each of which is seen with noise of its own (Green and Swets 1966): the
-/// integral of phi(u - d') Phi(u)^(m-1). 2 <= intervals <= 8; exact for 2, else within 1e-10.
-[[nodiscard]] double forced_choice_share(double d_prime, int intervals) noexcept;
+/// integral of phi(u - d') Phi(u)^(m-1). m = `intervals` > 1, also between whole numbers; exact for
+/// 2, else within 1e-9.
+[[nodiscard]] double forced_choice_share(double d_prime, double intervals) noexcept;
 /// The same where it stands that far above each of the others, 1 to 7 of them.
 [[nodiscard]] double forced_choice_share(std::span<const double> d_primes) noexcept;
 
-/// The inverse: d' >= 0 for a share from 1/m to below 1.
-[[nodiscard]] double d_prime_of_share(double share, int intervals) noexcept;
+/// Share of right orders of three stimuli, of which the second stands `first_step` [-] standard
+/// deviations above the first and the third `second_step` above the second, each seen with noise of
+/// its own: the integral of phi(u) Phi(u + first_step) Phi(second_step - u).
+[[nodiscard]] double order_share(double first_step, double second_step) noexcept;
 
 /// d' [-] at a level of one JND: half way between chance and certainty.
 [[nodiscard]] double d_prime_at_jnd(const Task& task) noexcept;

@@ -57,7 +57,8 @@ Result<BlockEnd> run_block(const Runner& runner,
   auto journal = Journal::open(path, before->whole);
   if (!journal) return tl::unexpected(journal.error());
   if (before->whole == 0) {
-    if (auto added = journal->add(row_header()); !added) return tl::unexpected(added.error());
+    if (auto added = journal->add(row_header(study.task)); !added)
+      return tl::unexpected(added.error());
   }
   BlockEnd end{.clock = clock, .excluded = false, .answered = 0};
   if (!before->rows.empty()) {
@@ -75,7 +76,7 @@ Result<BlockEnd> run_block(const Runner& runner,
                  .kind = runner.kind,
                  .believed_mean = 0,
                  .believed_sd = 0,
-                 .two_sided = study.task.two_sided};
+                 .task = study.task};
     row.outcome.onset = end.clock;
     row.outcome.duration = milliseconds(row.outcome.duration);
     block.told(row.yes());

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "common/config/json.h"
+#include "common/core/conventions.h"
 #include "common/core/random.h"
 #include "study/williams.h"
 
@@ -26,6 +27,7 @@ constexpr std::uint64_t kTracks = 2;
 constexpr std::uint64_t kCatches = 3;
 constexpr std::uint64_t kPlaces = 4;
 constexpr std::uint64_t kLevels = 5;
+constexpr std::uint64_t kHidden = 6;
 
 std::uint64_t stream_of(std::size_t participant, std::size_t condition, std::uint64_t what) {
   return kBlocks + (participant * kConditionsMax + condition) * kStreams + what;
@@ -78,13 +80,25 @@ std::size_t drawn_kind(const std::vector<std::size_t>& left, double place) {
   return left[kind] > 0 ? kind : most_left(left, kind);
 }
 
-Json slots_json(const std::vector<Slot>& slots) {
+/// `drawn`: evenly, below the number of answers.
+std::size_t stronger_of(const Task& task, TrialKind kind, std::size_t drawn) noexcept {
+  if (task.places > 0) return 0;
+  // A catch trial of "is there something?" always has something, or it were not easy.
+  return task.yes_no && kind == TrialKind::Catch ? 1 : drawn;
+}
+
+Json slots_json(const std::vector<Slot>& slots, bool searches) {
   Json out = Json::array();
   for (const Slot& slot : slots) {
-    out.push_back(Json{{"type", to_string(slot.kind)},
-                       {"track", slot.track},
-                       {"interval", slot.stronger + 1},
-                       {"decoy", slot.decoy}});
+    Json one{{"type", to_string(slot.kind)},
+             {"track", slot.track},
+             {"interval", slot.stronger + 1},
+             {"decoy", slot.decoy}};
+    if (searches) {
+      one["x_mm"] = slot.hidden.x / kMillimetre;
+      one["y_mm"] = slot.hidden.y / kMillimetre;
+    }
+    out.push_back(std::move(one));
   }
   return out;
 }
@@ -118,28 +132,39 @@ std::vector<std::size_t> balanced_draw(std::size_t count,
 
 std::vector<BlockPlan> participant_plan(const Study& study, std::size_t participant) {
   const auto square = williams_square(study.conditions.size());
-  const auto intervals = static_cast<std::size_t>(study.task.intervals);
+  const std::size_t answers = choices(study.task);
   std::vector<BlockPlan> blocks;
   for (const std::size_t condition : square[participant % square.size()]) {
     const auto stream = [&](std::uint64_t what) { return stream_of(participant, condition, what); };
     const auto decoy = [&](std::size_t i) {
       return static_cast<std::size_t>(random_bits(study.seed, stream(kPlaces), i) % kDecoys);
     };
+    const auto hidden = [&](std::size_t i) -> Place {
+      const auto along = [&](std::size_t axis) {
+        return study.search.side *
+               (random_uniform(study.seed, stream(kHidden), 2 * i + axis) - 0.5);
+      };
+      return {along(0), along(1)};
+    };
     BlockPlan block{.condition = condition, .stream = stream(kLevels)};
     const std::vector<bool> is_catch = catches(study, stream(kCatches));
-    const auto sides = balanced_draw(is_catch.size(), intervals, study.seed, stream(kSides));
+    const auto sides = balanced_draw(is_catch.size(), answers, study.seed, stream(kSides));
     std::size_t trial = 0;
     for (std::size_t i = 0; i < is_catch.size(); ++i) {
       const TrialKind kind = is_catch[i] ? TrialKind::Catch : TrialKind::Trial;
       const std::size_t track = is_catch[i] ? 0 : track_of(study, trial++, stream(kTracks));
-      // A catch trial of "is there something?" always has something, or it were not easy.
-      const std::size_t side = study.task.yes_no && is_catch[i] ? 1 : sides[i];
-      block.trials.push_back({kind, track, side, decoy(i)});
+      block.trials.push_back(
+          {kind, track, stronger_of(study.task, kind, sides[i]), decoy(i), hidden(i)});
     }
     const std::size_t practice = study.practice.right > 0 ? study.practice.trials_max : 0;
-    const auto others = balanced_draw(practice, intervals, study.seed, stream(kPracticeSides));
+    const auto others = balanced_draw(practice, answers, study.seed, stream(kPracticeSides));
     for (std::size_t i = 0; i < practice; ++i) {
-      block.practice.push_back({TrialKind::Practice, 0, others[i], decoy(is_catch.size() + i)});
+      const std::size_t at = is_catch.size() + i;
+      block.practice.push_back({TrialKind::Practice,
+                                0,
+                                stronger_of(study.task, TrialKind::Practice, others[i]),
+                                decoy(at),
+                                hidden(at)});
     }
     blocks.push_back(std::move(block));
   }
@@ -154,13 +179,14 @@ std::string condition_code(const Study& study, std::size_t condition) {
 
 std::string schedule_text(const Study& study) {
   Json out{{"schema", "palp.study_schedule/1"}, {"study", study.name}, {"seed", study.seed}};
+  const bool searches = study.task.places > 0;
   out["participants"] = Json::array();
   for (std::size_t p = 0; p < study.participants; ++p) {
     Json blocks = Json::array();
     for (const BlockPlan& block : participant_plan(study, p)) {
       blocks.push_back(Json{{"condition", condition_code(study, block.condition)},
-                            {"practice", slots_json(block.practice)},
-                            {"trials", slots_json(block.trials)}});
+                            {"practice", slots_json(block.practice, searches)},
+                            {"trials", slots_json(block.trials, searches)}});
     }
     out["participants"].push_back(std::move(blocks));
   }

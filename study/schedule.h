@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/core/place.h"
 #include "study/study_file.h"
 
 /// Who does what in which order: all of it drawn from the study's seed before anybody is asked.
@@ -35,9 +36,10 @@ struct Slot {
   TrialKind kind{};
   std::size_t track{};  ///< of TrialKind::Trial
   /// The interval that holds the stronger stimulus, from 0; two-sided tasks: of easy trials only;
-  /// yes or no: 1, there is something.
+  /// yes or no: 1, there is something; a ranking: the order, of kOrders.
   std::size_t stronger{};
   std::size_t decoy{};  ///< place by way of which the stage travels, 0 to 3
+  Place hidden{};       ///< a search: the ball's axis, from the middle of the area
 };
 
 /// All of a participant under one condition.

@@ -4,14 +4,19 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "common/config/document.h"
 #include "common/config/settings_text.h"
 #include "common/core/printable.h"
 #include "proto/config.pb.h"
+#include "study/orders.h"
 
 namespace palp::study {
 namespace {
+
+constexpr double kPlacesLeast = 2;  // [-], or a guess were nearly right
+constexpr double kTravelFar = 4;    // [s], from one hidden ball to the next
 
 struct TaskWord {
   StudyTask task;
@@ -30,7 +35,18 @@ constexpr std::array kTasks{
              "Press each place with the same hand, then say over which something hard lies."},
     TaskWord{StudyTask::Detect,
              "detect",
-             "Press the place, then say whether something hard lies under it."}};
+             "Press the place, then say whether something hard lies under it."},
+    TaskWord{StudyTask::Rank,
+             "rank",
+             "Press each place with the same hand, then say in which order they are, the softest "
+             "first."},
+    TaskWord{StudyTask::Delay,
+             "delay",
+             "Press each place with the same hand, then say which one answered late."},
+    TaskWord{StudyTask::Locate,
+             "locate",
+             "Search the area with the same hand for something hard, and say so when you are over "
+             "it."}};
 
 const TaskWord& word_of(std::string_view name) {
   return *std::ranges::find(kTasks, name, &TaskWord::name);
@@ -61,12 +77,46 @@ Condition condition_of(const proto::config::StudyCondition& message) {
           .unjudged = static_cast<int>(message.taps_unjudged())};
 }
 
-std::vector<double> levels_of(const proto::config::StudyLevels& message, bool two_sided) {
-  if (!two_sided) return even_levels(message.from_ln(), message.to_ln(), message.count());
-  std::vector<double> levels;
-  const double step = 2 * message.to_ln() / (message.count() - 1);
-  for (std::uint32_t i = 0; i < message.count(); ++i) levels.push_back(-message.to_ln() + step * i);
-  return levels;
+/// Half of the way from the deepest ball to the least deep one [-].
+double reach_of(const std::vector<BallDepth>& depths) noexcept {
+  return (depths.back().contrast - depths.front().contrast) / 2;
+}
+
+/// `depths`: of a ranking of balls, which goes no farther than they do.
+std::vector<double> levels_of(const proto::config::Study& message,
+                              const std::vector<BallDepth>& depths) {
+  const auto& levels = message.levels();
+  if (message.task() != "bias") {
+    const double to = depths.empty() ? levels.to_ln() : std::min(levels.to_ln(), reach_of(depths));
+    return even_levels(levels.from_ln(), to, levels.count());
+  }
+  std::vector<double> out;
+  const double step = 2 * levels.to_ln() / (levels.count() - 1);
+  for (std::uint32_t i = 0; i < levels.count(); ++i) out.push_back(-levels.to_ln() + step * i);
+  return out;
+}
+
+Task task_of(const proto::config::Study& message) {
+  const StudyTask asks = word_of(message.task()).task;
+  Task task{.intervals = static_cast<int>(message.intervals()),
+            .two_sided = asks == StudyTask::Bias || asks == StudyTask::Detect,
+            .yes_no = asks == StudyTask::Detect,
+            .ranks = asks == StudyTask::Rank,
+            .delays = asks == StudyTask::Delay};
+  if (task.ranks) task.intervals = static_cast<int>(kRanked);
+  if (asks == StudyTask::Locate) task.intervals = 1;
+  return task;
+}
+
+SearchArea search_of(const proto::config::Study& message) {
+  const auto& search = message.search();
+  const double within = search.within_mm() > 0 ? search.within_mm() : message.ball().radius_mm();
+  return {.side = search.side_mm() / 1e3, .within = within / 1e3, .limit = search.limit_s()};
+}
+
+/// Discs of what counts as found, in the area.
+double places_of(const SearchArea& search) noexcept {
+  return search.side * search.side / (std::numbers::pi * search.within * search.within);
 }
 
 /// The deepest first.
@@ -77,7 +127,7 @@ std::vector<BallDepth> depths_of(const proto::config::Study& message) {
   return depths;
 }
 
-/// Of a task of detection.
+/// Depths whose contrasts are the levels, or of a ranking say what lies where.
 Result<void> check_depths(const proto::config::Study& message) {
   const std::vector<BallDepth> depths = depths_of(message);
   if (depths.size() < 2 || depths.size() > 60) {
@@ -88,10 +138,53 @@ Result<void> check_depths(const proto::config::Study& message) {
       return fail("of two depths the deeper one must have the smaller contrast_ln");
     }
   }
-  if (message.intervals() != 2) return fail("intervals must be 2 where task is detect or detect2");
   if (message.task() == "detect" && message.method() != "constant") {
     return fail("method " + message.method() +
                 " finds no criterion, for it asks where nothing lies when it likes: constant does");
+  }
+  return {};
+}
+
+/// What goes with which task.
+Result<void> check_task(const proto::config::Study& message, StudyTask task) {
+  const auto is = [task](auto... one) { return ((task == one) || ...); };
+  const bool needs_depths = is(StudyTask::Detect, StudyTask::Detect2, StudyTask::Locate);
+  const bool takes_depths = needs_depths || task == StudyTask::Rank;
+  if (needs_depths || (takes_depths && message.depth_size() > 0)) {
+    if (auto checked = check_depths(message); !checked) return checked;
+  } else if (message.depth_size() > 0) {
+    return fail("depths are of the tasks detect, detect2, locate and rank");
+  }
+  if (message.has_ball() && message.depth_size() == 0) return fail("a ball needs depths");
+  if (task == StudyTask::Rank && message.depth_size() > 0) {
+    if (!message.has_ball()) return fail("depths of a ranking need a ball");
+    const double reach = reach_of(depths_of(message));
+    const auto& levels = message.levels();
+    if (levels.from_ln() >= reach || (levels.has_to_ln() && levels.to_ln() > reach)) {
+      return fail(
+          "levels of a ranking of balls must lie within half of the way from the least to "
+          "the greatest contrast_ln");
+    }
+  }
+  if (task == StudyTask::Locate && !message.has_ball()) {
+    return fail("task locate hides a ball: it needs ball, the radius and ratio of one");
+  }
+  if (message.has_search() && task != StudyTask::Locate) {
+    return fail("search is of the task locate");
+  }
+  if (message.has_delays() && task != StudyTask::Delay) return fail("delays are of the task delay");
+  const bool free = is(StudyTask::Stiffness, StudyTask::Delay);
+  if (!free && message.has_intervals() && message.intervals() != (is(StudyTask::Rank) ? 3u : 2u)) {
+    return fail("intervals are of the tasks stiffness and delay");
+  }
+  if (message.delays().from_ms() >= message.delays().to_ms()) {
+    return fail("delays.from_ms must be below delays.to_ms");
+  }
+  for (const auto& one : message.condition()) {
+    if (task == StudyTask::Delay && one.feedback() != "force" && one.feedback() != "none") {
+      return fail("condition " + one.name() +
+                  ": task delay is answered by what the hand is given: feedback force or none");
+    }
   }
   return {};
 }
@@ -117,31 +210,23 @@ Result<void> check_study(const proto::config::Study& message) {
     }
     if (message.condition(i).feedback() == "depth" && !message.has_ball()) {
       return fail("condition " + name +
-                  ": feedback depth says where a ball lies: it needs task detect or detect2 and "
-                  "ball, the radius and ratio of one");
+                  ": feedback depth says where a ball lies: it needs a task with depths and ball, "
+                  "the radius and ratio of one");
     }
     for (int j = 0; j < i; ++j) {
       if (message.condition(j).name() == name) return fail("two conditions are called " + name);
     }
   }
   const bool two_sided = message.task() == "bias";
-  const bool detects = message.task().starts_with("detect");
-  if (detects) {
-    if (auto checked = check_depths(message); !checked) return checked;
-  } else if (message.depth_size() > 0 || message.has_ball()) {
-    return fail("depths and a ball are of the tasks detect and detect2");
-  }
+  if (auto checked = check_task(message, word_of(message.task()).task); !checked) return checked;
   if (!two_sided && message.levels().from_ln() <= 0) {
-    return fail("levels.from_ln must be above 0 where task is stiffness");
+    return fail("levels.from_ln must be above 0 where task is " + message.task());
   }
   if (message.levels().from_ln() >= message.levels().to_ln()) {
     return fail("levels.from_ln must be below levels.to_ln");
   }
   if (two_sided && message.method() != "quest-plus" && message.method() != "constant") {
     return fail("method " + message.method() + " finds no bias: quest-plus or constant does");
-  }
-  if (two_sided && message.intervals() != 2) {
-    return fail("intervals must be 2 where task is bias");
   }
   if (message.practice().right() > message.practice().of()) {
     return fail("practice.right must not be above practice.of");
@@ -169,9 +254,7 @@ Result<Study> parse_study(std::string_view text, const std::string& name) {
               .seed = message.seed(),
               .participants = message.participants(),
               .asks = word_of(message.task()).task,
-              .task = {.intervals = static_cast<int>(message.intervals()),
-                       .two_sided = message.task() == "bias" || message.task() == "detect",
-                       .yes_no = message.task() == "detect"},
+              .task = task_of(message),
               .trials = message.trials(),
               .tracks = message.tracks(),
               .catch_share = message.catch_share(),
@@ -188,12 +271,26 @@ Result<Study> parse_study(std::string_view text, const std::string& name) {
   study.method.kind = *std::ranges::find(kMethods,
                                          std::string_view{message.method()},
                                          [](MethodKind kind) { return to_string(kind); });
+  study.method.staircase.start *= level_unit(study.task);
   study.depths = depths_of(message);
   if (message.has_ball()) {
     study.ball = {.radius = message.ball().radius_mm() / 1e3, .ratio = message.ball().ratio()};
   }
-  if (study.depths.empty()) {
-    study.levels = levels_of(message.levels(), study.task.two_sided);
+  if (study.asks == StudyTask::Locate) {
+    study.search = search_of(message);
+    study.task.places = places_of(study.search);
+    if (study.task.places < kPlacesLeast) {
+      return fail(name,
+                  Error{"search.within_mm is too wide for search.side_mm: who guesses finds"});
+    }
+    if (!message.has_travel_s()) study.travel = kTravelFar;
+  }
+  if (study.task.delays) {
+    const auto& delays = message.delays();
+    study.levels = even_levels(delays.from_ms(), delays.to_ms(), delays.count());
+    study.practice.level = delays.practice_ms();
+  } else if (study.depths.empty() || study.task.ranks) {
+    study.levels = levels_of(message, study.depths);
   } else {
     if (study.task.yes_no) study.levels.push_back(0);
     for (const BallDepth& one : study.depths) study.levels.push_back(one.contrast);
@@ -219,7 +316,13 @@ std::optional<double> depth_of(const Study& study, double contrast) noexcept {
 }
 
 std::optional<double> depth_found(const Study& study, double jnd) noexcept {
+  if (study.depths.empty()) return std::nullopt;
+  if (study.task.ranks) return depth_of(study, middle_contrast(study) + jnd);
   return depth_of(study, study.task.yes_no ? jnd / kQuartile : jnd);
+}
+
+double middle_contrast(const Study& study) noexcept {
+  return (study.depths.front().contrast + study.depths.back().contrast) / 2;
 }
 
 AnswerTable table_of(const Study& study) { return {study.task, {}, {}, study.levels}; }

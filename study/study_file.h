@@ -43,7 +43,7 @@ struct Condition {
 
 /// Practice before each condition: ends once `right` of the last `of` are right.
 struct Practice {
-  double level{1};  ///< [-]
+  double level{1};  ///< [as levels]
   std::size_t right{8};
   std::size_t of{10};
   std::size_t trials_max{30};  ///< who needs more is excluded
@@ -55,6 +55,9 @@ enum class StudyTask : std::uint8_t {
   Bias,       ///< is the second, felt under the condition, stiffer than the first?
   Detect2,    ///< over which place does something hard lie?
   Detect,     ///< is there something hard?
+  Rank,       ///< in which order are three places stiffer, or balls less deep?
+  Delay,      ///< which place answered late?
+  Locate,     ///< where in an area does something hard lie?
 };
 
 /// A ball in the tissue, and how much stiffer it makes the place above it.
@@ -67,6 +70,13 @@ struct BallDepth {
 struct StudyBall {
   double radius{};  ///< [m]
   double ratio{};   ///< [-], its stiffness over the block's
+};
+
+/// Where a ball is searched for.
+struct SearchArea {
+  double side{};    ///< [m], of a square; the ball's axis is anywhere in it
+  double within{};  ///< [m], of the axis: found
+  double limit{};   ///< [s]
 };
 
 /// What a participant is asked, how often, and what is done with the answers.
@@ -84,13 +94,15 @@ struct Study {
   Method method{};
   std::size_t trials{60};  ///< of a participant in a condition, without catch trials
   std::size_t tracks{2};
-  double catch_share{};             ///< [-], over the others
-  double rest{60};                  ///< [s], between two conditions
-  double travel{1.5};               ///< [s], to each place, of persons
-  std::vector<double> levels{};     ///< [-]; tasks of detection: 0 if yes or no, and the contrasts
-  std::vector<BallDepth> depths{};  ///< tasks of detection: the deepest first
-  /// Tasks of detection: the tissue is that of such a ball; nothing: plain tissue made stiffer.
+  double catch_share{};  ///< [-], over the others
+  double rest{60};       ///< [s], between two conditions
+  double travel{1.5};    ///< [s], to each place, of persons
+  /// [-], or delays [ms]; of depths: 0 if yes or no, and the contrasts.
+  std::vector<double> levels{};
+  std::vector<BallDepth> depths{};  ///< the deepest first
+  /// With depths: the tissue is that of such a ball; nothing: plain tissue made stiffer.
   std::optional<StudyBall> ball{};
+  SearchArea search{};  ///< StudyTask::Locate
   Practice practice{};
   double margin{0.15};          ///< [-], of ln JND
   double catch_right_min{0.8};  ///< [-], share
@@ -108,9 +120,14 @@ inline constexpr std::size_t kConditionsMax = 6;  ///< codes A to F
 /// depth. Nothing beyond the least and the greatest.
 [[nodiscard]] std::optional<double> depth_of(const Study& study, double contrast) noexcept;
 
-/// Tasks of detection: the depth [m] where two intervals are told apart 3 of 4 times, or d' is 1,
-/// of an observer with that JND. Nothing: it lies beyond the study's depths.
+/// With depths: the depth [m] where two intervals are told apart 3 of 4 times, or d' is 1, or a
+/// search finds half of what guessing does not, of an observer with that JND; of a ranking the
+/// depth of the least deep ball of three that are in order half of the time after chance. Nothing:
+/// it lies beyond the study's depths.
 [[nodiscard]] std::optional<double> depth_found(const Study& study, double jnd) noexcept;
+
+/// A ranking of balls: the contrast of the one in the middle.
+[[nodiscard]] double middle_contrast(const Study& study) noexcept;
 
 /// As the study file has it: "stiffness".
 [[nodiscard]] std::string_view task_name(const Study& study) noexcept;

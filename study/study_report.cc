@@ -138,8 +138,10 @@ std::string fits_html(const Study& study, const StudyFit& fit, const ReportParts
 plot::Figure jnd_figure(const Study& study,
                         const StudyFit& fit,
                         const std::vector<std::string>& names) {
-  plot::Panel panel{
-      .axes = {.title = "", .x_name = "condition", .y_name = "JND, %", .x_classes = names}};
+  plot::Panel panel{.axes = {.title = "",
+                             .x_name = "condition",
+                             .y_name = std::string{"JND, "} + said_unit(study.task),
+                             .x_classes = names}};
   plot::Curve people{.name = "participants, 95 % interval",
                      .mark = plot::Mark::Intervals,
                      .colour = plot::kGrey,
@@ -155,15 +157,15 @@ plot::Figure jnd_figure(const Study& study,
       const Marginal& one = blocks[k].ln_jnd;
       people.x.push_back(x - 0.1 +
                          0.4 * static_cast<double>(k + 1) / static_cast<double>(blocks.size()));
-      people.y.push_back(percent_of_level(std::exp(one.median)));
-      people.low.push_back(percent_of_level(std::exp(one.low)));
-      people.high.push_back(percent_of_level(std::exp(one.high)));
+      people.y.push_back(said_level(study.task, std::exp(one.median)));
+      people.low.push_back(said_level(study.task, std::exp(one.low)));
+      people.high.push_back(said_level(study.task, std::exp(one.high)));
     }
     const GroupMean group = group_mean(blocks);
     means.x.push_back(x - 0.2);
-    means.y.push_back(percent_of_level(std::exp(group.mean)));
-    means.low.push_back(percent_of_level(std::exp(group.mean - group.reach)));
-    means.high.push_back(percent_of_level(std::exp(group.mean + group.reach)));
+    means.y.push_back(said_level(study.task, std::exp(group.mean)));
+    means.low.push_back(said_level(study.task, std::exp(group.mean - group.reach)));
+    means.high.push_back(said_level(study.task, std::exp(group.mean + group.reach)));
   }
   panel.curves = {people, means};
   return {.title = "JND by condition", .panels = {panel}};
@@ -176,13 +178,15 @@ plot::Figure answers_figure(const Study& study,
   for (std::size_t i = 0; i < study.conditions.size(); ++i) {
     const auto blocks = counted(fit, i);
     if (blocks.empty()) continue;
-    plot::Panel panel{.axes = {.title = "condition " + names[i],
-                               .x_name = "ln of the ratio of stiffnesses",
-                               .y_name = study.task.yes_no      ? "share \"yes\""
-                                         : study.task.two_sided ? "share \"the second\""
-                                                                : "share right",
-                               .y_from = 0,
-                               .y_to = 1}};
+    plot::Panel panel{
+        .axes = {.title = "condition " + names[i],
+                 .x_name = study.task.delays ? "delay, ms" : "ln of the ratio of stiffnesses",
+                 .y_name = study.task.yes_no       ? "share \"yes\""
+                           : study.task.two_sided  ? "share \"the second\""
+                           : study.task.places > 0 ? "share found"
+                                                   : "share right",
+                 .y_from = 0,
+                 .y_to = 1}};
     panel.curves = {shares_of(all_answers(fit, i)), function_of(study, blocks)};
     figure.panels.push_back(std::move(panel));
   }
@@ -205,9 +209,9 @@ std::string report_html(const Study& study, const StudyFit& fit, const ReportPar
     page += escaped(condition_text(study, fit, i, parts.names[i]));
   }
   page += "</pre>\n" + figure_svg(jnd_figure(study, fit, parts.names), style);
-  for (const bool bias : {false, true}) {
-    if (bias && !study.task.two_sided) continue;
-    page += "<pre>" + escaped(pairs_text(compare_study(study, fit, bias), parts.names, bias)) +
+  for (const Measure measure : measures_of(study.task)) {
+    page += "<pre>" +
+            escaped(pairs_text(compare_study(study, fit, measure), parts.names, measure)) +
             "</pre>\n";
   }
   page += figure_svg(answers_figure(study, fit, parts.names), style);

@@ -55,7 +55,8 @@ class Trial {
   [[nodiscard]] std::optional<std::size_t> answer() const noexcept { return answer_; }
   [[nodiscard]] Duration response_time() const noexcept { return response_time_; }
   [[nodiscard]] int taps() const noexcept { return taps_; }
-  [[nodiscard]] double force_max() const noexcept { return force_max_; }  ///< [N], magnitude
+  [[nodiscard]] int taps_of_interval() const noexcept { return taps_now_; }  ///< of the one now
+  [[nodiscard]] double force_max() const noexcept { return force_max_; }     ///< [N], magnitude
   [[nodiscard]] Duration contact() const noexcept { return contact_; }
   [[nodiscard]] Duration length(TimePoint now) const noexcept;  ///< since the trial began
 

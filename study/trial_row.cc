@@ -7,6 +7,7 @@
 
 #include "common/config/number.h"
 #include "common/core/printable.h"
+#include "study/orders.h"
 #include "study/tab_cells.h"
 
 namespace palp::study {
@@ -27,7 +28,7 @@ std::optional<TrialKind> kind_of(std::string_view text) {
   return std::nullopt;
 }
 
-// Places of the columns in a line.
+// Places of the columns that all tasks have in a line.
 struct Cell {
   enum Place : std::size_t {
     Onset,
@@ -52,38 +53,44 @@ struct Cell {
   };
 };
 
-Result<TrialRow> row_of(const std::vector<std::string_view>& cells, const Task& task) {
-  std::array<double, Cell::Count> number{};
-  for (const Cell::Place at : {Cell::Onset,
-                               Cell::Duration,
-                               Cell::ResponseTime,
-                               Cell::Block,
-                               Cell::Trial,
-                               Cell::Track,
-                               Cell::Level,
-                               Cell::Interval,
-                               Cell::Response,
-                               Cell::Correct,
-                               Cell::Mean,
-                               Cell::Sd,
-                               Cell::Taps,
-                               Cell::Force,
-                               Cell::Contact}) {
+// What a ranking has besides, and a search.
+constexpr std::size_t kTau = Cell::Count;
+constexpr std::size_t kError = Cell::Count;
+constexpr std::size_t kPath = kError + 1;
+constexpr std::size_t kForceMean = kError + 2;
+
+constexpr double kMillimetres = 1e3;  // [1/m]
+
+/// All but those of words.
+Result<std::vector<double>> numbers_of(const std::vector<std::string_view>& cells,
+                                       const std::vector<Column>& columns) {
+  std::vector<double> numbers(cells.size());
+  for (std::size_t at = 0; at < cells.size(); ++at) {
+    if (at == Cell::Kind || at == Cell::Condition || at == Cell::Who) continue;
     const auto value = config::parse_number(cells[at]);
     if (!value || std::abs(*value) > kNumberMax) {
-      return fail(std::string{row_columns()[at].name} + " is \"" + printable(cells[at]) +
+      return fail(std::string{columns[at].name} + " is \"" + printable(cells[at]) +
                   "\", expected a number");
     }
-    number[at] = *value;
+    numbers[at] = *value;
   }
+  return numbers;
+}
+
+Result<TrialRow> row_of(const std::vector<std::string_view>& cells,
+                        const std::vector<Column>& columns,
+                        const Task& task) {
+  const auto numbers = numbers_of(cells, columns);
+  if (!numbers) return tl::unexpected(numbers.error());
+  const std::vector<double>& number = *numbers;
   const auto kind = kind_of(cells[Cell::Kind]);
   const auto whole = [&](Cell::Place at) { return static_cast<std::size_t>(number[at]); };
   if (!kind || number[Cell::Block] < 1 || number[Cell::Trial] < 1 || number[Cell::Track] < 0) {
     return fail("trial_type, block, trial or track is none");
   }
   for (const Cell::Place at : {Cell::Interval, Cell::Response}) {
-    if (number[at] < 1 || number[at] > task.intervals) {
-      return fail(std::string{row_columns()[at].name} + " is none of the trial's");
+    if (number[at] < 1 || number[at] > static_cast<double>(choices(task))) {
+      return fail(std::string{columns[at].name} + " is none of the trial's");
     }
   }
   TrialRow row{.ask = {.kind = *kind,
@@ -104,9 +111,18 @@ Result<TrialRow> row_of(const std::vector<std::string_view>& cells, const Task& 
                .kind = std::string{cells[Cell::Who]},
                .believed_mean = number[Cell::Mean],
                .believed_sd = number[Cell::Sd],
-               .two_sided = task.two_sided};
+               .task = task};
+  if (task.places > 0) {
+    row.outcome.error = number[kError] / kMillimetres;
+    row.outcome.path = number[kPath] / kMillimetres;
+    row.outcome.force_mean = number[kForceMean];
+  }
   if (number[Cell::Correct] != (row.yes() ? 1 : 0)) {
     return fail("correct does not follow from interval and response");
+  }
+  const double tau = task.ranks ? kendall_tau(row.ask.stronger, row.outcome.chosen) : 0;
+  if (task.ranks && std::abs(number[kTau] - tau) > 1e-8) {
+    return fail("kendall_tau does not follow from interval and response");
   }
   return row;
 }
@@ -114,11 +130,11 @@ Result<TrialRow> row_of(const std::vector<std::string_view>& cells, const Task& 
 }  // namespace
 
 bool TrialRow::yes() const noexcept {
-  return two_sided ? outcome.chosen == 1 : outcome.chosen == ask.stronger;
+  return task.two_sided ? outcome.chosen == 1 : outcome.chosen == ask.stronger;
 }
 
-const std::vector<Column>& row_columns() {
-  static const std::vector<Column> columns{
+std::vector<Column> row_columns(const Task& task) {
+  std::vector<Column> columns{
       {"onset", "when the trial began, since the participant's first", "s"},
       {"duration", "of the trial", "s"},
       {"trial_type", "trial, catch (the easiest level) or practice", ""},
@@ -140,12 +156,34 @@ const std::vector<Column>& row_columns() {
       {"force_max_n", "largest force the hand was given", "N"},
       {"contact_s", "time in contact", "s"},
       {"kind", "who answered: person, pilot (no approval was named) or simulated", ""}};
+  if (task.delays) {
+    columns[Cell::Level] = {"level_ms", "delay of the round trip, on top of the link's", "ms"};
+    columns[Cell::Interval].meaning = "which was delayed, from 1";
+    columns[Cell::Response].meaning = "which was called delayed, from 1";
+  }
+  if (task.ranks) {
+    columns[Cell::Level].meaning =
+        "logarithm of the ratio of stiffnesses of two neighbours in the order";
+    columns[Cell::Interval].meaning =
+        "the order, softest first: 1 to 6 for 1 2 3, 1 3 2, 2 1 3, 2 3 1, 3 1 2, 3 2 1";
+    columns[Cell::Response].meaning = "the order that was said, likewise";
+    columns.push_back({"kendall_tau", "of the two orders, -1 to 1", "1"});
+  }
+  if (task.places > 0) {
+    columns[Cell::Interval].meaning = "1: something lies there";
+    columns[Cell::Response].meaning = "1: the place that was said is near enough, 2: it is not";
+    columns[Cell::Correct].meaning = "1: found";
+    columns[Cell::ResponseTime].meaning = "of the search";
+    columns.push_back({"error_mm", "from what was hidden to the place that was said", "mm"});
+    columns.push_back({"path_mm", "of the tip along the surface", "mm"});
+    columns.push_back({"force_mean_n", "of the tip while it touched", "N"});
+  }
   return columns;
 }
 
-std::string row_header() {
+std::string row_header(const Task& task) {
   std::string text;
-  for (const Column& one : row_columns()) {
+  for (const Column& one : row_columns(task)) {
     if (!text.empty()) text += '\t';
     text += one.name;
   }
@@ -153,24 +191,30 @@ std::string row_header() {
 }
 
 std::string row_text(const TrialRow& row) {
-  const std::array<std::string, Cell::Count> cells{digits(row.outcome.onset),
-                                                   digits(row.outcome.duration),
-                                                   std::string{to_string(row.ask.kind)},
-                                                   digits(row.outcome.response_time),
-                                                   std::to_string(row.block),
-                                                   std::to_string(row.ask.number + 1),
-                                                   std::to_string(row.ask.track),
-                                                   row.condition,
-                                                   digits(row.ask.level),
-                                                   std::to_string(row.ask.stronger + 1),
-                                                   std::to_string(row.outcome.chosen + 1),
-                                                   row.yes() ? "1" : "0",
-                                                   digits(row.believed_mean),
-                                                   digits(row.believed_sd),
-                                                   std::to_string(row.outcome.taps),
-                                                   digits(row.outcome.force_max),
-                                                   digits(row.outcome.contact),
-                                                   row.kind};
+  std::vector<std::string> cells{digits(row.outcome.onset),
+                                 digits(row.outcome.duration),
+                                 std::string{to_string(row.ask.kind)},
+                                 digits(row.outcome.response_time),
+                                 std::to_string(row.block),
+                                 std::to_string(row.ask.number + 1),
+                                 std::to_string(row.ask.track),
+                                 row.condition,
+                                 digits(row.ask.level),
+                                 std::to_string(row.ask.stronger + 1),
+                                 std::to_string(row.outcome.chosen + 1),
+                                 row.yes() ? "1" : "0",
+                                 digits(row.believed_mean),
+                                 digits(row.believed_sd),
+                                 std::to_string(row.outcome.taps),
+                                 digits(row.outcome.force_max),
+                                 digits(row.outcome.contact),
+                                 row.kind};
+  if (row.task.ranks) cells.push_back(digits(kendall_tau(row.ask.stronger, row.outcome.chosen)));
+  if (row.task.places > 0) {
+    cells.push_back(digits(row.outcome.error * kMillimetres));
+    cells.push_back(digits(row.outcome.path * kMillimetres));
+    cells.push_back(digits(row.outcome.force_mean));
+  }
   std::string text;
   for (const std::string& cell : cells) text += (text.empty() ? "" : "\t") + cell;
   return text + '\n';
@@ -178,20 +222,21 @@ std::string row_text(const TrialRow& row) {
 
 Result<RowsFile> parse_rows(std::string_view text, const std::string& name, const Task& task) {
   RowsFile out;
+  const std::vector<Column> columns = row_columns(task);
   for (std::size_t number = 1, begin = 0;; ++number) {
     const std::size_t end = text.find('\n', begin);
     if (end == std::string_view::npos) break;
     const std::string_view line = text.substr(begin, end - begin);
     begin = end + 1;
     if (number == 1) {
-      if (std::string{line} + '\n' != row_header()) {
+      if (std::string{line} + '\n' != row_header(task)) {
         return fail(name + ": the first line does not name the columns of this version");
       }
     } else {
       const std::string where = name + ", line " + std::to_string(number);
       const auto cells = tab_cells(line);
-      if (cells.size() != Cell::Count) return fail(where + " has another number of cells");
-      auto row = row_of(cells, task);
+      if (cells.size() != columns.size()) return fail(where + " has another number of cells");
+      auto row = row_of(cells, columns, task);
       if (!row) return fail(where, row.error());
       out.rows.push_back(std::move(*row));
     }

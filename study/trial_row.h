@@ -13,13 +13,17 @@ namespace palp::study {
 
 /// What came out of a trial.
 struct TrialOutcome {
-  std::size_t chosen{};    ///< the interval, from 0
+  std::size_t chosen{};    ///< the interval, or what was chosen, from 0; a search: 0 found, 1 not
   double onset{};          ///< [s], since the participant's first trial began
   double duration{};       ///< [s]
   double response_time{};  ///< [s]
   int taps{};              ///< of all intervals
   double force_max{};      ///< [N], magnitude of what the hand was given
   double contact{};        ///< [s]
+  // Of a search.
+  double error{};       ///< [m], from what was hidden to the place that was said
+  double path{};        ///< [m], of the tip along the surface
+  double force_mean{};  ///< [N], of the tip while it touched
 };
 
 struct TrialRow {
@@ -30,14 +34,14 @@ struct TrialRow {
   std::string kind{};       ///< "person", "pilot" or "simulated"
   double believed_mean{};   ///< [-], of ln JND, by the trial's track after the answer
   double believed_sd{};     ///< [-]
-  bool two_sided{};
+  Task task{};
 
-  /// Right; at a two-sided task "the second is stiffer", or "yes".
+  /// Right, or found; at a two-sided task "the second is stiffer", or "yes".
   [[nodiscard]] bool yes() const noexcept;
 };
 
 /// The first line, with its end.
-[[nodiscard]] std::string row_header();
+[[nodiscard]] std::string row_header(const Task& task);
 [[nodiscard]] std::string row_text(const TrialRow& row);
 
 /// The rows of a file as row_text() wrote them. A last line without its end was never finished:
@@ -50,12 +54,13 @@ struct RowsFile {
                                           const std::string& name,
                                           const Task& task);
 
-/// Column by column: name, meaning, unit or levels: for task-*_beh.json.
+/// Column by column: name, meaning, unit: for task-*_beh.json. What is common to all tasks comes
+/// first.
 struct Column {
   std::string_view name;
   std::string_view meaning;
   std::string_view unit;  ///< empty: none
 };
-[[nodiscard]] const std::vector<Column>& row_columns();
+[[nodiscard]] std::vector<Column> row_columns(const Task& task);
 
 }  // namespace palp::study

@@ -306,7 +306,11 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   const TimePoint start = simulator.now();
   Digest digest;
   SessionFiles session_files{scenario, files, start};
-  netem::Pipe pipe{scenario.up, scenario.down, scenario.seed, kInFlightMax, start};
+  netem::Pipe pipe{netem::PathPlan{.impairment = scenario.up},
+                   netem::PathPlan{.impairment = scenario.down, .changes = scenario.down_changes},
+                   scenario.seed,
+                   kInFlightMax,
+                   start};
   DarkPath dark{scenario};
   const auto valve = [&](auto end) { return std::make_unique<Valve>(std::move(end), dark.shut()); };
   SurgeonEnd surgeon{scenario, valve(pipe.surgeon_end()), session_files.surgeon(), digest};

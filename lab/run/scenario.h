@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/core/time.h"
 #include "common/coupling/any_coupling.h"
@@ -12,6 +13,7 @@
 #include "lab/run/device_timing.h"
 #include "lab/run/fault.h"
 #include "netem/model/impairment.h"
+#include "netem/model/path_plan.h"
 #include "patient_site/patient_node.h"
 #include "patient_site/phantom.h"
 #include "patient_site/simulated_phantom.h"
@@ -53,10 +55,12 @@ struct Scenario {
   depth::DepthEstimatorConfig estimator;
   netem::Impairment up;    ///< surgeon to patient
   netem::Impairment down;  ///< patient to surgeon
-  Duration duration{};     ///< virtual; 0: until the script is done
-  bool bare{};             ///< telegrams as raw structs and no session log: the laws alone, fast
-  bool depths{true};       ///< the estimator of the inclusion's depth runs too
-  bool lying{};            ///< the patient site's models are random (adversary.h)
+  /// What happens on the way down as the run goes on.
+  std::vector<netem::Change> down_changes{};
+  Duration duration{};  ///< virtual; 0: until the script is done
+  bool bare{};          ///< telegrams as raw structs and no session log: the laws alone, fast
+  bool depths{true};    ///< the estimator of the inclusion's depth runs too
+  bool lying{};         ///< the patient site's models are random (adversary.h)
   /// > 0: nothing passes for 2 s from there on.
   Duration blackout_at_script_time{};
   Fault fault;         ///< with one, sites meet by the handshake

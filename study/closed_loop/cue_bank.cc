@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/core/random.h"
+#include "study/orders.h"
 
 namespace palp::study {
 namespace {
@@ -23,6 +24,10 @@ CueBank::Differences differences(const FeltTrial& felt,
     left.push_back(*impressed);
   }
   if (task.yes_no) return {left.front() - judgement.plain};
+  if (task.ranks) {
+    const Order& order = kOrders[stronger];
+    return {left[order[1]] - left[order[0]], left[order[2]] - left[order[1]]};
+  }
   CueBank::Differences out;
   for (std::size_t i = 0; i < left.size(); ++i) {
     if (i != stronger) out.push_back(left[stronger] - left[i]);
@@ -35,11 +40,11 @@ double share_of(const CueBank::Differences& session,
                 const Task& task,
                 const Judgement& judgement,
                 double sd) {
-  const double guess = 1.0 / task.intervals;
-  if (session.empty()) return guess;
+  if (session.empty()) return chance(task);
   // Without noise the same is the same.
-  if (sd == 0 && session.front() == 0) return task.yes_no ? 0 : guess;
+  if (sd == 0 && std::ranges::count(session, 0.0) > 0) return task.yes_no ? 0 : chance(task);
   if (task.yes_no) return normal_cdf(session.front() / sd - judgement.criterion);
+  if (task.ranks) return order_share(session[0] / sd, session[1] / sd);
   std::vector<double> d_primes;
   for (const double one : session) d_primes.push_back(one / sd);
   return forced_choice_share(d_primes);
@@ -75,12 +80,12 @@ CueBank bank_of(const FeltSession& session,
                .levels = levels,
                .differences = std::vector<std::vector<CueBank::Differences>>(
                    levels.size(), std::vector<CueBank::Differences>(count))};
-  const auto intervals = static_cast<std::size_t>(task.intervals);
+  const std::size_t answers = choices(task);
   for_each_index(levels.size() * count, [&](std::size_t i) {
     const std::size_t level = i / count;
     const std::size_t which = i % count;
     // The stronger one takes turns.
-    const std::size_t stronger = task.two_sided ? 1 : intervals - 1 - which % intervals;
+    const std::size_t stronger = task.two_sided ? 1 : answers - 1 - which % answers;
     const TrialAsk ask{.level = levels[level], .stronger = stronger};
     const FeltSetting setting = setting_of(
         ask, task, session.taps(), judgement.depth_sd, random_bits(seed, level, which) >> 16);
@@ -111,8 +116,7 @@ double banked_share(const CueBank& bank,
 }
 
 Foretold banked(const CueBank& bank, const Judgement& judgement, int taps) {
-  const double chance = bank.task.two_sided ? 0.5 : 1.0 / bank.task.intervals;
-  const double upper = level_of(bank, judgement, taps, chance + (1 - chance) / 2);
+  const double upper = level_of(bank, judgement, taps, (1 + chance(bank.task)) / 2);
   if (!bank.task.two_sided) return {.jnd = upper, .pse = 0};
   if (std::isinf(upper)) return {.jnd = upper, .pse = std::numeric_limits<double>::quiet_NaN()};
   const double pse = level_of(bank, judgement, taps, 0.5);
@@ -130,7 +134,7 @@ FeltLine line_of(const CueBank& bank) {
   double yy = 0;
   for (std::size_t i = 0; i < bank.levels.size(); ++i) {
     const double level = bank.levels[i];
-    if (std::abs(level) > kLineReach) continue;
+    if (std::abs(level) > kLineReach * level_unit(bank.task)) continue;
     for (const CueBank::Differences& session : bank.differences[i]) {
       for (const double one : session) {
         count += 1;

@@ -9,9 +9,9 @@
 /// What would be answered, foretold from few sessions: felt slopes, kept for some levels.
 namespace palp::study {
 
-/// How much stiffer an interval felt than the others [ln, as with the own finger], session by
-/// session: the stronger one than each of the others; bias: the second than the first; yes or no:
-/// the one than plain tissue.
+/// How much stiffer an interval felt than the others [ln, as with the own finger], or later [ms],
+/// session by session: the stronger one than each of the others; of a ranking each one than the one
+/// before it; bias: the second than the first; yes or no: the one than plain tissue.
 struct CueBank {
   using Differences = std::vector<double>;  ///< [-]; none: an interval told nothing
 
@@ -45,7 +45,7 @@ struct Foretold {
 [[nodiscard]] Foretold banked(const CueBank& bank, const Judgement& judgement, int taps);
 
 /// How what is felt follows what is there: felt difference = offset + gain * level, by least
-/// squares over levels up to 0.6. No difference was felt, or at one level only: 0.
+/// squares over levels up to 0.6 of level_unit(). No difference was felt, or at one level only: 0.
 struct FeltLine {
   double gain{};     ///< [-]; own finger: 1
   double offset{};   ///< [-]

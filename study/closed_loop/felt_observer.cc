@@ -1,11 +1,15 @@
 #include "study/closed_loop/felt_observer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "common/core/random.h"
+#include "study/orders.h"
+#include "study/raster.h"
+#include "study/stimulus.h"
 
 namespace palp::study {
 namespace {
@@ -26,11 +30,27 @@ constexpr std::uint64_t kSession = 4096;
 constexpr std::uint64_t kDepths = 64;
 constexpr std::uint64_t kTapsMost = 16;  // of an interval
 
+constexpr std::uint64_t kGuess = 128;  // a stream apart from those of depths
+
 constexpr std::uint64_t kPlain = 0x706c61696e000000;  // streams apart from those of trials
 constexpr std::uint64_t kPlainTouches = 12;
 
 double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// [m], aimed at in an interval.
+std::vector<double> depths_drawn(int taps,
+                                 double depth_sd,
+                                 std::uint64_t seed,
+                                 std::size_t interval) {
+  std::vector<double> out;
+  for (int tap = 0; tap < taps; ++tap) {
+    const std::uint64_t index = kTapsMost * interval + static_cast<std::uint64_t>(tap);
+    const double noise = std::clamp(depth_sd * random_normal(seed, kDepths, index), -0.3, 0.3);
+    out.push_back(kDepth * (1 + noise));
+  }
+  return out;
 }
 
 /// By which an interval is judged.
@@ -47,7 +67,8 @@ double Judgement::sd(int taps) const noexcept {
   const double felt = force_sd * force_sd / taps + (reads_exactly ? judged : 0);
   const double drawn = read_sd * read_sd / taps;
   const double share = drawn_share(taps);
-  return std::sqrt(common + (1 - share) * (1 - share) * felt + share * share * drawn);
+  return level_unit({.delays = delays}) *
+         std::sqrt(common + (1 - share) * (1 - share) * felt + share * share * drawn);
 }
 
 double Judgement::drawn_share(int taps) const noexcept {
@@ -74,7 +95,7 @@ Judgement judgement_of(double weber, double lapse, double own_gain) noexcept {
   return out;
 }
 
-Judgement judgement_for(const FeltSession& session, double weber, double lapse) {
+Judgement judgement_for(const FeltSession& session, const Task& task, double weber, double lapse) {
   const std::vector<double> depth(static_cast<std::size_t>(session.taps()), kDepth);
   const FeltTrial felt =
       session.touch({.places = {{-kGainReach / 2, depth}, {kGainReach / 2, depth}}});
@@ -83,6 +104,7 @@ Judgement judgement_for(const FeltSession& session, double weber, double lapse) 
   Judgement out =
       judgement_of(weber, lapse, (mean(stiff.ln_slopes) - mean(soft.ln_slopes)) / kGainReach);
   out.feedback = session.feedback();
+  out.delays = task.delays;
   // A hand that is given no force gives way to none.
   if (out.feedback == Feedback::Both) {
     out.drawn_gain = (mean(stiff.ln_drawn) - mean(soft.ln_drawn)) / kGainReach;
@@ -94,6 +116,7 @@ std::optional<double> impression(const FeltInterval& felt, const Judgement& judg
   if (judgement.feedback == Feedback::Depth) {
     return felt.ball_depth ? -*felt.ball_depth : kNoBall;
   }
+  if (judgement.delays) return felt.lag;
   std::optional<double> by_hand;
   std::optional<double> by_eye;
   if (!felt.ln_slopes.empty()) by_hand = mean(felt.ln_slopes) / judgement.own_gain;
@@ -109,9 +132,9 @@ std::size_t chosen(const std::vector<FeltInterval>& felt,
                    const Judgement& judgement,
                    std::uint64_t seed,
                    std::uint64_t stream) noexcept {
-  const auto choices = static_cast<std::size_t>(task.intervals);
-  const double coin = random_uniform(seed, stream, kCoin) * static_cast<double>(choices);
-  const std::size_t guess = choices - 1 - static_cast<std::size_t>(coin);
+  const std::size_t all = choices(task);
+  const double coin = random_uniform(seed, stream, kCoin) * static_cast<double>(all);
+  const std::size_t guess = all - 1 - static_cast<std::size_t>(coin);
   if (random_uniform(seed, stream, kLapse) < judgement.lapse) return guess;
   std::vector<double> seems;
   for (const FeltInterval& one : felt) {
@@ -125,22 +148,21 @@ std::size_t chosen(const std::vector<FeltInterval>& felt,
     return seems.front() > judgement.plain + from ? 1 : 0;
   }
   const auto most = std::ranges::max_element(seems);
-  return std::ranges::count(seems, *most) > 1 ? guess
-                                              : static_cast<std::size_t>(most - seems.begin());
+  if (std::ranges::count(seems, *most) > 1) return guess;
+  if (!task.ranks) return static_cast<std::size_t>(most - seems.begin());
+  const std::array<double, kRanked> three{seems[0], seems[1], seems[2]};
+  const bool told = three[0] != three[1] && three[1] != three[2] && three[0] != three[2];
+  return told ? order_of(three) : guess;
 }
 
 FeltSetting setting_of(
     const TrialAsk& ask, const Task& task, int taps, double depth_sd, std::uint64_t seed) {
   FeltSetting setting{.seed = seed};
-  setting.places.resize(task.yes_no ? 1 : static_cast<std::size_t>(task.intervals));
-  const std::size_t stronger = task.two_sided ? setting.places.size() - 1 : ask.stronger;
-  setting.places[stronger].ln_stiffness = ask.level;
+  for (const Stimulus& one : stimuli_of(ask, task)) {
+    setting.places.push_back({.ln_stiffness = one.level, .delay = one.delay});
+  }
   for (std::size_t interval = 0; interval < setting.places.size(); ++interval) {
-    for (int tap = 0; tap < taps; ++tap) {
-      const std::uint64_t index = kTapsMost * interval + static_cast<std::uint64_t>(tap);
-      const double noise = std::clamp(depth_sd * random_normal(seed, kDepths, index), -0.3, 0.3);
-      setting.places[interval].depth.push_back(kDepth * (1 + noise));
-    }
+    setting.places[interval].depth = depths_drawn(taps, depth_sd, seed, interval);
   }
   return setting;
 }
@@ -170,12 +192,48 @@ double felt_plain(const FeltSession& session, const Judgement& judgement, std::u
   return count > 0 ? sum / count : 0;
 }
 
+FeltSearch search(const FeltSession& session,
+                  const SearchArea& area,
+                  const TrialAsk& ask,
+                  const Judgement& judgement,
+                  std::uint64_t seed,
+                  std::uint64_t stream) {
+  const std::vector<Place> cells = raster(area);
+  FeltSetting setting{.seed = seed, .hidden = HiddenBall{ask.level, ask.hidden}};
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    setting.places.push_back(
+        {.depth = depths_drawn(session.taps(), judgement.depth_sd, seed, i), .at = cells[i]});
+  }
+  FeltSearch out{.felt = session.feel(setting)};
+  const auto anywhere = [&](std::uint64_t axis) {
+    return area.side * (random_uniform(seed, kGuess, axis) - 0.5);
+  };
+  out.said = {anywhere(0), anywhere(1)};
+  if (random_uniform(seed, stream, kLapse) < judgement.lapse) return out;
+  std::optional<double> most;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const FeltInterval& one = out.felt.intervals[i];
+    const auto left = impression(one, judgement);
+    if (!left) continue;
+    const double seems =
+        *left + judgement.sd(taps_of(one)) * random_normal(seed, stream, kJudgements + i);
+    if (most && seems <= *most) continue;
+    most = seems;
+    out.said = cells[i];
+  }
+  return out;
+}
+
 FeltParticipants::FeltParticipants(const Study& study,
                                    const PeopleTraits& people,
                                    std::vector<FeltSession> sessions)
-    : seed_{study.seed}, task_{study.task}, people_{people}, sessions_{std::move(sessions)} {
+    : seed_{study.seed},
+      task_{study.task},
+      area_{study.search},
+      people_{people},
+      sessions_{std::move(sessions)} {
   for (const FeltSession& session : sessions_) {
-    judgements_.push_back(judgement_for(session, people.weber, people.lapse));
+    judgements_.push_back(judgement_for(session, study.task, people.weber, people.lapse));
     Judgement& judgement = judgements_.back();
     judgement.plain = task_.yes_no ? felt_plain(session, judgement, seed_) : 0;
   }
@@ -201,6 +259,20 @@ TrialOutcome FeltParticipants::answer(const TrialPlace& place, const TrialAsk& a
   judgement.judgement_sd = judgement_of(weber, people_.lapse, 1).judgement_sd;
   judgement.criterion = drawn_criterion(seed_, place.participant);
   const std::uint64_t seed = random_bits(seed_, stream, kSession) >> 16;
+  if (task_.places > 0) {
+    const FeltSearch one = search(session, area_, ask, judgement, seed, stream);
+    const double error = distance(one.said, ask.hidden);
+    return {.chosen = error <= area_.within ? std::size_t{0} : 1,
+            .onset = 0,
+            .duration = one.felt.duration,
+            .response_time = one.felt.duration,
+            .taps = one.felt.taps,
+            .force_max = one.felt.force_max,
+            .contact = one.felt.contact,
+            .error = error,
+            .path = raster_length(area_),
+            .force_mean = one.felt.force_mean};
+  }
   const FeltSetting setting = setting_of(ask, task_, session.taps(), judgement.depth_sd, seed);
   const FeltTrial felt = feel_trial(session, setting, task_);
   const double response = drawn_response_time(seed_, place, ask.number);

@@ -27,8 +27,10 @@ struct Judgement {
   double position_sd{};   ///< [-], of each
   double judgement_sd{};  ///< [-]
   bool reads_exactly{};   ///< a force that is read is judged without noise of the judgement
-  double lapse{0.02};     ///< [-]
-  double depth_sd{0.1};   ///< [-], of the depth aimed at
+  /// What is judged is how late the force is [ms], with level_unit() times the noise of stiffness.
+  bool delays{};
+  double lapse{0.02};    ///< [-]
+  double depth_sd{0.1};  ///< [-], of the depth aimed at
   /// [-], how much of a difference of ln stiffness the slopes show with the own finger: less than
   /// 1, for a hand comes less deep into stiffer tissue, which is less steep there. People know.
   double own_gain{1};
@@ -39,7 +41,7 @@ struct Judgement {
   /// Yes or no: from how much above that on it is "yes" [standard deviations of one judgement].
   double criterion{};
 
-  /// [-], of one interval with so many taps; what the estimator says has none.
+  /// [-, or ms], of one interval with so many taps; what the estimator says has none.
   [[nodiscard]] double sd(int taps) const noexcept;
   /// [-], how much the drawn force counts beside the felt one: 0 or 1 where only one is had.
   [[nodiscard]] double drawn_share(int taps) const noexcept;
@@ -52,18 +54,22 @@ struct Judgement {
 /// 0.05 <= weber.
 [[nodiscard]] Judgement judgement_of(double weber, double lapse, double own_gain) noexcept;
 /// With the gains of the session's hand, by the session's feedback.
-[[nodiscard]] Judgement judgement_for(const FeltSession& session, double weber, double lapse);
+[[nodiscard]] Judgement judgement_for(const FeltSession& session,
+                                      const Task& task,
+                                      double weber,
+                                      double lapse);
 
-/// What an interval leaves, without the observer's noise [ln N/m, as with the own finger]; nothing
-/// where no tap told anything. By the estimator: the less deep a ball, the more [m]; without one
-/// kNoBall.
+/// What an interval leaves, without the observer's noise [ln N/m, as with the own finger; of a
+/// delay ms]; nothing where no tap told anything. By the estimator: the less deep a ball, the more
+/// [m]; without one kNoBall.
 [[nodiscard]] std::optional<double> impression(const FeltInterval& felt,
                                                const Judgement& judgement) noexcept;
 
 inline constexpr double kNoBall = -1;  ///< [m], deeper than any
 
-/// What is chosen, from 0: the stiffest interval; yes or no: 1, it is stiffer than plain tissue. A
-/// guess where an interval left nothing, or two left the same. `seed` and `stream` draw the noise.
+/// What is chosen, from 0: the stiffest interval, or the latest; of a ranking the order; yes or no:
+/// 1, it is stiffer than plain tissue. A guess where an interval left nothing, or two left the
+/// same. `seed` and `stream` draw the noise.
 [[nodiscard]] std::size_t chosen(const std::vector<FeltInterval>& felt,
                                  const Task& task,
                                  const Judgement& judgement,
@@ -86,6 +92,22 @@ inline constexpr double kNoBall = -1;  ///< [m], deeper than any
                                 const Judgement& judgement,
                                 std::uint64_t seed);
 
+/// What comes of a search with that judgement.
+struct FeltSearch {
+  Place said{};
+  FeltTrial felt{};
+};
+
+/// Who searches goes over the area in rows, taps each place as often as the condition says, and
+/// says the one that was the stiffest: a cell's middle, so that no ball is farther from the nearest
+/// one than what counts as found. A guess anywhere in the area where it lapses or nothing is felt.
+[[nodiscard]] FeltSearch search(const FeltSession& session,
+                                const SearchArea& area,
+                                const TrialAsk& ask,
+                                const Judgement& judgement,
+                                std::uint64_t seed,
+                                std::uint64_t stream);
+
 /// Observers that feel each trial of a study as a session of its own. Thread: any, at once too.
 class FeltParticipants {
  public:
@@ -102,6 +124,7 @@ class FeltParticipants {
 
   std::uint64_t seed_;
   Task task_;
+  SearchArea area_;
   PeopleTraits people_;
   std::vector<FeltSession> sessions_;  ///< of each condition
   std::vector<Judgement> judgements_;  ///< likewise, with the median Weber fraction

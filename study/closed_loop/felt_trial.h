@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/core/place.h"
 #include "common/core/result.h"
 #include "study/level_curves.h"
 #include "study/study_file.h"
@@ -19,20 +20,29 @@ namespace palp::study {
 struct FeltPlace {
   double ln_stiffness{};        ///< [-], over the plain tissue's: the level
   std::vector<double> depth{};  ///< [m], aimed at in plain tissue, of each tap
+  double delay{};               ///< [ms], of the way down, on top of the link's
+  std::optional<Place> at{};    ///< nothing: A, B, and on as far apart
+};
+
+/// A ball somewhere below the places of a search, in place of what they say of tissue.
+struct HiddenBall {
+  double level{};  ///< [-], of the study: its contrast
+  Place axis{};
 };
 
 /// A trial.
 struct FeltSetting {
-  std::vector<FeltPlace> places{};  ///< of each interval, 1 to kFeltPlacesMax
+  std::vector<FeltPlace> places{};  ///< of each interval, 1 or more; without `hidden` 8 at most
   std::uint64_t seed{};             ///< of the session's noise
+  std::optional<HiddenBall> hidden{};
 };
-inline constexpr std::size_t kFeltPlacesMax = 8;
 
 /// What is known of an interval, by the hand, by the eyes, by the estimator of the depth.
 struct FeltInterval {
   std::vector<double> ln_slopes{};     ///< [ln N/m], felt, by which it is judged
   std::vector<double> ln_drawn{};      ///< [ln N/m], force drawn over depth, likewise
   std::optional<double> ball_depth{};  ///< [m], of a ball that the estimator found; nothing: none
+  std::optional<double> lag{};         ///< [ms], of the force behind the hand; nothing: no force
 };
 
 /// What came of it.
@@ -40,8 +50,9 @@ struct FeltTrial {
   std::vector<FeltInterval> intervals{};
   double duration{};  ///< [s], to the question
   int taps{};
-  double force_max{};  ///< [N]
-  double contact{};    ///< [s]
+  double force_max{};   ///< [N]
+  double contact{};     ///< [s]
+  double force_mean{};  ///< [N], of the tip while it touched
 };
 
 /// Sessions of one condition, which is read once. Thread: any, feel() at once too.

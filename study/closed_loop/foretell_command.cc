@@ -24,11 +24,14 @@ constexpr std::size_t kResamples = 200;
 constexpr double kLapseRate = 0.02;  // [-]
 constexpr std::uint64_t kBankStream = 0x62616e6b;
 constexpr std::uint64_t kPlainStream = 0x706c6e;
-constexpr double kStandard = 1.96;  // [-], standard deviations of a 95 % interval
-constexpr double kAllowed = 2.58;   // [-], likewise of 99 %
+constexpr std::size_t kRankedLevels = 8;  // of a ranking of balls
+constexpr double kStandard = 1.96;        // [-], standard deviations of a 95 % interval
+constexpr double kAllowed = 2.58;         // [-], likewise of 99 %
 
 std::vector<double> bank_levels(const Study& study) {
-  if (study.ball) return study.levels;  // each has a tissue of its own
+  if (study.ball && !study.task.ranks) return study.levels;  // each has a tissue of its own
+  if (study.ball) return even_levels(study.levels.front(), study.levels.back(), kRankedLevels);
+  if (study.task.delays) return {5, 20, 35, 50, 70, 100, 140, 200};
   if (study.task.yes_no) return {0, 0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.9, 1.2};
   if (study.task.two_sided) {
     return {-1.2, -0.9, -0.6, -0.4, -0.2, 0, 0.2, 0.4, 0.6, 0.9, 1.2};
@@ -85,8 +88,7 @@ std::vector<Answers> feel_track(const Study& study,
   std::vector<Answers> out;
   for (std::size_t trial = 0; trial < study.trials; ++trial) {
     const std::uint64_t stream = trial_stream(place, trial);
-    const std::size_t stronger =
-        random_bits(study.seed, stream, 1) % static_cast<std::uint64_t>(study.task.intervals);
+    const std::size_t stronger = random_bits(study.seed, stream, 1) % choices(study.task);
     const bool nothing = study.task.yes_no && stronger == 0;
     const std::size_t level = nothing ? 0 : track.next();
     const TrialAsk ask{.level = table.levels()[level], .stronger = stronger};
@@ -118,7 +120,7 @@ double foretold_share(const CueBank& bank,
   for (const Answers& one : asked) {
     const auto trials = static_cast<double>(one.trials);
     const double share = banked_share(bank, judgement, taps, one.level);
-    sum += trials * (kLapseRate / bank.task.intervals + (1 - kLapseRate) * share);
+    sum += trials * (kLapseRate * chance(bank.task) + (1 - kLapseRate) * share);
     count += trials;
   }
   return sum / count;
@@ -211,16 +213,18 @@ std::string row_text(const ForetoldRow& row, bool two_sided) {
   return text + "\n";
 }
 
-Json row_json(const ForetoldRow& row, bool two_sided) {
+Json row_json(const ForetoldRow& row, const Task& task) {
+  const bool two_sided = task.two_sided;
   Json out{{"condition", row.condition},
            {"gain", row.line.gain},
            {"offset", row.line.offset},
-           {"scatter", row.line.scatter},
-           {"closed_jnd_ln", estimate_json(row.closed_jnd)},
-           {"banked_jnd_ln", estimate_json(row.banked_jnd)}};
+           {"scatter", row.line.scatter}};
+  const std::string suffix = level_suffix(task);
+  out["closed_jnd_" + suffix] = estimate_json(row.closed_jnd);
+  out["banked_jnd_" + suffix] = estimate_json(row.banked_jnd);
   out["banked_shares"] = Json::array();
   for (const Answered& one : row.banked_shares) {
-    out["banked_shares"].push_back(Json{{"level_ln", one.level}, {"share", one.share}});
+    out["banked_shares"].push_back(Json{{"level_" + suffix, one.level}, {"share", one.share}});
   }
   if (row.depth) out["banked_depth_mm"] = *row.depth / kMillimetre;
   if (two_sided) {
@@ -229,7 +233,7 @@ Json row_json(const ForetoldRow& row, bool two_sided) {
   }
   if (row.trials > 0) {
     out["trials"] = row.trials;
-    out["whole_jnd_ln"] = estimate_json(row.whole_jnd);
+    out["whole_jnd_" + suffix] = estimate_json(row.whole_jnd);
     if (two_sided) out["whole_pse_ln"] = estimate_json(row.whole_pse);
     out["yes_share"] = row.yes;
     out["yes_foretold_share"] = row.yes_foretold;
@@ -260,7 +264,7 @@ Result<ForetoldRow> foretell(const Study& study,
   if (!curves) return tl::unexpected(curves.error());
   auto session = FeltSession::make(study.conditions[condition], *curves);
   if (!session) return tl::unexpected(session.error());
-  Judgement judgement = judgement_for(*session, flags.weber, kLapseRate);
+  Judgement judgement = judgement_for(*session, study.task, flags.weber, kLapseRate);
   judgement.reads_exactly = flags.reads_exactly;
   if (study.task.yes_no) {
     judgement.plain =
@@ -268,7 +272,7 @@ Result<ForetoldRow> foretell(const Study& study,
     judgement.criterion = kCriterion;
   }
   ForetoldRow row{.condition = study.conditions[condition].name,
-                  .told = session->feedback() == Feedback::Depth};
+                  .told = session->feedback() == Feedback::Depth || study.task.delays};
   const CueBank bank = bank_of(*session,
                                judgement,
                                study.task,
@@ -320,6 +324,11 @@ ExitStatus run_foretell(const ForetellFlags& flags, const ForEachIndex& for_each
   if (!file) return config::refusal("palp-study", file.error());
   const auto study = parse_study(*file, flags.file);
   if (!study) return config::refusal("palp-study", study.error());
+  if (study->task.places > 0) {
+    return {ExitCode::BadInput,
+            "palp-study: " + flags.file +
+                ": a search has no forecast: palp-study run --observer felt sends observers"};
+  }
   const bool two_sided = study->task.two_sided;
   std::string text =
       "condition               gain offset  JND, closed form     JND, bank            JND, "
@@ -339,7 +348,7 @@ ExitStatus run_foretell(const ForetellFlags& flags, const ForEachIndex& for_each
     const auto row = foretell(*study, i, flags, for_each_index);
     if (!row) return config::refusal("palp-study", row.error());
     text += row_text(*row, two_sided);
-    report["conditions"].push_back(row_json(*row, two_sided));
+    report["conditions"].push_back(row_json(*row, study->task));
     held = held && (row->trials == 0 || row->holds(two_sided));
   }
   if (!flags.report.empty()) {

@@ -41,7 +41,8 @@ struct Answered {
 /// What observers of a condition are foretold, and what they show.
 struct ForetoldRow {
   std::string condition{};
-  bool told{};  ///< by the estimator: it has no line, and no JND by a curve of noise
+  /// By the estimator, or what is felt of a delay: no line, so a JND depends on what was asked.
+  bool told{};
   FeltLine line{};
   std::vector<Answered> banked_shares{};
   Estimate banked_jnd{};

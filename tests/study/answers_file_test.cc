@@ -17,20 +17,20 @@ constexpr std::string_view kFile =
 TEST(AnswersFileTest, PoolsTheTrialsOfEachConditionWithoutPracticeAndMissingAnswers) {
   const auto found = parse_answers(kFile, "f.tsv");
   ASSERT_TRUE(found) << found.error().text;
-  ASSERT_EQ(found->size(), 2U);
-  EXPECT_EQ((*found)[0].condition, "A");
-  ASSERT_EQ((*found)[0].answers.size(), 2U);
-  EXPECT_EQ((*found)[0].answers[0].trials, 2U);
-  EXPECT_EQ((*found)[0].answers[0].yes, 1U);
-  EXPECT_EQ((*found)[0].answers[1].level, 0.9);
-  ASSERT_EQ((*found)[1].answers.size(), 1U);
-  EXPECT_EQ((*found)[1].answers[0].yes, 0U);
+  ASSERT_EQ(found->conditions.size(), 2U);
+  EXPECT_EQ(found->conditions[0].condition, "A");
+  ASSERT_EQ(found->conditions[0].answers.size(), 2U);
+  EXPECT_EQ(found->conditions[0].answers[0].trials, 2U);
+  EXPECT_EQ(found->conditions[0].answers[0].yes, 1U);
+  EXPECT_EQ(found->conditions[0].answers[1].level, 0.9);
+  ASSERT_EQ(found->conditions[1].answers.size(), 1U);
+  EXPECT_EQ(found->conditions[1].answers[0].yes, 0U);
 }
 
 TEST(AnswersFileTest, ReadsAFileWithoutConditionsAndWithAByteOrderMark) {
   const auto found = parse_answers("\xef\xbb\xbflevel_ln\tcorrect\n0.1\t1\n", "f.tsv");
   ASSERT_TRUE(found) << found.error().text;
-  EXPECT_EQ(found->front().condition, "");
+  EXPECT_EQ(found->conditions.front().condition, "");
 }
 
 TEST(AnswersFileTest, SaysInOneSentenceWhatIsWrongAndWhere) {

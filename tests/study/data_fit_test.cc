@@ -31,10 +31,9 @@ std::vector<ParticipantRows> answered(const Study& study,
         TrialRow row{.ask = ask,
                      .condition = condition_code(study, plan.condition),
                      .block = number,
-                     .two_sided = study.task.two_sided};
+                     .task = study.task};
         const std::size_t asked = study.task.two_sided ? 1 : ask.stronger;
-        row.outcome.chosen =
-            yes ? asked : (asked + 1) % static_cast<std::size_t>(study.task.intervals);
+        row.outcome.chosen = yes ? asked : (asked + 1) % choices(study.task);
         block.told(row.yes());
         of.rows.push_back(row);
       }
@@ -53,7 +52,7 @@ TEST(DataFitTest, FindsWhatTheConditionsDiffer) {
   const Study study = two_conditions();
   const StudyFit fit = fit_study(study, answered(study, {0.10, 0.20}));
   EXPECT_TRUE(fit.excluded.empty());
-  const auto pairs = compare_study(study, fit, false);
+  const auto pairs = compare_study(study, fit, Measure::Jnd);
   ASSERT_EQ(pairs.size(), 1U);
   EXPECT_EQ(pairs[0].participants, 16U);
   EXPECT_LT(pairs[0].test.low, std::log(2.0));
@@ -76,7 +75,8 @@ TEST(DataFitTest, FindsTheJndWhereThreeAreFelt) {
 
 TEST(DataFitTest, EqualConditionsAreNotTold) {
   const Study study = two_conditions();
-  const auto pairs = compare_study(study, fit_study(study, answered(study, {0.15, 0.15})), false);
+  const auto pairs =
+      compare_study(study, fit_study(study, answered(study, {0.15, 0.15})), Measure::Jnd);
   EXPECT_GT(pairs.at(0).test.p, 0.05);
 }
 
@@ -92,7 +92,7 @@ TEST(DataFitTest, WhoDoesNotAttendIsLeftOut) {
   ASSERT_EQ(fit.excluded.size(), 1U);
   EXPECT_EQ(fit.excluded[0].id, "sub-03");
   EXPECT_EQ(counted(fit, 0).size(), 3U);
-  EXPECT_EQ(compare_study(study, fit, false).at(0).participants, 3U);
+  EXPECT_EQ(compare_study(study, fit, Measure::Jnd).at(0).participants, 3U);
 }
 
 TEST(DataFitTest, WhoCannotPractiseIsLeftOutAndAnUnfinishedBlockDoesNotCount) {
@@ -114,7 +114,7 @@ TEST(DataFitTest, WhoCannotPractiseIsLeftOutAndAnUnfinishedBlockDoesNotCount) {
   ASSERT_EQ(fit.excluded.size(), 1U);
   EXPECT_EQ(fit.excluded[0].id, "sub-03");
   EXPECT_EQ(counted(fit, 0).size() + counted(fit, 1).size(), 3U);
-  EXPECT_TRUE(compare_study(study, fit, false).empty());  // one is no group
+  EXPECT_TRUE(compare_study(study, fit, Measure::Jnd).empty());  // one is no group
 }
 
 TEST(DataFitTest, TheTableHasALineForEachParticipantAndCondition) {

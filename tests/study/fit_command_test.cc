@@ -27,9 +27,10 @@ std::vector<Answers> answered(const Task& task,
 
 TEST(FitCommandTest, FindsTheJndOfEachCondition) {
   const auto levels = even_levels(0.03, 0.9, 8);
-  const auto statement = fit_statement(
-      {{"lan", answered({}, {.jnd = 0.12}, levels)}, {"far", answered({}, {.jnd = 0.3}, levels)}},
-      {});
+  const auto statement =
+      fit_statement({.conditions = {{"lan", answered({}, {.jnd = 0.12}, levels)},
+                                    {"far", answered({}, {.jnd = 0.3}, levels)}}},
+                    {});
   ASSERT_TRUE(statement) << statement.error().text;
   const auto report = config::Json::parse(statement->report);
   const auto conditions = report["conditions"].parts();
@@ -45,20 +46,20 @@ TEST(FitCommandTest, FindsABiasWhereAnswersAreTwoSided) {
   const Task task{.two_sided = true};
   const auto answers =
       answered(task, {.jnd = 0.15, .pse = -0.1}, {-0.6, -0.3, -0.15, -0.05, 0.05, 0.15, 0.3, 0.6});
-  const auto statement = fit_statement({{"", answers}}, {.two_sided = true});
+  const auto statement = fit_statement({.conditions = {{"", answers}}}, {.two_sided = true});
   ASSERT_TRUE(statement) << statement.error().text;
   const auto report = config::Json::parse(statement->report);
   EXPECT_NEAR(*report["conditions"].parts()[0]["pse_ln"].number(), -0.1, 0.03);
-  EXPECT_FALSE(fit_statement({{"", answers}}, {}));
+  EXPECT_FALSE(fit_statement({.conditions = {{"", answers}}}, {}));
 }
 
 TEST(FitCommandTest, ACurveStandsBesideTheObserver) {
   const auto answers = answered({}, {.jnd = 0.15, .lapse = 0.02}, even_levels(0.03, 0.9, 8));
-  const auto statement = fit_statement({{"", answers}}, {.curve = "normal"});
+  const auto statement = fit_statement({.conditions = {{"", answers}}}, {.curve = "normal"});
   ASSERT_TRUE(statement) << statement.error().text;
   const auto report = config::Json::parse(statement->report);
   EXPECT_TRUE(report["conditions"].parts()[0].contains("threshold"));
-  EXPECT_FALSE(fit_statement({{"", {{0.1, 3, 4}}}}, {.curve = "normal"}));
+  EXPECT_FALSE(fit_statement({.conditions = {{"", {{0.1, 3, 4}}}}}, {.curve = "normal"}));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ TrialRow a_row() {
 }
 
 TEST(TrialRowTest, ComesBackAsItWasWritten) {
-  const std::string text = row_header() + row_text(a_row());
+  const std::string text = row_header({}) + row_text(a_row());
   const auto file = parse_rows(text, "f", Task{});
   ASSERT_TRUE(file) << file.error().text;
   ASSERT_EQ(file->rows.size(), 1U);
@@ -38,13 +38,13 @@ TEST(TrialRowTest, RightMeansTheSideItWasOnAndYesTheSecondWhereLevelsHaveSigns) 
   EXPECT_FALSE(row.yes());
   row.ask.stronger = 0;
   EXPECT_TRUE(row.yes());
-  row.two_sided = true;
+  row.task.two_sided = true;
   EXPECT_FALSE(row.yes());
 }
 
 // Wherever a program dies, what is left of its file is read: whole lines only.
 TEST(TrialRowTest, ALineThatWasNeverFinishedIsLeftOut) {
-  const std::string whole = row_header() + row_text(a_row());
+  const std::string whole = row_header({}) + row_text(a_row());
   const std::string text = whole + row_text(a_row());
   for (std::size_t length = whole.size(); length < text.size(); ++length) {
     const auto file = parse_rows(std::string_view{text}.substr(0, length), "f", Task{});
@@ -58,7 +58,7 @@ TEST(TrialRowTest, ALineThatWasNeverFinishedIsLeftOut) {
 TEST(TrialRowTest, AnIntervalThatTheTrialDoesNotHaveIsRefused) {
   TrialRow row = a_row();
   row.ask.stronger = row.outcome.chosen = 2;
-  const std::string text = row_header() + row_text(row);
+  const std::string text = row_header({}) + row_text(row);
   EXPECT_FALSE(parse_rows(text, "f", Task{}));
   const auto file = parse_rows(text, "f", Task{.intervals = 3});
   ASSERT_TRUE(file) << file.error().text;
@@ -67,14 +67,14 @@ TEST(TrialRowTest, AnIntervalThatTheTrialDoesNotHaveIsRefused) {
 
 TEST(TrialRowTest, AnotherTableOrAChangedAnswerIsRefused) {
   EXPECT_FALSE(parse_rows("level_ln\tcorrect\n", "f", Task{}));
-  std::string text = row_header() + row_text(a_row());
+  std::string text = row_header({}) + row_text(a_row());
   const std::size_t at = text.find("\t1\t-2\t");
   ASSERT_NE(at, std::string::npos);
   text[at + 1] = '0';  // correct
   const auto file = parse_rows(text, "f", Task{});
   ASSERT_FALSE(file);
   EXPECT_NE(file.error().text.find("line 2"), std::string::npos);
-  EXPECT_FALSE(parse_rows(row_header() + "1\t2\n", "f", Task{}));
+  EXPECT_FALSE(parse_rows(row_header({}) + "1\t2\n", "f", Task{}));
 }
 
 }  // namespace

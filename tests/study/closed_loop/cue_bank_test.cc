@@ -111,7 +111,7 @@ TEST(CueBankTest, SessionsFillItBothWaysRound) {
                                           .up = "delay_ms: 1",
                                           .down = "delay_ms: 1",
                                           .grip = "mid"});
-  const Judgement judgement = judgement_for(*session, 0.15, 0);
+  const Judgement judgement = judgement_for(*session, {}, 0.15, 0);
   const CueBank bank = bank_of(*session,
                                judgement,
                                {.intervals = 3},

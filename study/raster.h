@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "common/core/place.h"
+#include "study/study_file.h"
+
+/// How somebody goes over the area of a search who leaves nothing out. Pure.
+namespace palp::study {
+
+/// Middles of equal squares, in rows that are gone to and fro. As few as there may be with no point
+/// of the area farther than `within` from the nearest one.
+[[nodiscard]] std::vector<Place> raster(const SearchArea& area);
+
+/// From the first one to the last [m].
+[[nodiscard]] double raster_length(const SearchArea& area);
+
+}  // namespace palp::study
