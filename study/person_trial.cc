@@ -29,6 +29,9 @@ void PersonTrial::begin_anew(PersonNotice why) noexcept {
   trial_.reset();
   notice_ = why;
   stage_ = PersonStage::Press;
+  stood_.reset();
+  path_ = touched_ = 0;
+  touching_ = 0;
 }
 
 void PersonTrial::tick(TimePoint now, const SiteNews& news, std::optional<std::size_t> answer) {
@@ -45,6 +48,7 @@ void PersonTrial::tick(TimePoint now, const SiteNews& news, std::optional<std::s
 }
 
 void PersonTrial::step(TimePoint now, const SiteNews& news, std::optional<std::size_t> answer) {
+  if (stage_ == PersonStage::Touch && plan_.hidden) follow(news);
   trial_->tick(now,
                {.force = news.force,
                 .contact = news.contact_force > kContact,
@@ -58,18 +62,35 @@ void PersonTrial::step(TimePoint now, const SiteNews& news, std::optional<std::s
   }
   stage_ = next;
   if (stage_ == PersonStage::Travel) {
-    place_ = trial_->by_decoy(now) ? plan_.decoy : plan_.places[trial_->interval()];
+    place_ = StagePlace{trial_->by_decoy(now) ? plan_.decoy : plan_.places[trial_->interval()]};
+  } else if (came && plan_.hidden) {
+    place_->reach = plan_.hidden->reach;
   }
 }
 
+/// How the tip goes about a search.
+void PersonTrial::follow(const SiteNews& news) noexcept {
+  path_ += distance(news.stands, stood_.value_or(news.stands));
+  stood_ = news.stands;
+  if (news.contact_force <= kContact) return;
+  touched_ += news.contact_force;
+  ++touching_;
+}
+
 TrialOutcome PersonTrial::outcome(TimePoint now) const {
-  return {.chosen = *trial_->answer(),
-          .onset = 0,
-          .duration = seconds(now - *offered_at_),
-          .response_time = seconds(trial_->response_time()),
-          .taps = trial_->taps(),
-          .force_max = trial_->force_max(),
-          .contact = seconds(trial_->contact())};
+  TrialOutcome out{.chosen = *trial_->answer(),
+                   .onset = 0,
+                   .duration = seconds(now - *offered_at_),
+                   .response_time = seconds(trial_->response_time()),
+                   .taps = trial_->taps(),
+                   .force_max = trial_->force_max(),
+                   .contact = seconds(trial_->contact())};
+  if (!plan_.hidden) return out;
+  out.error = distance(stood_.value_or(plan_.places.front()), plan_.hidden->axis);
+  out.chosen = out.error <= plan_.hidden->within ? 0 : 1;
+  out.path = path_;
+  out.force_mean = touching_ > 0 ? touched_ / static_cast<double>(touching_) : 0;
+  return out;
 }
 
 }  // namespace palp::study

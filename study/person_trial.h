@@ -21,6 +21,20 @@ struct SiteNews {
   Place stands{};          ///< of the stage, as last heard
 };
 
+/// Where the stage is to stand.
+struct StagePlace {
+  Place place{};
+  double reach{};  ///< [m], to all sides, by which the hand may leave it; 0: it stays there
+  friend bool operator==(const StagePlace&, const StagePlace&) = default;
+};
+
+/// What is searched for.
+struct HiddenAxis {
+  Place axis{};
+  double reach{};   ///< [m], of the area to all sides of where the search begins
+  double within{};  ///< [m], of the axis: found
+};
+
 /// A trial as it is to be given at real sites.
 struct PersonTrialPlan {
   std::vector<Place> places{};  ///< of each interval
@@ -29,6 +43,7 @@ struct PersonTrialPlan {
   int taps{1};
   bool practice{};
   TrialTimes times{};
+  std::optional<HiddenAxis> hidden{};  ///< a search; `places` is the middle of its area
 };
 
 /// What a participant is asked to do.
@@ -63,7 +78,11 @@ class PersonTrial {
   /// From 0: the one touched now, or travelled to.
   [[nodiscard]] std::size_t interval() const noexcept { return trial_ ? trial_->interval() : 0; }
   /// Where the stage is to stand; nothing: wherever it stands.
-  [[nodiscard]] std::optional<Place> place() const noexcept { return place_; }
+  [[nodiscard]] std::optional<StagePlace> place() const noexcept { return place_; }
+  /// An answer would count now.
+  [[nodiscard]] bool asks() const noexcept {
+    return stage_ == PersonStage::Answer || (stage_ == PersonStage::Touch && plan_.hidden);
+  }
   [[nodiscard]] int taps_wanted() const noexcept { return plan_.taps; }  ///< of an interval
   /// How often it was begun.
   [[nodiscard]] std::size_t attempts() const noexcept { return attempts_; }
@@ -74,13 +93,19 @@ class PersonTrial {
  private:
   void begin_anew(PersonNotice why) noexcept;
   void step(TimePoint now, const SiteNews& news, std::optional<std::size_t> answer);
+  void follow(const SiteNews& news) noexcept;
 
   PersonTrialPlan plan_;
   std::optional<Trial> trial_;  ///< under way
   std::optional<TimePoint> offered_at_;
   PersonStage stage_{PersonStage::Press};
   PersonNotice notice_{PersonNotice::None};
-  std::optional<Place> place_;
+  std::optional<StagePlace> place_;
+  // Of a search.
+  std::optional<Place> stood_;  ///< a tick before
+  double path_{};               ///< [m]
+  double touched_{};            ///< [N], sum over the ticks in contact
+  std::size_t touching_{};      ///< those
   std::size_t attempts_{};
 };
 

@@ -37,7 +37,7 @@ void Trial::explore(TimePoint now, const TrialInput& in) noexcept {
     ++taps_now_;
   }
   touching_ = in.contact;
-  const bool enough = taps_now_ >= taps_wanted_ && !in.contact;
+  const bool enough = !times_.searches && taps_now_ >= taps_wanted_ && !in.contact;
   if (!enough && now - entered_at_ < times_.explore_max) return;
   touching_ = false;
   if (interval_ + 1 < intervals_) {
@@ -46,7 +46,15 @@ void Trial::explore(TimePoint now, const TrialInput& in) noexcept {
     enter(TrialStage::Travel, now);
   } else {
     enter(TrialStage::Answer, now);
+    if (!times_.searches) asked_at_ = now;
   }
+}
+
+void Trial::hear(TimePoint now, const TrialInput& in) noexcept {
+  if (!in.answer || *in.answer >= choices_) return;
+  answer_ = in.answer;
+  response_time_ = now - asked_at_;
+  enter(practice_ ? TrialStage::Told : TrialStage::Done, now);
 }
 
 void Trial::tick(TimePoint now, const TrialInput& in) noexcept {
@@ -54,21 +62,21 @@ void Trial::tick(TimePoint now, const TrialInput& in) noexcept {
     began_at_ = entered_at_ = last_ = now;
   }
   // Who answers may have let go: a button is pressed by the same hand.
-  const bool moves = stage_ == TrialStage::Travel || stage_ == TrialStage::Explore;
+  const bool moves =
+      stage_ == TrialStage::Travel || (stage_ == TrialStage::Explore && !times_.searches);
   if (!in.pedal && moves) enter(TrialStage::Ended, now);
   switch (stage_) {
     case TrialStage::Travel:
-      if (now - entered_at_ >= times_.travel) enter(TrialStage::Explore, now);
+      if (now - entered_at_ < times_.travel) break;
+      enter(TrialStage::Explore, now);
+      asked_at_ = now;
       break;
     case TrialStage::Explore:
       explore(now, in);
+      if (times_.searches) hear(now, in);
       break;
     case TrialStage::Answer:
-      if (in.answer && *in.answer < choices_) {
-        answer_ = in.answer;
-        response_time_ = now - entered_at_;
-        enter(practice_ ? TrialStage::Told : TrialStage::Done, now);
-      }
+      hear(now, in);
       break;
     case TrialStage::Told:
       if (now - entered_at_ >= times_.told) enter(TrialStage::Done, now);

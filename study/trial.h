@@ -21,6 +21,9 @@ struct TrialTimes {
   Duration travel{std::chrono::milliseconds{1500}};
   Duration explore_max{std::chrono::seconds{8}};
   Duration told{std::chrono::seconds{1}};
+  /// The hand goes where it likes, however often it is let go of, and the answer comes while it
+  /// explores; after `explore_max` it is asked for.
+  bool searches{};
 };
 
 /// What happened since the last tick.
@@ -33,7 +36,7 @@ struct TrialInput {
 
 /// One trial as a state machine: it moves only in tick(now), and knows neither
 /// device nor screen. Counts taps by contacts that end. An answer counts in TrialStage::Answer
-/// only, and if there is such a choice. A value.
+/// only, of a search in TrialStage::Explore too, and if there is such a choice. A value.
 class Trial {
  public:
   /// `intervals` >= 1. `taps` >= 1 of an interval end it, once out of the tissue, or explore_max
@@ -53,6 +56,7 @@ class Trial {
   /// First half of a travel: the stage makes for the decoy.
   [[nodiscard]] bool by_decoy(TimePoint now) const noexcept;
   [[nodiscard]] std::optional<std::size_t> answer() const noexcept { return answer_; }
+  /// From the question on; of a search from its begin.
   [[nodiscard]] Duration response_time() const noexcept { return response_time_; }
   [[nodiscard]] int taps() const noexcept { return taps_; }
   [[nodiscard]] int taps_of_interval() const noexcept { return taps_now_; }  ///< of the one now
@@ -63,6 +67,7 @@ class Trial {
  private:
   void enter(TrialStage stage, TimePoint now) noexcept;
   void explore(TimePoint now, const TrialInput& in) noexcept;
+  void hear(TimePoint now, const TrialInput& in) noexcept;
 
   std::size_t intervals_;
   std::size_t choices_;
@@ -73,6 +78,7 @@ class Trial {
   std::size_t interval_{};
   std::optional<TimePoint> began_at_;
   TimePoint entered_at_{};
+  TimePoint asked_at_{};
   TimePoint last_{};
   bool touching_{};
   int taps_{};          ///< of all intervals

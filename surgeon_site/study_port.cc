@@ -1,5 +1,6 @@
 #include "surgeon_site/study_port.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/config/json.h"
@@ -64,7 +65,8 @@ void StudyPort::obey(const std::string& message,
   if (said.contains("place")) {
     const auto x = length_of(said["place"].at_or_null("x_mm"));
     const auto y = length_of(said["place"].at_or_null("y_mm"));
-    if (x && y) hand_.places().put({.place = {*x, *y}, .wanted = true});
+    const auto reach = length_of(said["place"].at_or_null("reach_mm")).value_or(0);
+    if (x && y) hand_.places().put({{*x, *y}, std::max(0.0, reach), ++wishes_});
   }
   if (said.contains("show")) (void)screen_.shown.try_enqueue(said["show"].dump());
   const auto code = said.at_or_null("note").number();

@@ -21,7 +21,8 @@ namespace palp::surgeon {
 ///                    {"page": "http://..."}                                           once
 ///                    {"answer": 2, "trial": 5, "at_ns"}    of the page
 ///                    {"answer": 2, "at_ns"}                of a button, to the trial that asks
-///     study to site  {"place": {"x_mm", "y_mm"}}      where the stage is to stand
+///     study to site  {"place": {"x_mm", "y_mm", "reach_mm"}}      where the stage is to stand, and
+///                    how far to all sides the hand may leave that; no reach: not at all
 ///                    {"show": {...}}                  for the participant's page, unread here
 ///                    {"note": 56, "detail": 5, "at_ns"}        a note of a study's (notes.h)
 ///
@@ -53,6 +54,7 @@ class StudyPort {
   io::MessagePipe pipe_;
   PlacedHand hand_;
   monitor::StudyScreen screen_;
+  std::uint64_t wishes_{};  ///< for places so far
 };
 
 }  // namespace palp::surgeon

@@ -43,8 +43,8 @@ std::size_t block_of(const Study& study, const TrialPlace& place) {
 
 }  // namespace
 
-Person::Person(const Study& study, const PersonSetting& setting, LevelCurves curves)
-    : study_{study}, setting_{setting}, curves_{std::move(curves)}, tray_{make_tray(study)} {}
+Person::Person(const Study& study, const PersonSetting& setting, LevelCurves curves, Tray tray)
+    : study_{study}, setting_{setting}, curves_{std::move(curves)}, tray_{std::move(tray)} {}
 
 Result<std::unique_ptr<Person>> Person::make(const Study& study, const PersonSetting& setting) {
   if (study.asks == StudyTask::Bias) {
@@ -59,7 +59,9 @@ Result<std::unique_ptr<Person>> Person::make(const Study& study, const PersonSet
   }
   auto curves = LevelCurves::make(study);
   if (!curves) return tl::unexpected(curves.error());
-  return std::unique_ptr<Person>{new Person{study, setting, std::move(*curves)}};
+  auto tray = make_tray(study);
+  if (!tray) return tl::unexpected(tray.error());
+  return std::unique_ptr<Person>{new Person{study, setting, std::move(*curves), std::move(*tray)}};
 }
 
 Person::~Person() {
@@ -90,7 +92,8 @@ Result<void> Person::meet(const TrialPlace& place) {
   auto session = SiteSession::start(study_.conditions[place.condition],
                                     {.programs = setting_.programs,
                                      .work = work_,
-                                     .tissue = tray_csv(tray_, study_, curves_),
+                                     .tissue = tissue_text(tray_, study_, curves_),
+                                     .changes_delay = study_.task.delays,
                                      .traces = free_traces(folder, block_of(study_, place)),
                                      .hand = setting_.hand});
   if (!session) return tl::unexpected(session.error());
@@ -111,16 +114,26 @@ Result<void> Person::rest() {
   return {};
 }
 
+PersonTrialPlan Person::plan_of(const TrialPlace& place, const TrialAsk& ask) const {
+  PersonTrialPlan plan{.places = places_of(tray_, study_, ask),
+                       .choices = choices(study_.task),
+                       .decoy = tray_.decoys[ask.decoy % tray_.decoys.size()],
+                       .taps = study_.conditions[place.condition].taps,
+                       .practice = ask.kind == TrialKind::Practice};
+  plan.times.travel = from_seconds(study_.travel);
+  if (study_.task.places == 0) return plan;
+  plan.choices = 1;
+  plan.times.searches = true;
+  plan.times.explore_max = from_seconds(study_.search.limit);
+  plan.hidden = {.axis = axis_of(tray_, ask.level),
+                 .reach = study_.search.side / 2,
+                 .within = study_.search.within};
+  return plan;
+}
+
 Result<TrialOutcome> Person::answer(const TrialPlace& place, const TrialAsk& ask) {
   if (auto met = meet(place); !met) return tl::unexpected(met.error());
-  TrialTimes times;
-  times.travel = from_seconds(study_.travel);
-  PersonTrial trial{{.places = places_of(tray_, study_, ask),
-                     .choices = static_cast<std::size_t>(study_.task.intervals),
-                     .decoy = tray_.decoys[ask.decoy % tray_.decoys.size()],
-                     .taps = study_.conditions[place.condition].taps,
-                     .practice = ask.kind == TrialKind::Practice,
-                     .times = times}};
+  PersonTrial trial{plan_of(place, ask)};
   ++trials_;
   session_->note(NoteCode::StudyTrial, static_cast<double>(ask.number + 1), clock_.now());
   return give(ask, trial);
@@ -128,7 +141,8 @@ Result<TrialOutcome> Person::answer(const TrialPlace& place, const TrialAsk& ask
 
 Result<TrialOutcome> Person::give(const TrialAsk& ask, PersonTrial& trial) {
   std::string shown;
-  std::optional<Place> sent;
+  std::optional<StagePlace> sent;
+  const std::vector<Stimulus> stimuli = stimuli_of(ask, study_.task);
   PersonStage before = trial.stage();
   std::optional<SiteAnswer> last;
   while (true) {
@@ -137,21 +151,22 @@ Result<TrialOutcome> Person::give(const TrialAsk& ask, PersonTrial& trial) {
     const TimePoint now = clock_.now();
     std::optional<std::size_t> chosen;
     const auto heard = session_->take_answer();
-    const bool asks = trial.stage() == PersonStage::Answer;
-    if (heard && asks && (heard->trial == trials_ || heard->trial == 0)) {
+    if (heard && trial.asks() && (heard->trial == trials_ || heard->trial == 0)) {
       last = heard;
       chosen = heard->choice - 1;
     }
     trial.tick(now, session_->news(), chosen);
     if (trial.place() != sent) session_->send_place(*(sent = trial.place()));
+    if (trial.stage() == PersonStage::Travel) session_->delay(stimuli[trial.interval()].delay);
     const PersonStage stage = std::exchange(before, trial.stage());
-    const bool answered = stage == PersonStage::Answer && trial.stage() != PersonStage::Answer;
-    if (answered) session_->note(NoteCode::StudyAnswer, last->choice, last->at);
+    const bool told = trial.stage() == PersonStage::Told || trial.stage() == PersonStage::Done;
+    if (told && stage != PersonStage::Told)
+      session_->note(NoteCode::StudyAnswer, last->choice, last->at);
     if (stage != PersonStage::Touch && trial.stage() == PersonStage::Touch) {
       session_->note(NoteCode::StudyInterval, static_cast<double>(trial.interval() + 1), now);
     }
     if (trial.stage() == PersonStage::Done) return trial.outcome(now);
-    const bool right = last && last->choice == ask.stronger + 1;
+    const bool right = told && trial.outcome(now).chosen == ask.stronger;
     std::string view =
         trial_view(study_,
                    ask,

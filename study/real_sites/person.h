@@ -40,9 +40,10 @@ class Person {
   [[nodiscard]] Result<TrialOutcome> answer(const TrialPlace& place, const TrialAsk& ask);
 
  private:
-  Person(const Study& study, const PersonSetting& setting, LevelCurves curves);
+  Person(const Study& study, const PersonSetting& setting, LevelCurves curves, Tray tray);
   [[nodiscard]] Result<void> meet(const TrialPlace& place);
   [[nodiscard]] Result<void> rest();
+  [[nodiscard]] PersonTrialPlan plan_of(const TrialPlace& place, const TrialAsk& ask) const;
   [[nodiscard]] Result<TrialOutcome> give(const TrialAsk& ask, PersonTrial& trial);
 
   Study study_;

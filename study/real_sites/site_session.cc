@@ -1,10 +1,13 @@
 #include "study/real_sites/site_session.h"
 
+#include <filesystem>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "common/config/json.h"
 #include "common/config/report.h"
+#include "common/core/conventions.h"
 #include "common/core/whole_file.h"
 
 namespace palp::study {
@@ -18,11 +21,13 @@ constexpr Duration kStart = seconds{20};
 constexpr Duration kLook = milliseconds{20};
 constexpr Duration kEnd = seconds{10};
 
-/// The last line that a program said: its reason, where it has ended.
-std::string last_line(const std::string& log) {
+/// The reason that a program gave as it ended, and nothing of what it said before: that names
+/// forces, places, the link.
+std::string reason_in(const std::string& log) {
   std::string text = read_whole_file(log).value_or(std::string{});
   while (!text.empty() && text.back() == '\n') text.pop_back();
-  return text.substr(text.rfind('\n') + 1);
+  const std::string line = text.substr(text.rfind('\n') + 1);
+  return line.starts_with("palp-") ? ": " + line : "";
 }
 
 /// What stands behind "listening on ", once it is there.
@@ -49,6 +54,23 @@ Result<void> write_inputs(const Condition& condition, const SiteSetting& setting
     }
   }
   return {};
+}
+
+/// Nobody is to read them while trials are given.
+void forget_inputs(const SiteSetting& setting) {
+  for (const char* const name : {"/tray.csv", "/patient.textproto", "/surgeon.textproto"}) {
+    std::error_code ignored;
+    std::filesystem::remove(setting.work + name, ignored);
+  }
+}
+
+/// Where a program listens, once it says so; nothing: it does not start.
+std::optional<std::string> listens(io::ChildProgram& program, const std::string& log) {
+  for (Duration waited{}; waited < kStart && program.running(); waited += kLook) {
+    if (auto address = address_in(log)) return address;
+    std::this_thread::sleep_for(kLook);
+  }
+  return std::nullopt;
 }
 
 std::vector<std::string> patient_command(const Condition& condition, const SiteSetting& setting) {
@@ -106,26 +128,58 @@ Result<SiteSession> SiteSession::start(const Condition& condition, const SiteSet
   const std::string log = setting.work + "/surgeon.log";
   auto patient = io::ChildProgram::start(patient_command(condition, setting), patient_log);
   if (!patient) return tl::unexpected(patient.error());
-  std::optional<std::string> peer;
-  for (Duration waited{}; waited < kStart && !peer && patient->running(); waited += kLook) {
-    pipes->first.wait(kLook);
-    peer = address_in(patient_log);
+  std::optional<std::string> peer = listens(*patient, patient_log);
+  if (!peer) return fail_to_reach("the patient's site does not start" + reason_in(patient_log));
+  std::optional<Relay> relay;
+  if (setting.changes_delay) {
+    auto started = start_relay(setting, *peer);
+    if (!started) return tl::unexpected(started.error());
+    relay = std::move(*started);
+    peer = relay->address;
   }
-  if (!peer) return fail_to_reach("the patient's site does not start: " + last_line(patient_log));
   auto surgeon =
       io::ChildProgram::start(surgeon_command(condition, setting, *peer), log, &pipes->second);
   if (!surgeon) return tl::unexpected(surgeon.error());
   SiteSession session{std::move(*patient), std::move(*surgeon), std::move(pipes->first)};
   session.log_ = log;
+  session.relay_ = std::move(relay);
   for (Duration waited{}; waited < kStart && session.page_.empty(); waited += kLook) {
     const bool running = session.surgeon_.running();
     session.listen();  // also to what a program said before it ended
     if (!running) break;
   }
   if (session.page_.empty()) {
-    return fail_to_reach("the surgeon's site does not start: " + last_line(log));
+    return fail_to_reach("the surgeon's site does not start" + reason_in(log));
   }
+  forget_inputs(setting);
   return session;
+}
+
+Result<SiteSession::Relay> SiteSession::start_relay(const SiteSetting& setting,
+                                                    const std::string& patient) {
+  const std::string log = setting.work + "/relay.log";
+  const std::string control = setting.work + "/relay";
+  auto program = io::ChildProgram::start({setting.programs + "/palp-netem",
+                                          "relay",
+                                          "--listen",
+                                          "127.0.0.1:0",
+                                          "--forward",
+                                          patient,
+                                          "--control",
+                                          "unix:" + control},
+                                         log);
+  if (!program) return tl::unexpected(program.error());
+  const auto address = listens(*program, log);
+  if (!address) return fail_to_reach("the relay does not start" + reason_in(log));
+  auto line = RelayLine::connect(control);
+  if (!line) return tl::unexpected(line.error());
+  return Relay{std::move(*program), std::move(*line), *address};
+}
+
+void SiteSession::delay(double milliseconds) {
+  if (!relay_ || milliseconds == delay_) return;
+  delay_ = milliseconds;
+  (void)relay_->line.delay(milliseconds);
 }
 
 void SiteSession::listen() {
@@ -143,9 +197,11 @@ void SiteSession::hear(const std::string& message) {
   if (const auto page = said.at_or_null("page").text()) {
     page_ = *page;
   } else if (said.contains("answer")) {
-    answer_ = {.trial = static_cast<std::uint32_t>(number("trial")),
-               .choice = static_cast<std::uint32_t>(number("answer")),
-               .at = at};
+    const SiteAnswer answer{.trial = static_cast<std::uint32_t>(number("trial")),
+                            .choice = static_cast<std::uint32_t>(number("answer")),
+                            .at = at};
+    // The first one counts, and only a whole number is one.
+    if (!answer_ && number("answer") == answer.choice) answer_ = answer;
   } else if (said.contains("engaged")) {
     news_ = {.engaged = said["engaged"].truth().value_or(false),
              .force = number("force_n"),
@@ -158,9 +214,12 @@ std::optional<SiteAnswer> SiteSession::take_answer() noexcept {
   return std::exchange(answer_, std::nullopt);
 }
 
-void SiteSession::send_place(const Place& place) {
+void SiteSession::send_place(const StagePlace& place) {
   if (!pipe_) return;
-  (void)pipe_->send(Json{{"place", Json{{"x_mm", place.x * 1e3}, {"y_mm", place.y * 1e3}}}}.dump());
+  const Json there{{"x_mm", place.place.x / kMillimetre},
+                   {"y_mm", place.place.y / kMillimetre},
+                   {"reach_mm", place.reach / kMillimetre}};
+  (void)pipe_->send(Json{{"place", there}}.dump());
 }
 
 void SiteSession::show(const std::string& view) {
@@ -176,8 +235,9 @@ void SiteSession::note(record::NoteCode code, double detail, TimePoint at) {
 }
 
 std::optional<Error> SiteSession::fault() {
-  if (!surgeon_.running()) return Error{"the surgeon's site has ended: " + last_line(log_)};
+  if (!surgeon_.running()) return Error{"the surgeon's site has ended" + reason_in(log_)};
   if (!patient_.running()) return Error{"the patient's site has ended"};
+  if (relay_ && !relay_->program.running()) return Error{"the relay between the sites has ended"};
   return std::nullopt;
 }
 
@@ -186,6 +246,7 @@ void SiteSession::stop() {
   (void)surgeon_.ends_within(kEnd);
   surgeon_.stop(kEnd);
   patient_.stop(kEnd);
+  if (relay_) relay_->program.stop(kEnd);
 }
 
 }  // namespace palp::study

@@ -1,5 +1,7 @@
 #include "study/person_trial.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace palp::study {
@@ -20,7 +22,7 @@ struct Rig {
   void pass(Duration span, std::optional<std::size_t> answer = std::nullopt) {
     for (const TimePoint end = now + span; now < end; now += kMs) {
       trial.tick(now, news, answer);
-      if (trial.place() && !stuck) news.stands = *trial.place();
+      if (trial.place() && !stuck) news.stands = trial.place()->place;
     }
   }
   void tap() {
@@ -50,22 +52,22 @@ TEST(PersonTrialTest, WaitsForAHandThatIsEngagedAndClear) {
   rig.news.contact_force = 0;
   rig.pass(kMs);
   EXPECT_EQ(rig.trial.stage(), PersonStage::Travel);
-  EXPECT_EQ(rig.trial.place(), kDecoy);
+  EXPECT_EQ(rig.trial.place(), StagePlace{kDecoy});
 }
 
 TEST(PersonTrialTest, GoesByTheDecoyToEachPlaceAndAsks) {
   Rig rig;
   rig.news.engaged = true;
   rig.pass(1000 * kMs);
-  EXPECT_EQ(rig.trial.place(), kFirst);
+  EXPECT_EQ(rig.trial.place(), StagePlace{kFirst});
   rig.pass(505 * kMs);
   EXPECT_EQ(rig.trial.stage(), PersonStage::Touch);
   rig.tap();
   EXPECT_EQ(rig.trial.stage(), PersonStage::Travel);
   EXPECT_EQ(rig.trial.interval(), 1U);
-  EXPECT_EQ(rig.trial.place(), kDecoy);
+  EXPECT_EQ(rig.trial.place(), StagePlace{kDecoy});
   rig.pass(1503 * kMs);
-  EXPECT_EQ(rig.trial.place(), kSecond);
+  EXPECT_EQ(rig.trial.place(), StagePlace{kSecond});
   rig.tap();
   EXPECT_EQ(rig.trial.stage(), PersonStage::Answer);
   rig.news.engaged = false;  // the same hand presses a button
@@ -114,6 +116,44 @@ TEST(PersonTrialTest, AnAnswerBeforeTheQuestionIsNone) {
   rig.pass(1505 * kMs, 0);
   rig.to_the_question();
   EXPECT_EQ(rig.trial.stage(), PersonStage::Answer);
+}
+
+TEST(PersonTrialTest, ASearchHasTheHandsOwnWayAndIsJudgedByWhereTheTipStands) {
+  Rig rig;
+  TrialTimes times;
+  times.searches = true;
+  times.explore_max = std::chrono::seconds{60};
+  const Place axis{kFirst.x + 12e-3, kFirst.y - 5e-3};
+  rig.trial = PersonTrial{{.places = {kFirst},
+                           .choices = 1,
+                           .decoy = kDecoy,
+                           .times = times,
+                           .hidden = HiddenAxis{axis, 20e-3, 8e-3}}};
+  rig.news.engaged = true;
+  rig.pass(1400 * kMs);
+  EXPECT_EQ(rig.trial.place(), StagePlace{kFirst});
+  EXPECT_FALSE(rig.trial.asks());
+  rig.pass(200 * kMs);
+  EXPECT_EQ(rig.trial.stage(), PersonStage::Touch);
+  EXPECT_EQ(rig.trial.place(), (StagePlace{kFirst, 20e-3}));
+  EXPECT_TRUE(rig.trial.asks());
+  rig.stuck = true;  // from here on the hand moves the stage
+  for (int i = 0; i < 16; ++i) {
+    rig.news.stands.x += 1e-3;
+    rig.news.contact_force = i % 2 == 0 ? 0.4 : 0.8;
+    rig.pass(kMs);
+  }
+  rig.news.contact_force = 0;
+  rig.news.engaged = false;  // who lets go searches on
+  rig.pass(100 * kMs);
+  EXPECT_EQ(rig.trial.stage(), PersonStage::Touch);
+  rig.pass(kMs, 0);
+  ASSERT_EQ(rig.trial.stage(), PersonStage::Done);
+  const TrialOutcome out = rig.trial.outcome(rig.now);
+  EXPECT_NEAR(out.error, std::hypot(4e-3, 5e-3), 1e-9);
+  EXPECT_EQ(out.chosen, 0U);
+  EXPECT_NEAR(out.path, 16e-3, 1e-9);
+  EXPECT_NEAR(out.force_mean, 0.6, 1e-9);
 }
 
 }  // namespace

@@ -136,5 +136,46 @@ TEST(TrialTest, PracticeShowsWhetherItWasRight) {
   EXPECT_EQ(rig.trial.stage(), TrialStage::Done);
 }
 
+TrialTimes search_times() {
+  TrialTimes times;
+  times.searches = true;
+  times.explore_max = std::chrono::seconds{30};
+  return times;
+}
+
+// However often it taps or lets go: only an answer ends a search, or the time.
+TEST(TrialTest, ASearchGoesOnUntilItIsAnswered) {
+  Rig rig{.trial = {1, 1, false, search_times(), 1}};
+  rig.pass(1501 * kMs);
+  rig.taps(5);
+  rig.pass(500 * kMs, {.pedal = false});
+  rig.taps(3);
+  EXPECT_EQ(rig.trial.stage(), TrialStage::Explore);
+  rig.pass(kMs, {.answer = 1});
+  EXPECT_EQ(rig.trial.stage(), TrialStage::Explore) << "there is one answer";
+  rig.pass(kMs, {.answer = 0});
+  EXPECT_EQ(rig.trial.stage(), TrialStage::Done);
+  EXPECT_EQ(rig.trial.taps(), 8);
+  EXPECT_NEAR(seconds(rig.trial.response_time()), 2.1, 0.01);
+}
+
+TEST(TrialTest, ASearchThatTakesTooLongIsAskedForItsPlace) {
+  Rig rig{.trial = {1, 1, true, search_times(), 1}};
+  rig.pass(1501 * kMs, {.pedal = true});
+  rig.pass(30'001 * kMs);
+  EXPECT_EQ(rig.trial.stage(), TrialStage::Answer);
+  rig.pass(500 * kMs, {.pedal = false});
+  rig.pass(kMs, {.answer = 0});
+  EXPECT_EQ(rig.trial.stage(), TrialStage::Told);
+  EXPECT_NEAR(seconds(rig.trial.response_time()), 30.5, 0.01);
+}
+
+TEST(TrialTest, ASearchIsGivenAgainWhereTheHandLetsGoOnTheWay) {
+  Rig rig{.trial = {1, 1, false, search_times(), 1}};
+  rig.pass(700 * kMs);
+  rig.pass(kMs, {.pedal = false});
+  EXPECT_EQ(rig.trial.stage(), TrialStage::Ended);
+}
+
 }  // namespace
 }  // namespace palp::study

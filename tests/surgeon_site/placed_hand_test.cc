@@ -29,7 +29,7 @@ TEST(PlacedHandTest, StandsWhereItIsWantedAndIsElseTheHand) {
   PlacedHand hand{given};
   const TimePoint now{std::chrono::seconds{5}};
   EXPECT_EQ(hand.read(now).place, (Place{1e-3, 2e-3}));
-  hand.places().put({.place = {-7e-3, 9e-3}, .wanted = true});
+  hand.places().put({.place = {-7e-3, 9e-3}, .number = 1});
   const test::RealtimeGuard guard;
   const HandState read = hand.read(now);
   hand.apply(0.7);
@@ -46,6 +46,27 @@ TEST(PlacedHandTest, StandsWhereItIsWantedAndIsElseTheHand) {
   EXPECT_EQ(given.shown, 1);
   EXPECT_EQ(hand.hand_facts().force_peak, 4);
   EXPECT_EQ(hand.progress().phase, 3U);
+}
+
+TEST(PlacedHandTest, MovesOnFromItsPlaceAsFarAsItMayLeaveIt) {
+  Given given;
+  PlacedHand hand{given};
+  const auto place = [&](const Place& own) {
+    given.state.place = own;
+    return hand.read({}).place;
+  };
+  const auto stands = [](const Place& is, const Place& wanted) {
+    EXPECT_LT(distance(is, wanted), 1e-12) << is.x << ' ' << is.y;
+  };
+  given.state.place = {50e-3, 3e-3};
+  hand.places().put({.place = {-7e-3, 9e-3}, .reach = 20e-3, .number = 1});
+  stands(place({50e-3, 3e-3}), {-7e-3, 9e-3});
+  stands(place({55e-3, -3e-3}), {-2e-3, 3e-3});
+  stands(place({90e-3, 3e-3}), {13e-3, 9e-3});  // the edge
+  stands(place({51e-3, 3e-3}), {-6e-3, 9e-3});
+  hand.places().put({.place = {1e-3, 1e-3}, .reach = 0, .number = 2});
+  stands(place({60e-3, 3e-3}), {1e-3, 1e-3});
+  stands(place({70e-3, 9e-3}), {1e-3, 1e-3});
 }
 
 }  // namespace

@@ -19,8 +19,9 @@ constexpr TimePoint kNow{std::chrono::seconds{50}};
 
 /// A hand that stands still.
 struct Still final : HapticDevice {
+  Place stands{1e-3, 2e-3};
   [[nodiscard]] HandFacts hand_facts() const noexcept override { return {}; }
-  HandState read(TimePoint /*now*/) noexcept override { return {.place = {1e-3, 2e-3}}; }
+  HandState read(TimePoint /*now*/) noexcept override { return {.place = stands}; }
   void apply(double /*force*/) noexcept override {}
   void show(const OperatorView& /*view*/) noexcept override {}
 };
@@ -67,6 +68,11 @@ TEST(StudyPortTest, TheStudySaysWhereTheHandStandsAndWhatIsShown) {
   EXPECT_TRUE(rig.look());
   EXPECT_NEAR(rig.place().x, -7e-3, 1e-12);
   EXPECT_NEAR(rig.place().y, 4.5e-3, 1e-12);
+  EXPECT_TRUE(rig.study->send(R"({"place":{"x_mm":10,"y_mm":0,"reach_mm":20}})"));
+  EXPECT_TRUE(rig.look());
+  EXPECT_NEAR(rig.place().x, 10e-3, 1e-12);
+  rig.hand.stands.x += 6e-3;
+  EXPECT_NEAR(rig.place().x, 16e-3, 1e-12) << "where it may, the hand moves on";
   std::string shown;
   ASSERT_TRUE(rig.port.screen().shown.try_dequeue(shown));
   EXPECT_EQ(shown, R"({"stage":"touch"})");

@@ -10,7 +10,7 @@ import { Picture } from './picture';
 import { Pilot } from './pilot';
 import { Section } from './section';
 import { Sound } from './sound';
-import { Answering, ForceBar, StudyPage, type StudyView } from './study';
+import { Answering, Area, ForceBar, StudyPage, type StudyView } from './study';
 import { wordsOf } from './words';
 import './style.css';
 
@@ -62,7 +62,7 @@ const client: Client = new Client(token(), {
   ended: refused => { pilot.up(); model.refused = refused && !model.greeting; },
 });
 const pilot = new Pilot(client, model);
-const forceBar = new ForceBar();
+const forceBar = new ForceBar(), searchArea = new Area();
 const answering = new Answering((trial, choice) => {
   void client.call('study/answer', { trial, choice }).then(answer => { if (!answer.ok) say(answer.why, 'warn'); });
 });
@@ -268,7 +268,7 @@ function Page() {
   if (model.inStudy) {
     return <div class={'page' + (stale ? ' stale' : '')}>
       <Bar stale={stale} />
-      {study && <StudyPage model={model} pilot={pilot} view={study} answering={answering} bar={forceBar} />}
+      {study && <StudyPage model={model} pilot={pilot} view={study} answering={answering} bar={forceBar} area={searchArea} />}
     </div>;
   }
   return <div class={'page' + (stale ? ' stale' : '')}>

@@ -12,6 +12,7 @@ export interface StudyView {
   interval: number; intervals: number; taps: number;
   instructions: string; question: string; choices: string[]; notice: string;
   right?: boolean; seconds?: number; draws_force?: boolean;
+  side_mm?: number;  // of the area of a search
 }
 
 /** The force at the tip, and the greatest of each touch until the next begins. */
@@ -37,7 +38,10 @@ export class Answering {
   private given = 0;
   constructor(private readonly answer: (trial: number, choice: number) => void) {}
 
-  awaits(view: StudyView | undefined): boolean { return view?.stage === 'answer' && view.trial !== this.given; }
+  awaits(view: StudyView | undefined): boolean {
+    const asks = view?.stage === 'answer' || (view?.stage === 'touch' && view.side_mm !== undefined);
+    return asks && view.trial !== this.given;
+  }
 
   /** From 1; more than there are, or at another time, is none. */
   choose(view: StudyView | undefined, choice: number): void {
@@ -53,13 +57,40 @@ export function promptOf(view: StudyView): string {
     case 'press': return 'Press the pad and hold.';
     case 'lift': return 'Lift: the tip must be out of the tissue.';
     case 'travel': return 'Keep holding, and wait.';
-    case 'touch': return `Tap the ${place}${place && ' '}place${view.taps > 1 ? ` ${view.taps} times` : ''}.`;
+    case 'touch': return view.side_mm ? 'Search the area, and say so when you are over something hard.' : `Tap the ${place}${place && ' '}place${view.taps > 1 ? ` ${view.taps} times` : ''}.`;
     case 'answer': return view.question;
     case 'told': return view.right ? 'Right.' : 'Wrong.';
     case 'rest': return `Rest: ${view.seconds} s. Then open the page that the operator names.`;
     case 'over': return 'It is over. Thank you.';
   }
   return '';
+}
+
+/** Where in the area of a search the tip is: it begins in the middle. */
+export class Area {
+  private trial = 0;
+  private origin: { x: number; y: number } | undefined;
+
+  /** [mm] from the middle; undefined: the search has not begun. */
+  see(view: StudyView, x: number, y: number): { x: number; y: number } | undefined {
+    if (view.trial !== this.trial || view.stage === 'travel') this.origin = undefined;
+    this.trial = view.trial;
+    if (!this.origin && view.stage === 'touch') this.origin = { x, y };
+    return this.origin && { x: x - this.origin.x, y: y - this.origin.y };
+  }
+}
+
+function FromAbove({ model, view, area }: { model: Model; view: StudyView; area: Area }) {
+  const side = view.side_mm!, s = model.status, half = side / 2;
+  const tip = s && area.see(view, model.tipX(s), model.tipY(s));
+  return <figure class="area">
+    <svg id="area" viewBox={`${-half - 2} ${-half - 2} ${side + 4} ${side + 4}`} role="img" aria-label="The area from above, and where the tip is"
+      data-x={tip?.x.toFixed(1)} data-y={tip?.y.toFixed(1)}>
+      <rect x={-half} y={-half} width={side} height={side} />
+      {tip && <circle cx={tip.x} cy={-tip.y} r={1.5} />}
+    </svg>
+    <figcaption>From above, {side.toFixed(0)} mm wide. Move <kbd>sideways</kbd>; with <kbd>Shift</kbd> up and down in this view.</figcaption>
+  </figure>;
 }
 
 /** The surface, the finger, and the hand that it draws. */
@@ -80,6 +111,12 @@ function paint(model: Model, pilot: Pilot, under: HTMLCanvasElement, over: HTMLC
   spring(g, w / 2, Y(model.hand(s)), w / 2, Y(pilot.from.tip + f.into) + 16, undefined, engaged);
 }
 
+/** What the places of a trial are called. */
+function placesOf(view: StudyView): string[] {
+  if (view.choices.length === view.intervals) return view.choices;
+  return Array.from({ length: view.intervals }, (_, i) => `number ${i + 1}`);
+}
+
 function Drawn({ model, bar }: { model: Model; bar: ForceBar }) {
   const { force, most } = bar.see(model.status ? model.contact(model.status) : 0);
   return <div class="drawn" id="drawn" data-most={most.toFixed(2)}>
@@ -88,7 +125,7 @@ function Drawn({ model, bar }: { model: Model; bar: ForceBar }) {
   </div>;
 }
 
-export function StudyPage({ model, pilot, view, answering, bar }: { model: Model; pilot: Pilot; view: StudyView; answering: Answering; bar: ForceBar }) {
+export function StudyPage({ model, pilot, view, answering, bar, area }: { model: Model; pilot: Pilot; view: StudyView; answering: Answering; bar: ForceBar; area: Area }) {
   const gives = view.trial > 0, awaits = answering.awaits(view);
   const share = view.count > 0 ? (view.place - 1) / view.count * 100 : 0;
   return <main class="study">
@@ -100,10 +137,11 @@ export function StudyPage({ model, pilot, view, answering, bar }: { model: Model
       {gives && <p class="progress" id="progress">{view.practice ? `Practice ${view.place}` : `Trial ${view.place} of ${view.count}`}</p>}
       {gives && <div class="gauge" aria-hidden="true"><i style={{ width: `${share}%` }} /></div>}
       <p class="prompt" id="prompt" role="status" data-stage={view.stage} data-trial={view.trial} data-interval={view.interval}>{promptOf(view)}</p>
-      {gives && view.intervals > 1 && <ol class="places" aria-label="Places of this trial">{view.choices.map((name, i) => {
+      {gives && view.intervals > 1 && <ol class="places" aria-label="Places of this trial">{placesOf(view).map((name, i) => {
         const now = i + 1 === view.interval && ['travel', 'touch'].includes(view.stage);
         return <li key={name} class={now ? 'now' : ''} aria-current={now ? 'step' : undefined}>{name}</li>;
       })}</ol>}
+      {gives && view.side_mm && <FromAbove model={model} view={view} area={area} />}
       {view.draws_force && <Drawn model={model} bar={bar} />}
       {view.notice && <p class="notice warn" id="notice">{view.notice}</p>}
       {gives && <div class="answers">{view.choices.map((name, i) =>

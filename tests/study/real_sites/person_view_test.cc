@@ -51,7 +51,7 @@ TEST(PersonViewTest, PracticeTellsWhetherItWasRight) {
   TimePoint now{};
   for (int i = 0; i < 40'000 && trial.stage() != PersonStage::Told; ++i) {
     now += std::chrono::milliseconds{1};
-    const Place stands = trial.place().value_or(Place{});
+    const Place stands = trial.place().value_or(StagePlace{}).place;
     trial.tick(now, {.engaged = true, .stands = stands}, std::size_t{1});
   }
   ASSERT_EQ(trial.stage(), PersonStage::Told);
@@ -70,6 +70,25 @@ TEST(PersonViewTest, TheForceIsDrawnWhereTheConditionSaysSo) {
   };
   EXPECT_EQ(draws(true), true);
   EXPECT_EQ(draws(false), false);
+}
+
+TEST(PersonViewTest, EachTaskHasItsQuestionAndItsAnswers) {
+  const std::string depths =
+      "ball { radius_mm: 8 ratio: 100 } depth { top_mm: 5 contrast_ln: 0.42 } depth { top_mm: 10 "
+      "contrast_ln: 0.13 } ";
+  const auto view_of = [](const std::string& task) {
+    return Json::parse(trial_view(study_of(task), {.level = 0.3}, at_the_start(), {.number = 1}));
+  };
+  const Json rank = view_of("task: \"rank\"");
+  ASSERT_EQ(rank["choices"].parts().size(), 6U);
+  EXPECT_EQ(rank["choices"].parts()[3].text(), "2 3 1");
+  EXPECT_EQ(rank["intervals"].number(), 3);
+  EXPECT_EQ(view_of("task: \"delay\"")["question"].text(), "Which place answered late?");
+  const Json search = view_of("task: \"locate\" " + depths);
+  EXPECT_EQ(search["choices"].parts().size(), 1U);
+  EXPECT_EQ(search["side_mm"].number(), 40);
+  EXPECT_EQ(search["intervals"].number(), 1);
+  EXPECT_FALSE(rank.contains("side_mm"));
 }
 
 }  // namespace

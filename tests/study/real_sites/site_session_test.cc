@@ -87,24 +87,60 @@ exec sleep 60
 }
 
 TEST(SiteSessionTest, TheConditionIsInWhatTheSitesRead) {
-  const StandIns programs{kListens, "printf '{\"page\":\"p\"}' >&3; exec sleep 60\n"};
+  // Its inputs are gone once it runs, for nobody is to read them while trials are given.
+  const StandIns programs{
+      kListens,
+      "cd \"$(dirname \"$0\")\"; for i in patient surgeon; do cp $i.textproto "
+      "$i.kept; done; cp tray.csv tray.kept; printf '{\"page\":\"p\"}' >&3; exec "
+      "sleep 60\n"};
   const Condition condition{.coupling = "wave",
                             .up = "delay_ms: 30",
                             .down = "delay_ms: 40",
                             .grip = "firm",
                             .feedback = Feedback::None};
   ASSERT_TRUE(SiteSession::start(condition, programs.setting()));
-  EXPECT_EQ(programs.read("patient.textproto"), "impairment {delay_ms: 30}\n");
-  EXPECT_EQ(programs.read("surgeon.textproto"),
+  EXPECT_EQ(programs.read("patient.kept"), "impairment {delay_ms: 30}\n");
+  EXPECT_EQ(programs.read("surgeon.kept"),
             "impairment {delay_ms: 40}\nforce_gate { force_max_n: 0 }\n");
+  EXPECT_EQ(programs.read("tray.kept"), "x");
+  for (const char* const gone : {"tray.csv", "patient.textproto", "surgeon.textproto"}) {
+    EXPECT_EQ(programs.read(gone), "") << gone;
+  }
+}
+
+// Two answers one after the other, and one that is no whole number.
+TEST(SiteSessionTest, TheFirstAnswerCounts) {
+  const StandIns programs{kListens, R"(
+printf '{"answer":1.7,"trial":9,"at_ns":76}' >&3
+printf '{"answer":2,"trial":9,"at_ns":77}' >&3
+printf '{"answer":1,"trial":9,"at_ns":78}' >&3
+printf '{"page":"http://here"}' >&3
+exec sleep 60
+)"};
+  auto session = SiteSession::start({.coupling = "mmt", .grip = "mid"}, programs.setting());
+  ASSERT_TRUE(session) << session.error().text;
+  const auto answer = session->take_answer();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->choice, 2U);
+}
+
+TEST(SiteSessionTest, ARelayThatDoesNotStartIsAReason) {
+  const StandIns programs{kListens, "exec sleep 60\n"};
+  SiteSetting setting = programs.setting();
+  setting.changes_delay = true;
+  const auto refused = SiteSession::start({}, setting);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text.find("relay"), std::string::npos) << refused.error().text;
 }
 
 TEST(SiteSessionTest, ASiteThatEndsIsQuoted) {
-  const StandIns none{"echo 'no such tissue'; exit 2\n", ""};
+  const StandIns none{"echo 'palp-patient: no such tissue'; exit 2\n", ""};
   const auto refused = SiteSession::start({}, none.setting());
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().text, "the patient's site does not start: no such tissue");
-  const StandIns brief{kListens, "printf '{\"page\":\"p\"}' >&3; echo 'had enough'\n"};
+  EXPECT_EQ(refused.error().text,
+            "the patient's site does not start: palp-patient: no such tissue");
+  const StandIns brief{kListens,
+                       "printf '{\"page\":\"p\"}' >&3; echo 'palp-surgeon: had enough'\n"};
   auto session = SiteSession::start({}, brief.setting());
   ASSERT_TRUE(session) << session.error().text;
   // A pipe that is closed makes nobody wait.
@@ -113,7 +149,18 @@ TEST(SiteSessionTest, ASiteThatEndsIsQuoted) {
     session->listen();
   }
   ASSERT_TRUE(session->fault());
-  EXPECT_EQ(session->fault()->text, "the surgeon's site has ended: had enough");
+  EXPECT_EQ(session->fault()->text, "the surgeon's site has ended: palp-surgeon: had enough");
+}
+
+// What a site says while it runs names forces, places and the link.
+TEST(SiteSessionTest, NoLineButAReasonIsQuoted) {
+  const StandIns brief{kListens, "printf '{\"page\":\"p\"}' >&3; echo 'ENGAGED rtt 20 ms'\n"};
+  auto session = SiteSession::start({}, brief.setting());
+  ASSERT_TRUE(session) << session.error().text;
+  const TimePoint until = io::SteadyClock{}.now() + std::chrono::seconds{9};
+  while (!session->fault() && io::SteadyClock{}.now() < until) session->listen();
+  ASSERT_TRUE(session->fault());
+  EXPECT_EQ(session->fault()->text, "the surgeon's site has ended");
 }
 
 }  // namespace
