@@ -79,14 +79,21 @@ double order_share(double first_step, double second_step) noexcept {
 double d_prime_at_jnd(const Task& task) noexcept {
   const bool of_two = task.intervals == 2 && !task.ranks && task.places == 0;
   if (task.two_sided || of_two) return std::sqrt(2.0) * kQuartile;
-  const double wanted = chance(task) + (1 - chance(task)) / 2;
+  // Asked for at every level of every cell of a grid: the last answer is kept.
+  thread_local Task known{};
+  thread_local double d_prime = 0;
+  const bool same =
+      known.intervals == task.intervals && known.ranks == task.ranks && known.places == task.places;
+  if (same && d_prime > 0) return d_prime;
+  const double wanted = (1 + chance(task)) / 2;
   double low = 0;
   double high = 2 * kTail;
   for (int i = 0; i < 60; ++i) {
     const double middle = (low + high) / 2;
     (told_share(task, middle) < wanted ? low : high) = middle;
   }
-  return (low + high) / 2;
+  known = task;
+  return d_prime = (low + high) / 2;
 }
 
 double answer_share(const Task& task, const ObserverTraits& traits, double level) noexcept {

@@ -50,21 +50,22 @@ double share_of(const CueBank::Differences& session,
   return forced_choice_share(d_primes);
 }
 
-/// The level at which a rising share is `wanted`; infinite beyond the bank.
+/// The least level at which the share rises above `wanted`; infinite beyond the bank. Where an
+/// interval told nothing the share is a guess's, which may well be above it: that is no rise.
 double level_of(const CueBank& bank, const Judgement& judgement, int taps, double wanted) {
-  double low = bank.levels.front();
-  double high = bank.levels.back();
-  if (banked_share(bank, judgement, taps, high) < wanted) {
-    return std::numeric_limits<double>::infinity();
+  double before = banked_share(bank, judgement, taps, bank.levels.front());
+  bool below = before < wanted;
+  for (std::size_t i = 1; i < bank.levels.size(); ++i) {
+    const double from = bank.levels[i - 1];
+    const double share = banked_share(bank, judgement, taps, bank.levels[i]);
+    if (before < wanted && share >= wanted) {
+      return from + (bank.levels[i] - from) * (wanted - before) / (share - before);
+    }
+    below = below || share < wanted;
+    before = share;
   }
-  if (banked_share(bank, judgement, taps, low) > wanted) {
-    return -std::numeric_limits<double>::infinity();
-  }
-  for (int i = 0; i < 50; ++i) {
-    const double middle = (low + high) / 2;
-    (banked_share(bank, judgement, taps, middle) < wanted ? low : high) = middle;
-  }
-  return (low + high) / 2;
+  const double beyond = std::numeric_limits<double>::infinity();
+  return below ? beyond : -beyond;
 }
 
 }  // namespace

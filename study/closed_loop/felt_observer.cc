@@ -97,8 +97,9 @@ Judgement judgement_of(double weber, double lapse, double own_gain) noexcept {
 
 Judgement judgement_for(const FeltSession& session, const Task& task, double weber, double lapse) {
   const std::vector<double> depth(static_cast<std::size_t>(session.taps()), kDepth);
+  // Of plain tissue made stiffer by so much: a ball's levels are contrasts of its own depths alone.
   const FeltTrial felt =
-      session.touch({.places = {{-kGainReach / 2, depth}, {kGainReach / 2, depth}}});
+      session.touch({.places = {{-kGainReach / 2, depth}, {kGainReach / 2, depth}}, .plain = true});
   const FeltInterval& soft = felt.intervals[0];
   const FeltInterval& stiff = felt.intervals[1];
   Judgement out =

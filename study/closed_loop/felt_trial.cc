@@ -187,6 +187,7 @@ class Listener {
 struct FeltSession::Parts {
   lab::Scenario scenario;
   LevelCurves curves;
+  LevelCurves plain{};
 
   /// `resisted`: the hand is given a force, and aims the deeper.
   [[nodiscard]] lab::Scenario with(const FeltSetting& setting, bool resisted) const {
@@ -202,7 +203,8 @@ struct FeltSession::Parts {
     // A tissue is known at two places at least: where one is touched, plain tissue lies beside it.
     for (std::size_t i = 0; i < std::max<std::size_t>(2, setting.places.size()); ++i) {
       const double above = i < setting.places.size() ? setting.places[i].ln_stiffness : 0;
-      out.phantom.survey.push_back({place_of(setting, i), curves.at(above)});
+      const LevelCurves& of = setting.plain ? plain : curves;
+      out.phantom.survey.push_back({place_of(setting, i), of.at(above)});
     }
     return out;
   }

@@ -35,6 +35,7 @@ struct FeltSetting {
   std::vector<FeltPlace> places{};  ///< of each interval, 1 or more; without `hidden` 8 at most
   std::uint64_t seed{};             ///< of the session's noise
   std::optional<HiddenBall> hidden{};
+  bool plain{};  ///< levels make plain tissue stiffer, whatever else the study's are
 };
 
 /// What is known of an interval, by the hand, by the eyes, by the estimator of the depth.

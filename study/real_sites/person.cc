@@ -157,7 +157,12 @@ Result<TrialOutcome> Person::give(const TrialAsk& ask, PersonTrial& trial) {
     }
     trial.tick(now, session_->news(), chosen);
     if (trial.place() != sent) session_->send_place(*(sent = trial.place()));
-    if (trial.stage() == PersonStage::Travel) session_->delay(stimuli[trial.interval()].delay);
+    // A law may refuse to engage behind a delay, so there is none where the hand may be let go of.
+    if (trial.stage() == PersonStage::Travel) {
+      session_->delay(stimuli[trial.interval()].delay);
+    } else if (trial.stage() != PersonStage::Touch) {
+      session_->delay(0);
+    }
     const PersonStage stage = std::exchange(before, trial.stage());
     const bool told = trial.stage() == PersonStage::Told || trial.stage() == PersonStage::Done;
     if (told && stage != PersonStage::Told)

@@ -33,6 +33,18 @@ TEST(AnswersFileTest, ReadsAFileWithoutConditionsAndWithAByteOrderMark) {
   EXPECT_EQ(found->conditions.front().condition, "");
 }
 
+TEST(AnswersFileTest, KnowsDelaysByTheirColumnAndLeavesRankingsAndSearchesToTheirStudies) {
+  const auto delays = parse_answers("level_ms\tcorrect\n40\t1\n", "f.tsv");
+  ASSERT_TRUE(delays) << delays.error().text;
+  EXPECT_TRUE(delays->delays);
+  EXPECT_EQ(delays->conditions.front().answers.front().level, 40);
+  EXPECT_FALSE(parse_answers("level_ln\tcorrect\n0.4\t1\n", "f.tsv")->delays);
+  for (const char* const column : {"kendall_tau", "error_mm", "level_ms"}) {
+    EXPECT_FALSE(parse_answers("level_ln\tcorrect\t" + std::string{column} + "\n0.4\t1\t1\n", "f"))
+        << column;
+  }
+}
+
 TEST(AnswersFileTest, SaysInOneSentenceWhatIsWrongAndWhere) {
   const auto sentence = [](std::string_view text) {
     return parse_answers(text, "f.tsv").error().text;

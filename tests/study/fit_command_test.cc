@@ -53,6 +53,16 @@ TEST(FitCommandTest, FindsABiasWhereAnswersAreTwoSided) {
   EXPECT_FALSE(fit_statement({.conditions = {{"", answers}}}, {}));
 }
 
+TEST(FitCommandTest, FindsTheJndOfADelayInMilliseconds) {
+  const Task task{.delays = true};
+  const auto answers = answered(task, {.jnd = 40}, even_levels(5, 200, 8));
+  const auto statement = fit_statement({.conditions = {{"", answers}}, .delays = true}, {});
+  ASSERT_TRUE(statement) << statement.error().text;
+  const auto report = config::Json::parse(statement->report);
+  EXPECT_NEAR(*report["conditions"].parts()[0]["jnd_ms"].number(), 40, 5);
+  EXPECT_NE(statement->text.find(" ms "), std::string::npos);
+}
+
 TEST(FitCommandTest, ACurveStandsBesideTheObserver) {
   const auto answers = answered({}, {.jnd = 0.15, .lapse = 0.02}, even_levels(0.03, 0.9, 8));
   const auto statement = fit_statement({.conditions = {{"", answers}}}, {.curve = "normal"});

@@ -55,5 +55,36 @@ TEST(LevelCurvesTest, WhatTheDatabaseDoesNotHoldIsASentence) {
   EXPECT_FALSE(LevelCurves::make(study_of("ball { radius_mm: 50 ratio: 100 }")));
 }
 
+// A ranking of balls: each level means a depth between those of the file, 0 the middle contrast.
+TEST(LevelCurvesTest, ARankingGoesByContrastsAboutTheMiddle) {
+  const Study study = *parse_study(
+      "task: \"rank\" levels { from_ln: 0.05 to_ln: 0.19 count: 3 } ball { radius_mm: 8 ratio: 100 "
+      "} "
+      "depth { top_mm: 5 contrast_ln: 0.42 } depth { top_mm: 10 contrast_ln: 0.13 } depth { "
+      "top_mm: "
+      "20 contrast_ln: 0.03 } condition { name: \"one\" }",
+      "study");
+  const auto curves = LevelCurves::make(study);
+  ASSERT_TRUE(curves) << curves.error().text;
+  double before = 0;
+  for (const double level : {-0.19, -0.05, 0.0, 0.05, 0.19}) {
+    const double force = curves->at(level).force(4e-3);
+    EXPECT_GT(force, before) << level;
+    before = force;
+  }
+  EXPECT_GT(curves->at(0).force(4e-3), 1.05 * patient::make_phantom("none")->plain.force(4e-3));
+}
+
+TEST(LevelCurvesTest, AHiddenBallLiesWhereItIsPut) {
+  const auto curves = LevelCurves::make(study_of("ball { radius_mm: 8 ratio: 100 }"));
+  const patient::Phantom phantom = curves->hiding(0.13, {7e-3, -9e-3});
+  ASSERT_TRUE(phantom.block);
+  EXPECT_EQ(phantom.block->inclusions.front().axis, (Place{7e-3, -9e-3}));
+  EXPECT_DOUBLE_EQ(*phantom.depth, 10e-3);
+  const auto field = patient::make_field(phantom, 0);
+  EXPECT_NEAR(field->elastic_force({7e-3, -9e-3}, 3e-3), curves->at(0.13).force(3e-3), 1e-6);
+  EXPECT_LT(field->elastic_force({27e-3, -9e-3}, 3e-3), field->elastic_force({7e-3, -9e-3}, 3e-3));
+}
+
 }  // namespace
 }  // namespace palp::study

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/core/random.h"
+
 namespace palp::study {
 namespace {
 
@@ -46,6 +48,41 @@ TEST(PsychometricTest, OneJndIsToldApartHalfOfTheTimeAfterChance) {
     const Task task{.intervals = m};
     const double chance = 1.0 / m;
     EXPECT_NEAR(answer_share(task, {.jnd = 0.2}, 0.2), chance + (1 - chance) / 2, 1e-9);
+  }
+}
+
+// Of rankings and searches too; and who feels nothing is right as often as a guess is.
+TEST(PsychometricTest, EveryTaskHasItsChanceAndItsJnd) {
+  const Task rank{.intervals = 3, .ranks = true};
+  const Task search{.intervals = 1, .places = 7.3};
+  const Task delay{.delays = true};
+  EXPECT_DOUBLE_EQ(chance(rank), 1.0 / 6);
+  EXPECT_DOUBLE_EQ(chance(search), 1 / 7.3);
+  EXPECT_DOUBLE_EQ(chance({.two_sided = true, .yes_no = true}), 0.5);
+  for (const Task& task : {rank, search, delay, Task{}, Task{.intervals = 4}}) {
+    for (const double lapse : {0.0, 0.06}) {
+      const ObserverTraits traits{.jnd = 0.2, .lapse = lapse};
+      EXPECT_NEAR(answer_share(task, traits, 0), chance(task), 1e-9);
+      EXPECT_NEAR(answer_share(task, traits, 0.2),
+                  lapse * chance(task) + (1 - lapse) * (1 + chance(task)) / 2,
+                  1e-9);
+      EXPECT_NEAR(answer_share(task, traits, 4), 1 - lapse * (1 - chance(task)), 1e-6);
+    }
+  }
+}
+
+// Against as many draws of three stimuli.
+TEST(PsychometricTest, OrdersAreAsOftenRightAsDrawsAre) {
+  for (const auto& [first, second] : {std::pair{0.5, 0.5}, {1.2, 0.3}, {0.0, 2.0}}) {
+    constexpr std::uint64_t kDraws = 40'000;
+    std::uint64_t right = 0;
+    for (std::uint64_t i = 0; i < kDraws; ++i) {
+      const double low = random_normal(3, 1, i);
+      const double middle = first + random_normal(3, 2, i);
+      const double high = first + second + random_normal(3, 3, i);
+      right += low < middle && middle < high ? 1 : 0;
+    }
+    EXPECT_NEAR(order_share(first, second), static_cast<double>(right) / kDraws, 0.0075);
   }
 }
 

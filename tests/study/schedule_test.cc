@@ -1,6 +1,8 @@
 #include "study/schedule.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -93,6 +95,33 @@ TEST(ScheduleTest, SameSeedSameSchedule) {
   EXPECT_EQ(schedule_text(study), text);
   ++study.seed;
   EXPECT_NE(schedule_text(study), text);
+}
+
+// Each order as often as another; of a search balls anywhere in the area, known before anybody is
+// asked.
+TEST(ScheduleTest, RankingsAndSearchesAreEven) {
+  Study study = test::small_study();
+  study.trials = 600;
+  study.task = {.intervals = 3, .ranks = true};
+  std::array<int, 6> orders{};
+  const auto ranked = participant_plan(study, 0);
+  for (const Slot& slot : ranked.front().trials) ++orders[slot.stronger];
+  for (const int count : orders) EXPECT_NEAR(count, 107, 2);
+  study.task = {.intervals = 1, .places = 8};
+  study.search = {.side = 40e-3, .within = 8e-3, .limit = 60};
+  double x = 0;
+  double xx = 0;
+  const auto searched = participant_plan(study, 0);
+  for (const Slot& slot : searched.front().trials) {
+    EXPECT_EQ(slot.stronger, 0U);
+    EXPECT_LE(std::max(std::abs(slot.hidden.x), std::abs(slot.hidden.y)), 20e-3);
+    x += slot.hidden.x;
+    xx += slot.hidden.x * slot.hidden.x;
+  }
+  const auto n = static_cast<double>(searched.front().trials.size());
+  EXPECT_NEAR(x / n, 0, 1.5e-3);
+  EXPECT_NEAR(std::sqrt(xx / n), 40e-3 / std::sqrt(12.0), 1e-3);
+  EXPECT_NE(schedule_text(study).find("x_mm"), std::string::npos);
 }
 
 }  // namespace

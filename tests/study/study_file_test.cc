@@ -48,6 +48,42 @@ TEST(StudyFileTest, ATwoSidedTaskHasLevelsOfBothSigns) {
   EXPECT_NEAR(study.levels.back(), 0.4, 1e-15);
 }
 
+const std::string kBalls =
+    "ball { radius_mm: 8 ratio: 100 } depth { top_mm: 5 contrast_ln: 0.42 } depth { top_mm: 10 "
+    "contrast_ln: 0.13 } depth { top_mm: 20 contrast_ln: 0.02 } ";
+
+TEST(StudyFileTest, ADelayIsAskedForInMilliseconds) {
+  const Study study = *parse_study(
+      "task: \"delay\" method: \"staircase\" delays { from_ms: 10 to_ms: 160 count: 5 } condition "
+      "{ "
+      "name: \"one\" }",
+      "f");
+  ASSERT_EQ(study.levels.size(), 5U);
+  EXPECT_NEAR(study.levels[1], 20, 1e-9);
+  EXPECT_EQ(study.practice.level, 150);
+  EXPECT_EQ(study.task.intervals, 2);
+  EXPECT_GT(study.method.staircase.start, 100) << "ms, as the levels are";
+}
+
+TEST(StudyFileTest, ASearchIsChanceByTheAreaThatCountsAsFound) {
+  const Study study = *parse_study(
+      "task: \"locate\" search { side_mm: 50 } condition { name: \"one\" } " + kBalls, "f");
+  EXPECT_DOUBLE_EQ(study.search.within, 8e-3) << "the ball's radius";
+  EXPECT_NEAR(study.task.places, 2500 / (3.14159265 * 64), 1e-6);
+  EXPECT_EQ(study.travel, 4);
+  EXPECT_EQ(study.levels.size(), 3U);
+}
+
+// Three balls, evenly about the middle of the contrasts: the steps end where the depths do.
+TEST(StudyFileTest, ARankingOfBallsStaysWithinItsDepths) {
+  const Study study = *parse_study("task: \"rank\" condition { name: \"one\" } " + kBalls, "f");
+  EXPECT_EQ(study.task.intervals, 3);
+  EXPECT_NEAR(study.levels.back(), 0.2, 1e-12);
+  EXPECT_NEAR(middle_contrast(study), 0.22, 1e-12);
+  EXPECT_NEAR(*depth_found(study, 0.199), 5e-3, 0.05e-3);
+  EXPECT_LT(*depth_found(study, 0.1), *depth_found(study, 0.05));
+}
+
 TEST(StudyFileTest, WhatCannotBeIsRefusedInOneSentence) {
   const std::string one = "condition { name: \"one\" } ";
   for (const std::string& text :
@@ -65,6 +101,16 @@ TEST(StudyFileTest, WhatCannotBeIsRefusedInOneSentence) {
         one + "intervals: 1",
         one + "tracks: 4 trials: 3",
         one + "seed: -1",
+        one + "task: \"rank\" intervals: 2",
+        one + "task: \"rank\" levels { to_ln: 0.3 } " + kBalls,
+        one + "task: \"rank\" depth { top_mm: 5 contrast_ln: 0.4 } depth { top_mm: 9 contrast_ln: "
+              "0.2 }",
+        one + "task: \"locate\"",
+        one + "task: \"locate\" search { side_mm: 10 within_mm: 9 } " + kBalls,
+        one + "search { side_mm: 30 }",
+        one + "delays { from_ms: 5 }",
+        one + "task: \"delay\" delays { from_ms: 50 to_ms: 20 }",
+        std::string{"task: \"delay\" condition { name: \"one\" feedback: \"drawn\" }"},
         one + "colour: \"red\"",
         one + "condition { name: \"a\\nb\" }"}) {
     const auto study = parse_study(text, "file");

@@ -77,5 +77,34 @@ TEST(TrialRowTest, AnotherTableOrAChangedAnswerIsRefused) {
   EXPECT_FALSE(parse_rows(row_header({}) + "1\t2\n", "f", Task{}));
 }
 
+TEST(TrialRowTest, EachTaskHasItsColumns) {
+  TrialRow rank = a_row();
+  rank.task = {.intervals = 3, .ranks = true};
+  rank.ask.stronger = 4;
+  rank.outcome.chosen = 5;
+  TrialRow search = a_row();
+  search.task = {.intervals = 1, .places = 8};
+  search.ask.stronger = 0;
+  search.outcome.chosen = 1;
+  search.outcome.error = 12.5e-3;
+  search.outcome.path = 0.31;
+  search.outcome.force_mean = 0.4;
+  TrialRow delay = a_row();
+  delay.task.delays = true;
+  delay.ask.level = 84.8528137;
+  for (const TrialRow& row : {rank, search, delay}) {
+    const auto file = parse_rows(row_header(row.task) + row_text(row), "f", row.task);
+    ASSERT_TRUE(file) << file.error().text;
+    EXPECT_EQ(row_text(file->rows.at(0)), row_text(row));
+    EXPECT_FALSE(parse_rows(row_header({}) + row_text(row), "f", row.task));
+  }
+  EXPECT_NE(row_text(rank).find("0.333333333\n"), std::string::npos);
+  EXPECT_NE(row_header(delay.task).find("level_ms"), std::string::npos);
+  // A tau that does not follow from the orders was changed by hand.
+  std::string text = row_header(rank.task) + row_text(rank);
+  text.replace(text.rfind("0.333333333"), 11, "1");
+  EXPECT_FALSE(parse_rows(text, "f", rank.task));
+}
+
 }  // namespace
 }  // namespace palp::study

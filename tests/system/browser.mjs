@@ -109,7 +109,7 @@ export class Page {
     }
   }
   state(name, ms) { return this.until(`document.getElementById('state')?.dataset.state === '${name}'`, `state ${name}`, ms); }
-  mouse(type, x, y) { return this.send('Input.dispatchMouseEvent', { type, x, y, button: 'left', buttons: type === 'mouseReleased' ? 0 : 1, clickCount: 1 }); }
+  mouse(type, x, y, shift = false) { return this.send('Input.dispatchMouseEvent', { type, x, y, button: 'left', buttons: type === 'mouseReleased' ? 0 : 1, clickCount: 1, modifiers: shift ? 8 : 0 }); }
   async click(id) { await this.eval(`document.getElementById('${id}').click()`); }
   async key(type, key, code = key) {
     const text = type === 'keyDown' && key.length === 1 ? key : undefined;

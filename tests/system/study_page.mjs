@@ -1,12 +1,14 @@
 // A participant as a script: study_page.mjs BROWSER RUN_LOG OUT. Opens each page that the run names,
-// palpates where and when the page says, and answers which place gave way less. Writes its answers
-// to OUT, JSON. PALP_SHOTS: a folder for pictures.
+// palpates where and when the page says, and answers which place gave way less, or in which order
+// places did; it searches an area in rows, and says where the tissue gave way least. Writes its
+// answers to OUT, JSON. PALP_SHOTS: a folder for pictures.
 import { readFileSync } from 'node:fs';
 import { Browser, finish, pause } from './browser.mjs';
 
 const [program, log, out] = process.argv.slice(2);
 const shots = process.env.PALP_SHOTS;
-const CLEAR_MM = -4, PRESS_MM = 7;  // where the finger waits, and how deep it is drawn
+const CLEAR_MM = -4;  // where the finger waits
+const PRESS_MM = Number(process.env.PALP_PRESS_MM ?? 7);  // how deep it is drawn
 const browser = await Browser.start(program);
 const result = { answers: [], errors: [], begun: 0 };
 const must = (holds, what) => { if (!holds) throw new Error(what); };
@@ -37,7 +39,7 @@ class Participant {
   async ask() {
     return this.page.eval(`(() => {
       const prompt = document.getElementById('prompt'), state = document.getElementById('state');
-      return prompt ? { ...prompt.dataset, trial: +prompt.dataset.trial, interval: +prompt.dataset.interval, engaged: state.dataset.state === 'ENGAGED', tip: window.palpTip().tip } : { stage: '' };
+      return prompt ? { ...prompt.dataset, trial: +prompt.dataset.trial, interval: +prompt.dataset.interval, engaged: state.dataset.state === 'ENGAGED', tip: window.palpTip().tip, searches: !!document.getElementById('area') } : { stage: '' };
     })()`);
   }
   async press() {
@@ -48,6 +50,35 @@ class Participant {
     await this.page.mouse('mouseMoved', this.x, this.y);
     await this.page.mouse('mousePressed', this.x, this.y);
     this.finger = (await this.ask()).tip;
+  }
+  /** From the middle of the area, so many mm, in the air. */
+  async go(x, y) {
+    const dx = (x - this.at.x) * this.pxPerMm, dy = (y - this.at.y) * this.pxPerMm;
+    for (const [step, shift] of [[dx, false], [dy, true]]) {
+      for (let i = 0; i < 8; i++) {
+        this.x += step / 8;
+        await this.page.mouse('mouseMoved', this.x, this.y, shift);
+        await pause(20);
+      }
+    }
+    this.at = { x, y };
+    await pause(150);
+  }
+  /** @returns where the tissue gave way least; the tip stands there. */
+  async search() {
+    this.at = { x: 0, y: 0 };
+    let best, least = Infinity;
+    for (const y of [-13, 0, 13]) {
+      for (const x of [-13, 0, 13]) {
+        await this.go(x, y);
+        await this.tap();
+        const depth = await this.tap();
+        if (depth < least) { least = depth; best = { x, y }; }
+      }
+    }
+    await this.go(best.x, best.y);
+    await pause(600);  // the tip comes after the hand
+    return this.page.eval('(({ x, y }) => ({ x: +x, y: +y }))(document.getElementById("area").dataset)');
   }
   release() { return this.page.mouse('mouseReleased', this.x, this.y); }
   /** To so many mm below the surface, in so many ms. */
@@ -81,6 +112,14 @@ class Participant {
   }
 }
 
+/** What is said of how deep the tip came at each place. */
+function choiceOf(depths, choices) {
+  const places = Object.keys(depths).map(Number);
+  const softestFirst = places.sort((a, b) => depths[b] - depths[a]);
+  if (choices.length > places.length) return choices.indexOf(softestFirst.join(' ')) + 1;
+  return softestFirst[softestFirst.length - 1];
+}
+
 /** All trials of a page, until it rests or is over; @returns whether it is over. */
 async function goThrough(page) {
   const person = new Participant(page);
@@ -95,6 +134,15 @@ async function goThrough(page) {
       if (!held && may) { await person.press(); held = true; heldSince = Date.now(); result.begun++; }
     } else if (ask.stage === 'lift' || (ask.stage === 'travel' && Math.abs(person.finger - CLEAR_MM) > 0.5)) {
       await person.draw(CLEAR_MM, 200);
+    } else if (ask.stage === 'touch' && ask.searches) {
+      const area = await person.search();
+      await shoot(page, 'search');
+      // By the key while the hand searches, or by the button, for which it has to let go.
+      if (result.answers.length % 2 === 1) { await person.release(); held = false; }
+      const at = await page.eval('Date.now()');
+      await person.answer(1);
+      result.answers.push({ choice: 1, at, area });
+      await page.until(`+(document.getElementById('prompt')?.dataset.trial ?? 0) !== ${ask.trial}`, 'the next trial', 10000);
     } else if (ask.stage === 'touch' && depths[ask.interval] === undefined) {
       await shoot(page, 'touch');
       depths[ask.interval] = await person.tap();
@@ -106,7 +154,7 @@ async function goThrough(page) {
       const text = await page.eval('document.body.innerText');
       must(!/velvet|linen|mmt|direct|newton|N\/m/i.test(text), `the page tells: ${text}`);
       await shoot(page, 'answer');
-      const choice = depths[1] < depths[2] ? 1 : 2;
+      const choice = choiceOf(depths, await page.eval('[...document.querySelectorAll(".answers button")].map(one => one.firstChild.data.trim())'));
       const drawn = await page.eval('(one => one && +one.dataset.most)(document.getElementById("drawn"))');
       const at = await page.eval('Date.now()');
       await person.answer(choice);

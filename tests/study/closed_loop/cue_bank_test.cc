@@ -128,5 +128,29 @@ TEST(CueBankTest, SessionsFillItBothWaysRound) {
   }
 }
 
+// Two steps between three: each as large as the level, and right if both are seen.
+TEST(CueBankTest, BankAndClosedFormAgreeOfRankings) {
+  const Task rank{.intervals = 3, .ranks = true};
+  const Judgement judgement = judgement_of(0.15, 0, 1);
+  const CueBank bank = made(0.8, 0, rank);
+  EXPECT_NEAR(banked(bank, judgement, 3).jnd, judgement.jnd(rank, 3, 0.8), 0.01);
+  EXPECT_NEAR(banked_share(bank, judgement, 3, 0), 1.0 / 6, 1e-9);
+  EXPECT_NEAR(banked_share(bank, judgement, 3, 1.2), 1, 1e-3);
+}
+
+// Far below zero no tap is judged there, and guesses are right half of the time: a bias is where
+// the share rises, not there.
+TEST(CueBankTest, GuessesBelowABiasDoNotHideIt) {
+  const Judgement judgement = judgement_of(0.15, 0, 1);
+  CueBank bank = made(1, -0.6, kBias);
+  const Foretold whole = banked(bank, judgement, 3);
+  for (std::size_t level = 0; level < 3; ++level) {
+    for (CueBank::Differences& one : bank.differences[level]) one.clear();
+  }
+  EXPECT_DOUBLE_EQ(banked_share(bank, judgement, 3, bank.levels[0]), 0.5);
+  EXPECT_NEAR(banked(bank, judgement, 3).pse, whole.pse, 1e-9);
+  EXPECT_NEAR(banked(bank, judgement, 3).jnd, whole.jnd, 1e-9);
+}
+
 }  // namespace
 }  // namespace palp::study

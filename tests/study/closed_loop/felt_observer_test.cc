@@ -244,5 +244,89 @@ TEST(FeltParticipantsTest, FindTheStiffestOfThree) {
   }
 }
 
+// A ball's levels are contrasts of its own depths, and none of them lies at +-0.2: what a hand
+// makes of a difference is measured in plain tissue, whatever a study asks about.
+TEST(FeltObserverTest, TheHandsOwnGainDoesNotDependOnTheStudysDepths) {
+  const Condition condition{.name = "both",
+                            .coupling = "mmt",
+                            .up = "delay_ms: 1",
+                            .down = "delay_ms: 1",
+                            .grip = "mid",
+                            .feedback = Feedback::Both};
+  const auto gains = [&](const std::string& depths) {
+    const Study study = *parse_study(
+        "task: \"detect2\" ball { radius_mm: 8 ratio: 100 } condition { "
+        "name: \"one\" } " +
+            depths,
+        "s");
+    const auto session = FeltSession::make(condition, *LevelCurves::make(study));
+    const Judgement judgement = judgement_for(*session, study.task, 0.15, 0);
+    return std::pair{judgement.own_gain, judgement.drawn_gain};
+  };
+  const auto few =
+      gains("depth { top_mm: 5 contrast_ln: 0.4248 } depth { top_mm: 20 contrast_ln: 0.027 }");
+  const auto more = gains(
+      "depth { top_mm: 5 contrast_ln: 0.4248 } depth { top_mm: 8 contrast_ln: 0.2062 } "
+      "depth { top_mm: 20 contrast_ln: 0.027 }");
+  EXPECT_EQ(few, more);
+  const auto plain = FeltSession::make(condition);
+  EXPECT_EQ(few.first, judgement_for(*plain, {}, 0.15, 0).own_gain);
+  EXPECT_GT(few.first, 0.5);
+  EXPECT_LT(few.first, 1.2);
+}
+
+TEST(FeltObserverTest, OrdersAreChosenByWhatSeemsStiffer) {
+  const Task rank{.intervals = 3, .ranks = true};
+  const Judgement judgement = judgement_of(0.15, 0, 1);
+  const auto of = [](double level) { return FeltInterval{.ln_slopes = {level, level, level}}; };
+  int right = 0;
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    const double jnd = judgement.jnd(rank, 3, 1);
+    right += chosen({of(jnd), of(-jnd), of(0)}, rank, judgement, 4, i) == 3 ? 1 : 0;
+  }
+  EXPECT_NEAR(right / 2000.0, 7.0 / 12, 0.045);
+}
+
+TEST(FeltObserverTest, ADelayIsJudgedByHowLateTheForceIs) {
+  Judgement judgement = judgement_of(0.15, 0, 1);
+  judgement.delays = true;
+  const Task delay{.delays = true};
+  const double jnd = level_unit(delay) * std::log1p(0.15);
+  int right = 0;
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    const std::vector<FeltInterval> felt{{.ln_slopes = {9, 9, 9}, .lag = 12},
+                                         {.ln_slopes = {1, 1, 1}, .lag = 12 + jnd}};
+    right += chosen(felt, delay, judgement, 4, i) == 1 ? 1 : 0;
+  }
+  EXPECT_NEAR(right / 2000.0, 0.75, 0.04);
+}
+
+// With force the ball is found where the hand goes over it, without none is.
+TEST(FeltObserverTest, ASearchSaysThePlaceThatIsStiffest) {
+  const Study study = *parse_study(
+      "task: \"locate\" ball { radius_mm: 8 ratio: 100 } depth { top_mm: 5 contrast_ln: 0.4248 } "
+      "depth { "
+      "top_mm: 10 contrast_ln: 0.132 } condition { name: \"force\" taps: 2 } condition { name: "
+      "\"none\" "
+      "taps: 2 feedback: \"none\" }",
+      "s");
+  const auto felt = FeltParticipants::make(study, {.weber = 0.08, .spread = 0, .lapse = 0});
+  ASSERT_TRUE(felt) << felt.error().text;
+  std::array<int, 2> found{};
+  for (std::size_t i = 0; i < 5; ++i) {
+    TrialAsk ask{.number = i, .level = 0.4248, .stronger = 0};
+    ask.hidden = {-16e-3 + 8e-3 * static_cast<double>(i), 13e-3 - 6e-3 * static_cast<double>(i)};
+    for (std::size_t condition = 0; condition < 2; ++condition) {
+      const TrialOutcome out = felt->answer({0, condition}, ask);
+      found[condition] += out.chosen == 0 ? 1 : 0;
+      EXPECT_EQ(out.chosen == 0, out.error <= study.search.within);
+      EXPECT_GT(out.path, 0.1);
+      EXPECT_GT(out.force_mean, 0.1);
+    }
+  }
+  EXPECT_GE(found[0], 4);
+  EXPECT_LE(found[1], 3);
+}
+
 }  // namespace
 }  // namespace palp::study

@@ -169,5 +169,33 @@ TEST(FeltTrialTest, AConditionThatIsNoneIsRefused) {
   EXPECT_FALSE(FeltSession::make(none));
 }
 
+/// A delay of one interval, felt in it and not in the other.
+FeltSetting delayed(double ms, std::size_t which) {
+  FeltSetting out = setting({0, 0}, 2);
+  out.places[which].delay = ms;
+  return out;
+}
+
+TEST(FeltTrialTest, ADelayIsFeltInItsIntervalWhereALawShowsIt) {
+  Condition stiff = condition("direct", 2);
+  stiff.taps = 2;
+  const auto direct = FeltSession::make(stiff);
+  for (const std::size_t which : {0U, 1U}) {
+    const FeltTrial felt = direct->feel(delayed(60, which));
+    EXPECT_GT(*felt.intervals[which].lag, 30) << which;
+    EXPECT_LT(*felt.intervals[1 - which].lag, 6) << which;
+    EXPECT_EQ(felt.taps, 4);
+  }
+  // A model of the tissue at the hand hides it, once it is there.
+  Condition later = condition("mmt", 2);
+  later.taps = 2;
+  later.unjudged = 1;
+  const FeltTrial hidden = FeltSession::make(later)->feel(delayed(60, 1));
+  EXPECT_LT(*hidden.intervals[1].lag, 6);
+  const FeltTrial none =
+      FeltSession::make(condition("direct", 2, Feedback::None))->feel(delayed(60, 1));
+  EXPECT_FALSE(none.intervals[1].lag);
+}
+
 }  // namespace
 }  // namespace palp::study
