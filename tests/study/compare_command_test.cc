@@ -28,14 +28,14 @@ TEST(CompareCommandTest, WritesWhatFitAndCompareSay) {
   EXPECT_FALSE(json.contains("pse"));
 }
 
-TEST(CompareCommandTest, ConfirmatoryOnlyAsRegisteredAndWithEverybody) {
+TEST(CompareCommandTest, SaysWhetherSimulatedAnswersAreAsRegisteredAndOfEverybody) {
   const test::PlannedFolder folder;
   (void)folder.run(test::PlannedFolder::formula(), 1);
-  EXPECT_EQ(run_compare(folder.folder()).text.find("exploratory: 1 of 3"), 0U);
+  EXPECT_EQ(run_compare(folder.folder()).text.find("simulated: 1 of 3"), 0U);
   (void)folder.run();
-  EXPECT_EQ(run_compare(folder.folder()).text.find("confirmatory"), 0U);
+  EXPECT_EQ(run_compare(folder.folder()).text.find("simulated: as registered"), 0U);
   std::ofstream{folder.folder() + "/code/study.textproto", std::ios::app} << "\n";
-  EXPECT_EQ(run_compare(folder.folder()).text.find("exploratory"), 0U);
+  EXPECT_EQ(run_compare(folder.folder()).text.find("simulated: the study file"), 0U);
 }
 
 }  // namespace

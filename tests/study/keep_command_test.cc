@@ -17,7 +17,7 @@ TEST(CheckCommandTest, HoldsAsRegisteredAndNoticesAChangedAnswer) {
   (void)folder.run();
   EXPECT_EQ(run_check({.folder = folder.folder()}).code, ExitCode::Done);
   const auto planned = *open_study(folder.folder());
-  const std::string path = planned.data.trials("sub-03", "stiffness", 2);
+  const std::string path = planned.data.trials("sub-03", "stiffness", 3);
   std::string text = test::content_of(path);
   std::ofstream{path} << text.substr(0, text.rfind('\n', text.size() - 2) + 1);
   EXPECT_EQ(run_check({.folder = folder.folder()}).code, ExitCode::Done);  // not yet at its end
@@ -25,7 +25,7 @@ TEST(CheckCommandTest, HoldsAsRegisteredAndNoticesAChangedAnswer) {
   std::ofstream{path} << text.substr(0, text.find('\n') + 1) << text.substr(second);
   const auto gone = run_check({.folder = folder.folder()});
   EXPECT_EQ(gone.code, ExitCode::Missed);
-  EXPECT_NE(gone.text.find("sub-03, block 2"), std::string::npos) << gone.text;
+  EXPECT_NE(gone.text.find("sub-03, block 3"), std::string::npos) << gone.text;
   std::ofstream{path} << text;
   fs::create_directories(folder.folder() + "/sub-77/ses-01/beh");
   EXPECT_EQ(run_check({.folder = folder.folder()}).code, ExitCode::Missed);
@@ -65,7 +65,9 @@ TEST(ExportCommandTest, WritesTheFile) {
   const std::string out = folder.beside("lme4.csv");
   EXPECT_EQ(run_export({.folder = folder.folder(), .format = "lme4", .out = out}).code,
             ExitCode::Done);
-  EXPECT_EQ(test::content_of(out).find("participant,condition,level,correct,trial\nsub-01,"), 0U);
+  EXPECT_EQ(
+      test::content_of(out).find("participant,condition,level,correct,trial,excluded\nsub-01,"),
+      0U);
 }
 
 }  // namespace
