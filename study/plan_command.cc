@@ -27,7 +27,7 @@ std::string sidecar(const Study& study) {
   Json out{{"TaskName", task_name(study)}, {"Instructions", study.instructions}};
   for (const Column& column : row_columns(study.task)) {
     Json one{{"Description", column.meaning}};
-    if (!column.unit.empty()) one["Units"] = Json{column.unit};
+    if (!column.unit.empty()) one["Units"] = column.unit;
     out[column.name] = std::move(one);
   }
   return out.dump(2) + "\n";

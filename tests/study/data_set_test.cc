@@ -48,6 +48,54 @@ TEST(DataSetTest, ListsWhoIsThere) {
   EXPECT_GE((*rows)[0].rows.size(), 24U);
 }
 
+TEST(DataSetTest, KeepsTheColumnsThatSomebodyAdded) {
+  const test::PlannedFolder folder;
+  (void)folder.run(test::PlannedFolder::formula(), 2);
+  const std::string list = folder.folder() + "/participants.tsv";
+  std::ofstream{list} << "participant_id\tkind\tage_range\nsub-02\tsimulated\t30-39\n";
+  (void)folder.run(test::PlannedFolder::formula(), 1);
+  EXPECT_EQ(test::content_of(list),
+            "participant_id\tkind\tage_range\nsub-01\tsimulated\tn/a\n"
+            "sub-02\tsimulated\t30-39\n");
+}
+
+TEST(DataSetTest, WithoutTheKeyNothingIsOpened) {
+  const test::PlannedFolder folder;
+  const std::string key = folder.folder() + "/code/key.json";
+  const std::string text = test::content_of(key);
+  std::filesystem::remove(key);
+  const auto planned = open_study(folder.folder());
+  ASSERT_FALSE(planned);
+  EXPECT_TRUE(planned.error().unreachable);
+  EXPECT_NE(planned.error().text.find("who planned the study has the key"), std::string::npos);
+  std::ofstream{key} << text << " ";
+  const auto changed = open_study(folder.folder());
+  ASSERT_TRUE(changed);
+  EXPECT_FALSE(changed->registered);
+  EXPECT_NE(changed->why_not.find("key of the letters"), std::string::npos) << changed->why_not;
+}
+
+TEST(DataSetTest, WhatCannotBeReadIsNotTakenForNothing) {
+  EXPECT_FALSE(DataSet{"/nowhere"}.participants());
+  const test::PlannedFolder folder;
+  EXPECT_FALSE(*read_if_there(folder.beside("nothing")));
+  EXPECT_EQ(**read_if_there(folder.beside("study.textproto")), test::kStudyText);
+  EXPECT_FALSE(read_if_there(folder.folder()));
+  std::filesystem::create_symlink("loop", folder.beside("loop"));
+  EXPECT_FALSE(read_if_there(folder.beside("loop")));
+}
+
+TEST(DataSetTest, OutputsDoNotTakeThePlaceOfWhatTheFolderConsistsOf) {
+  const test::PlannedFolder folder;
+  const DataSet data{folder.folder()};
+  EXPECT_TRUE(data.may_write(folder.beside("page.html")));
+  EXPECT_TRUE(data.may_write(data.derived("page.html")));
+  EXPECT_FALSE(data.may_write(data.folder + "/participants.tsv"));
+  EXPECT_FALSE(data.may_write(data.derived("../../code/key.json")));
+  std::filesystem::create_symlink(data.code("plan.json"), folder.beside("link"));
+  EXPECT_FALSE(data.may_write(folder.beside("link")));
+}
+
 TEST(DataSetTest, AFolderWithoutAStudyIsNone) {
   const auto planned = open_study("/nowhere");
   ASSERT_FALSE(planned);

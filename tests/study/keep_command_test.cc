@@ -49,6 +49,15 @@ TEST(WithdrawCommandTest, LeavesNothingOfAParticipant) {
   EXPECT_EQ(run_check({.folder = folder.folder()}).code, ExitCode::Done);
 }
 
+TEST(WithdrawCommandTest, NamesFilesOfTheFolderThatAreNotItsToDelete) {
+  const test::PlannedFolder folder;
+  (void)folder.run();
+  const std::string own = folder.folder() + "/notes.txt";
+  std::ofstream{own} << "sub-02 came late\n";
+  const auto end = run_withdraw({.folder = folder.folder(), .participant = "sub-02"});
+  EXPECT_NE(end.text.find("notes.txt still names sub-02"), std::string::npos) << end.text;
+}
+
 TEST(WithdrawCommandTest, DeletesNobodyElse) {
   const test::PlannedFolder folder;
   for (const char* other : {"sub-04", "..", "code", "", "sub-01/ses-01"}) {
@@ -57,6 +66,15 @@ TEST(WithdrawCommandTest, DeletesNobodyElse) {
         << other;
   }
   EXPECT_TRUE(fs::exists(folder.folder() + "/code/plan.json"));
+}
+
+TEST(ExportCommandTest, DoesNotWriteOverAnswers) {
+  const test::PlannedFolder folder;
+  (void)folder.run();
+  const std::string before = folder.answers();
+  const std::string out = DataSet{folder.folder()}.trials("sub-01", "stiffness", 1);
+  EXPECT_EQ(run_export({.folder = folder.folder(), .out = out}).code, ExitCode::BadInput);
+  EXPECT_EQ(folder.answers(), before);
 }
 
 TEST(ExportCommandTest, WritesTheFile) {

@@ -58,6 +58,15 @@ class PlannedFolder {
                    one_after_the_other,
                    [](const std::string&) {});
   }
+  /// As a person at the page, whoever answers.
+  [[nodiscard]] config::ExitStatus run_person(const MakeObserver& make,
+                                              std::uint64_t participant) const {
+    return run_run(
+        {.folder = folder(), .participant = participant, .observer = std::string{kPerson}},
+        make,
+        one_after_the_other,
+        [](const std::string&) {});
+  }
   [[nodiscard]] static MakeObserver formula() {
     return [](const Study& study) -> Result<Observer> {
       return formula_participants(study, PeopleTraits{});
