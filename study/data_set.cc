@@ -181,7 +181,7 @@ Result<void> DataSet::may_write(const std::string& path) const {
   return fail(printable(path) + " is in the study's own folder: below it derivatives/ is free");
 }
 
-Result<PlannedStudy> open_study(const std::string& folder) {
+Result<PlannedStudy> open_without_key(const std::string& folder) {
   PlannedStudy out{.data = {folder}};
   auto text = read_whole_file(out.data.code("study.textproto"));
   if (!text) {
@@ -189,18 +189,27 @@ Result<PlannedStudy> open_study(const std::string& folder) {
   }
   auto study = parse_study(*text, out.data.code("study.textproto"));
   if (!study) return tl::unexpected(study.error());
+  out.study = std::move(*study);
+  out.study_text = std::move(*text);
+  out.why_not = "the key of the letters was not looked at";
+  return out;
+}
+
+Result<PlannedStudy> open_study(const std::string& folder) {
+  auto opened = open_without_key(folder);
+  if (!opened) return opened;
+  PlannedStudy& out = *opened;
   const std::string path = out.data.code("key.json");
   const auto key = read_whole_file(path);
   if (!key) {
     return fail_to_reach(key.error().text + "; who planned the study has the key of its letters");
   }
-  const auto letters = parse_key(*key, path, *study);
+  const auto letters = parse_key(*key, path, out.study);
   if (!letters) return tl::unexpected(letters.error());
-  out.study_text = std::move(*text);
-  out.why_not = why_not_registered(out.data, *study, out.study_text, *key);
+  out.why_not = why_not_registered(out.data, out.study, out.study_text, *key);
   out.registered = out.why_not.empty();
-  out.study = lettered(std::move(*study), *letters);
-  return out;
+  out.study = lettered(std::move(out.study), *letters);
+  return opened;
 }
 
 Result<std::vector<ParticipantRows>> read_rows(const PlannedStudy& planned) {

@@ -58,6 +58,9 @@ struct PlannedStudy {
 };
 /// Needs the key of the letters.
 [[nodiscard]] Result<PlannedStudy> open_study(const std::string& folder);
+/// For what goes by no letter, and must be possible without the key: conditions are as the study's
+/// file has them, and nothing is said of the registration.
+[[nodiscard]] Result<PlannedStudy> open_without_key(const std::string& folder);
 
 /// All answers of a participant.
 struct ParticipantRows {

@@ -86,7 +86,7 @@ void declare_withdraw(config::CommandLine& line, KeepFlags& flags) {
 }
 
 ExitStatus run_withdraw(const KeepFlags& flags) {
-  const auto planned = open_study(flags.folder);
+  const auto planned = open_without_key(flags.folder);
   if (!planned) return refused(planned.error());
   bool known = false;
   for (std::size_t i = 0; i < planned->study.participants; ++i) {
@@ -108,7 +108,11 @@ ExitStatus run_withdraw(const KeepFlags& flags) {
   if (auto made = make_folder(planned->data.derived("")); !made) return refused(made.error());
   if (auto listed = list_participants(*planned); !listed) return refused(listed.error());
   const auto left = files_with(planned->data, flags.participant);
-  if (!left) return refused(left.error());
+  if (!left) {
+    return refused({flags.participant +
+                        " is deleted, but not all files were searched for it: " + left.error().text,
+                    true});
+  }
   std::string text = flags.participant + " is deleted; fit and report have to be made again\n";
   for (const std::string& path : *left) {
     text += printable(path) + " still names " + flags.participant + ": it is yours to delete\n";

@@ -86,7 +86,7 @@ Result<std::vector<std::string>> files_with(const DataSet& data, const std::stri
     const bool regular = fs::is_regular_file(entry->symlink_status(fault));
     if (!fault && path != list_of(data)) {
       bool holds = names(entry->path().filename().string(), id);
-      if (regular && !holds) {
+      if (regular && !holds && entry->path().extension() != ".mcap") {
         const auto text = read_whole_file(path, kTableMax);
         if (!text) return tl::unexpected(text.error());
         holds = names(*text, id);

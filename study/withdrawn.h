@@ -19,7 +19,8 @@ namespace palp::study {
 [[nodiscard]] Result<void> delete_participant(const DataSet& data, const std::string& id);
 /// Those on the list of whom answers or traces are still there.
 [[nodiscard]] Result<std::vector<std::string>> withdrawn_with_data(const DataSet& data);
-/// Files below the folder that hold the identifier, but for the list itself.
+/// Files below the folder that hold the identifier, but for the list itself; of session files the
+/// names count alone.
 [[nodiscard]] Result<std::vector<std::string>> files_with(const DataSet& data,
                                                           const std::string& id);
 

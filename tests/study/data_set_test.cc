@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/config/json.h"
+#include "study/schedule.h"
 #include "tests/study/study_fixture.h"
 
 namespace palp::study {
@@ -57,6 +59,16 @@ TEST(DataSetTest, KeepsTheColumnsThatSomebodyAdded) {
   EXPECT_EQ(test::content_of(list),
             "participant_id\tkind\tage_range\nsub-01\tsimulated\tn/a\n"
             "sub-02\tsimulated\t30-39\n");
+}
+
+TEST(DataSetTest, ConditionsComeInTheOrderOfTheirLetters) {
+  const test::PlannedFolder folder;
+  const auto key = config::Json::parse(test::content_of(folder.folder() + "/code/key.json"));
+  const auto planned = *open_study(folder.folder());
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(key["letters"][condition_code(i)].text(), planned.study.conditions[i].name);
+  }
+  EXPECT_NE(planned.study.conditions[0].name, test::small_study().conditions[0].name);
 }
 
 TEST(DataSetTest, WithoutTheKeyNothingIsOpened) {

@@ -49,6 +49,15 @@ TEST(WithdrawCommandTest, LeavesNothingOfAParticipant) {
   EXPECT_EQ(run_check({.folder = folder.folder()}).code, ExitCode::Done);
 }
 
+TEST(WithdrawCommandTest, NeedsNoKey) {
+  const test::PlannedFolder folder;
+  (void)folder.run();
+  fs::remove(folder.folder() + "/code/key.json");
+  EXPECT_EQ(run_withdraw({.folder = folder.folder(), .participant = "sub-02"}).code,
+            ExitCode::Done);
+  EXPECT_FALSE(fs::exists(folder.folder() + "/sub-02"));
+}
+
 TEST(WithdrawCommandTest, NamesFilesOfTheFolderThatAreNotItsToDelete) {
   const test::PlannedFolder folder;
   (void)folder.run();
