@@ -15,6 +15,7 @@
 #include "study/preregistration.h"
 #include "study/schedule.h"
 #include "study/tab_cells.h"
+#include "study/withdrawn.h"
 
 namespace palp::study {
 namespace {
@@ -31,6 +32,19 @@ bool is_participant(const Study& study, const std::string& id) {
     if (participant_id(i) == id) return true;
   }
   return false;
+}
+
+/// The study's participants whose folders are there, without those who withdrew, whatever is left
+/// of them.
+Result<std::vector<std::string>> answering(const PlannedStudy& planned) {
+  auto out = planned.data.participants();
+  if (!out) return out;
+  const auto gone = withdrawn_participants(planned.data);
+  if (!gone) return tl::unexpected(gone.error());
+  std::erase_if(*out, [&](const std::string& id) {
+    return !is_participant(planned.study, id) || std::ranges::find(*gone, id) != gone->end();
+  });
+  return out;
 }
 
 Result<std::vector<TrialRow>> rows_of(const PlannedStudy& planned, const std::string& id) {
@@ -172,10 +186,14 @@ Result<void> DataSet::make_trials_folder(const std::string& id) const {
 }
 
 Result<void> DataSet::may_write(const std::string& path) const {
-  std::error_code fault;
-  const fs::path own = fs::weakly_canonical(folder, fault);
-  const fs::path target = fault ? fs::path{} : fs::weakly_canonical(path, fault);
-  if (fault) return fail_to_reach("cannot write " + printable(path) + ": " + fault.message());
+  // What leads nowhere in the tree of files, like a pipe behind /dev/stdout, stays as it is named.
+  const auto resolved = [](const std::string& name) {
+    std::error_code fault;
+    const fs::path out = fs::weakly_canonical(name, fault);
+    return fault ? fs::absolute(name, fault).lexically_normal() : out;
+  };
+  const fs::path own = resolved(folder);
+  const fs::path target = resolved(path);
   const fs::path below = target.lexically_relative(own);
   if (below.empty() || *below.begin() == ".." || *below.begin() == "derivatives") return {};
   return fail(printable(path) + " is in the study's own folder: below it derivatives/ is free");
@@ -213,11 +231,10 @@ Result<PlannedStudy> open_study(const std::string& folder) {
 }
 
 Result<std::vector<ParticipantRows>> read_rows(const PlannedStudy& planned) {
-  const auto folders = planned.data.participants();
-  if (!folders) return tl::unexpected(folders.error());
+  const auto ids = answering(planned);
+  if (!ids) return tl::unexpected(ids.error());
   std::vector<ParticipantRows> out;
-  for (const std::string& id : *folders) {
-    if (!is_participant(planned.study, id)) continue;
+  for (const std::string& id : *ids) {
     auto rows = rows_of(planned, id);
     if (!rows) return tl::unexpected(rows.error());
     out.push_back({id, std::move(*rows)});
@@ -239,11 +256,10 @@ Result<void> list_participants(const PlannedStudy& planned) {
   const std::string path = planned.data.folder + "/participants.tsv";
   const auto before = read_if_there(path);
   if (!before) return tl::unexpected(before.error());
-  const auto folders = planned.data.participants();
-  if (!folders) return tl::unexpected(folders.error());
+  const auto ids = answering(planned);
+  if (!ids) return tl::unexpected(ids.error());
   std::vector<std::pair<std::string, std::string>> kinds;
-  for (const std::string& id : *folders) {
-    if (!is_participant(planned.study, id)) continue;
+  for (const std::string& id : *ids) {
     const auto rows = rows_of(planned, id);
     kinds.emplace_back(id, rows && !rows->empty() ? rows->front().kind : "n/a");
   }

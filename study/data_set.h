@@ -67,7 +67,7 @@ struct ParticipantRows {
   std::string id{};
   std::vector<TrialRow> rows;
 };
-/// Of the study's participants whose folders are there.
+/// Of the study's participants whose folders are there, without those who withdrew.
 [[nodiscard]] Result<std::vector<ParticipantRows>> read_rows(const PlannedStudy& planned);
 /// Folders of participants whom the study does not have.
 [[nodiscard]] Result<std::vector<std::string>> strangers(const PlannedStudy& planned);

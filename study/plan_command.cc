@@ -1,5 +1,6 @@
 #include "study/plan_command.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 #include <vector>
@@ -104,12 +105,15 @@ ExitStatus run_plan(const PlanFlags& flags,
       !std::filesystem::is_empty(flags.folder, ignored)) {
     return {ExitCode::CannotOpen, "palp-study: " + flags.folder + " is there and not empty"};
   }
-  const std::string schedule = schedule_text(*study);
-  if (schedule.size() > kTableMax) {
+  // By the first participant's, so that what is far too large is not made first.
+  Study first = *study;
+  first.participants = 1;
+  const std::size_t size = schedule_text(first).size() * study->participants;
+  const std::string schedule = size > kTableMax ? std::string{} : schedule_text(*study);
+  if (std::max(size, schedule.size()) > kTableMax) {
     return {ExitCode::BadInput,
-            "palp-study: the schedule takes " + std::to_string(schedule.size()) +
-                " bytes, more than " + std::to_string(kTableMax) +
-                ", which is what is read: fewer participants, conditions or trials"};
+            "palp-study: the schedule takes more than " + std::to_string(kTableMax) +
+                " bytes, which is what is read again: fewer participants, conditions or trials"};
   }
   const std::string key = drawn_key(*study, flags.letters, entropy);
   const Fingerprints fingerprints{
@@ -132,6 +136,7 @@ ExitStatus run_plan(const PlanFlags& flags,
       key,
       {{"dataset_description.json", dataset.dump(2) + "\n"},
        {"README", readme(*study)},
+       {".bidsignore", "*.cut\n"},
        {"participants.json",
         Json{{"kind", Json{{"Description", "who answered: person, pilot or simulated"}}}}.dump(2) +
             "\n"},

@@ -102,6 +102,8 @@ TEST(DataSetTest, OutputsDoNotTakeThePlaceOfWhatTheFolderConsistsOf) {
   const DataSet data{folder.folder()};
   EXPECT_TRUE(data.may_write(folder.beside("page.html")));
   EXPECT_TRUE(data.may_write(data.derived("page.html")));
+  EXPECT_TRUE(data.may_write("/dev/stdout"));
+  EXPECT_TRUE(data.may_write("/proc/self/fd/none"));
   EXPECT_FALSE(data.may_write(data.folder + "/participants.tsv"));
   EXPECT_FALSE(data.may_write(data.derived("../../code/key.json")));
   std::filesystem::create_symlink(data.code("plan.json"), folder.beside("link"));

@@ -43,6 +43,7 @@ TEST(JournalTest, HasOneWriter) {
 
 TEST(JournalTest, NothingButAFileIsOne) {
   EXPECT_FALSE(Journal::open("/"));
+  EXPECT_FALSE(Journal::open("/dev/null"));
   const test::PlannedFolder folder;
   ASSERT_EQ(::mkfifo(folder.beside("pipe").c_str(), 0600), 0);
   EXPECT_FALSE(Journal::open(folder.beside("pipe")));  // and does not wait for who writes

@@ -43,6 +43,22 @@ TEST(WithdrawnTest, WhoWithdrawsBetweenTrialsIsAskedNoMoreAndLeavesNothing) {
   EXPECT_FALSE(fs::exists(folder.folder() + "/sourcedata/sub-01"));
 }
 
+TEST(WithdrawnTest, NothingIsLeftWhereTheSessionEndsWithTheWithdrawal) {
+  const test::PlannedFolder folder;
+  const DataSet data{folder.folder()};
+  (void)folder.run(
+      [&](const Study&) -> Result<Observer> {
+        return [&](const TrialPlace&, const TrialAsk&) -> Result<TrialOutcome> {
+          EXPECT_TRUE(add_withdrawn(data, "sub-01"));
+          fs::create_directories(data.traces_folder("sub-01"));
+          return fail("a site has ended");
+        };
+      },
+      1);
+  EXPECT_FALSE(fs::exists(folder.folder() + "/sub-01"));
+  EXPECT_FALSE(fs::exists(data.traces_folder("sub-01")));
+}
+
 TEST(WithdrawnTest, WhoWithdrawsWhileOthersAreAskedIsNotBegun) {
   const test::PlannedFolder folder;
   std::vector<std::size_t> asked;
@@ -83,6 +99,7 @@ TEST(WithdrawnTest, CheckNamesWhoWithdrewAndIsStillThere) {
   EXPECT_EQ(end.code, ExitCode::Missed);
   EXPECT_NE(end.text.find("sub-02 has withdrawn and is still there"), std::string::npos)
       << end.text;
+  EXPECT_EQ(read_rows(*open_study(folder.folder()))->size(), 2U);  // nothing is made of them
   ASSERT_TRUE(delete_participant({folder.folder()}, "sub-02"));
   EXPECT_TRUE(withdrawn_with_data({folder.folder()})->empty());
 }
