@@ -105,8 +105,9 @@ std::string participants_text(std::string_view before,
   }
   std::string text;
   const auto add = [&text](const std::vector<std::string_view>& cells) {
-    for (std::size_t i = 0; i < cells.size(); ++i)
+    for (std::size_t i = 0; i < cells.size(); ++i) {
       text += (i > 0 ? "\t" : "") + std::string{cells[i]};
+    }
     text += '\n';
   };
   add(names);
@@ -162,7 +163,8 @@ Result<std::vector<std::string>> DataSet::participants() const {
     const std::string name = entry->path().filename();
     if (name.starts_with("sub-")) {
       const fs::file_status status = entry->symlink_status(fault);
-      if (fault) return cannot();
+      // One that is deleted just now is not there.
+      if (fault && status.type() != fs::file_type::not_found) return cannot();
       if (fs::is_symlink(status)) return is_link(entry->path());
       if (fs::is_directory(status)) out.push_back(name);
     }
