@@ -1,6 +1,7 @@
 #include "study/answers_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 
@@ -11,6 +12,9 @@
 
 namespace palp::study {
 namespace {
+
+constexpr double kLevelMax = 10;      // [-], 22,000 times as stiff
+constexpr double kDelayMax = 10'000;  // [ms]
 
 /// Takes the first line off, without its end.
 std::string_view take_line(std::string_view& text) {
@@ -86,6 +90,12 @@ Result<AnswersFile> parse_answers(std::string_view text, const std::string& name
     if (!level) {
       return fail(where + ": level_" + level_suffix({.delays = columns->delays}) + " is \"" +
                   printable(cells[columns->level]) + "\", expected a number");
+    }
+    const double level_max = columns->delays ? kDelayMax : kLevelMax;
+    if (std::abs(*level) > level_max) {
+      return fail(where + ": level_" + level_suffix({.delays = columns->delays}) + " is " +
+                  printable(cells[columns->level]) + ", expected no more than " +
+                  config::number_text(level_max) + " of either sign");
     }
     if (correct != "0" && correct != "1") {
       return fail(where + ": correct is \"" + printable(correct) + "\", expected 0, 1 or n/a");

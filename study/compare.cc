@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 
 #include <boost/math/distributions/non_central_t.hpp>
@@ -81,12 +82,18 @@ PairedTest paired_test(std::span<const double> differences, double margin) {
   for (const double one : differences) squares += (one - out.mean) * (one - out.mean);
   const double freedom = n - 1;
   out.sd = std::sqrt(squares / freedom);
+  out.p_ranks = wilcoxon(differences);
+  constexpr double kSdLeast = 1e-12;  // [-], below it is rounding: nothing is known of the spread
+  if (out.sd < kSdLeast) {
+    out.low = out.high = out.p = out.hedges_g = out.equivalent =
+        std::numeric_limits<double>::quiet_NaN();
+    return out;
+  }
   const double error = out.sd / std::sqrt(n);
   const double reach = boost::math::quantile(boost::math::students_t{freedom}, 0.975) * error;
   out.low = out.mean - reach;
   out.high = out.mean + reach;
   out.p = out.mean == 0 ? 1 : std::min(1.0, 2 * above_t(std::abs(out.mean) / error, freedom));
-  out.p_ranks = wilcoxon(differences);
   out.hedges_g = out.mean / out.sd * (1 - 3 / (4 * freedom - 1));
   out.equivalent = std::max(above_t((margin - out.mean) / error, freedom),
                             above_t((margin + out.mean) / error, freedom));
@@ -155,13 +162,16 @@ GroupPosterior group_posterior(std::span<const Measured> participants, double ta
 }
 
 std::vector<double> holm_adjusted(std::span<const double> p) {
-  std::vector<std::size_t> order(p.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!std::isnan(p[i])) order.push_back(i);
+  }
   std::ranges::sort(order, {}, [&](std::size_t i) { return p[i]; });
-  std::vector<double> out(p.size());
+  std::vector<double> out(p.size(), std::numeric_limits<double>::quiet_NaN());
   double before = 0;
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
-    const double adjusted = std::min(1.0, static_cast<double>(p.size() - rank) * p[order[rank]]);
+    const double adjusted =
+        std::min(1.0, static_cast<double>(order.size() - rank) * p[order[rank]]);
     out[order[rank]] = before = std::max(before, adjusted);
   }
   return out;

@@ -33,7 +33,8 @@ struct PairedTest {
   double hedges_g{};    ///< [-], mean over sd, corrected for small groups
   double equivalent{};  ///< [-], p of the two one-sided tests against the margin
 };
-/// `differences`: 2 at least; `margin` > 0 [-]. Differences that do not differ give p of 0 or 1.
+/// `differences`: 2 at least; `margin` > 0 [-]. Differences that do not differ say nothing of how
+/// far they spread: interval, p, g and equivalent are no numbers then.
 [[nodiscard]] PairedTest paired_test(std::span<const double> differences, double margin);
 
 /// Participants differ by themselves, and each is measured with an error of its own: value_i ~
@@ -50,7 +51,7 @@ struct GroupPosterior {
                                              double tau_max = 1.0);
 
 /// Adjusted so that the family errs no more often than one test would (Holm 1979), in the order
-/// given.
+/// given. What is no number stays so, and is none of the family.
 [[nodiscard]] std::vector<double> holm_adjusted(std::span<const double> p);
 
 /// Participants that a paired comparison needs to find a difference of `effect` [-] where the

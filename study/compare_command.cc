@@ -1,11 +1,12 @@
 #include "study/compare_command.h"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
+#include <vector>
 
 #include "common/config/json.h"
 #include "common/config/report.h"
+#include "common/core/formatted.h"
+#include "study/standing.h"
 
 namespace palp::study {
 namespace {
@@ -16,17 +17,18 @@ using config::Json;
 
 struct Opened {
   PlannedStudy planned;
+  std::vector<ParticipantRows> rows;
   StudyFit fit;
 };
 
 Result<Opened> open_and_fit(const std::string& folder) {
   auto planned = open_study(folder);
   if (!planned) return tl::unexpected(planned.error());
-  const auto rows = read_rows(*planned);
+  auto rows = read_rows(*planned);
   if (!rows) return tl::unexpected(rows.error());
   StudyFit fit = fit_study(planned->study, *rows);
   if (fit.blocks.empty()) return fail(folder + " holds no answered trial: palp-study run asks");
-  return Opened{std::move(*planned), std::move(fit)};
+  return Opened{std::move(*planned), std::move(*rows), std::move(fit)};
 }
 
 Json pair_json(const ConditionPair& pair, const std::vector<std::string>& names) {
@@ -66,39 +68,30 @@ const char* title_of(Measure measure) noexcept {
 
 }  // namespace
 
-std::string standing(const PlannedStudy& planned, const StudyFit& fit) {
-  if (!planned.registered) return "exploratory: " + planned.why_not;
-  if (fit.participants < planned.study.participants) {
-    return "exploratory: " + std::to_string(fit.participants) + " of " +
-           std::to_string(planned.study.participants) + " registered participants";
-  }
-  return "confirmatory: study file and schedule are those that were registered";
-}
-
 std::string pairs_text(const std::vector<ConditionPair>& pairs,
                        const std::vector<std::string>& names,
                        Measure measure) {
   std::string text = title_of(measure);
+  if (pairs.empty()) {
+    return text +
+           "nothing to compare: no two conditions were answered to the end by two who "
+           "count\n";
+  }
   text +=
       "pair                        n   value  95 % interval      p (Holm)   p ranks       g  equal "
       "p\n";
+  const auto cell = [](int width, int places, double value) {
+    return std::isnan(value) ? formatted("%*s", width, "n/a")
+                             : formatted("%*.*f", width, places, value);
+  };
   for (const ConditionPair& pair : pairs) {
     const auto shown = [&](double value) { return is_ratio(measure) ? std::exp(value) : value; };
     const std::string of = names[pair.second] + " : " + names[pair.first];
-    std::array<char, 256> line{};
-    std::snprintf(line.data(),
-                  line.size(),
-                  "%-24s %4zu  %6.3f  %6.3f to %-6.3f  %9.4f %9.4f %7.2f %8.4f\n",
-                  of.c_str(),
-                  pair.participants,
-                  shown(pair.test.mean),
-                  shown(pair.test.low),
-                  shown(pair.test.high),
-                  pair.p_holm,
-                  pair.test.p_ranks,
-                  pair.test.hedges_g,
-                  pair.test.equivalent);
-    text += line.data();
+    text += formatted("%-24s %4zu  ", of.c_str(), pair.participants) +
+            cell(6, 3, shown(pair.test.mean)) + "  " + cell(6, 3, shown(pair.test.low)) + " to " +
+            cell(-6, 3, shown(pair.test.high)) + "  " + cell(9, 4, pair.p_holm) + ' ' +
+            cell(9, 4, pair.test.p_ranks) + ' ' + cell(7, 2, pair.test.hedges_g) + ' ' +
+            cell(8, 4, pair.test.equivalent) + '\n';
   }
   return text;
 }
@@ -106,7 +99,10 @@ std::string pairs_text(const std::vector<ConditionPair>& pairs,
 ExitStatus run_fit_study(const std::string& folder, const std::string& report) {
   const auto opened = open_and_fit(folder);
   if (!opened) return config::refusal("palp-study", opened.error());
-  const auto& [planned, fit] = *opened;
+  const auto& [planned, rows, fit] = *opened;
+  if (auto may = planned.data.may_write(report); !report.empty() && !may) {
+    return config::refusal("palp-study", may.error());
+  }
   const std::string table = fit_table(planned.study, fit, condition_codes(planned.study));
   const auto written = config::write_whole_file(planned.data.derived("fit.tsv"), table);
   if (!written) return {ExitCode::CannotOpen, "palp-study: " + written.error().text};
@@ -142,13 +138,15 @@ void declare_compare(config::CommandLine& line, std::string& folder) {
 ExitStatus run_compare(const std::string& folder) {
   const auto opened = open_and_fit(folder);
   if (!opened) return config::refusal("palp-study", opened.error());
-  const auto& [planned, fit] = *opened;
+  const auto& [planned, rows, fit] = *opened;
   const std::vector<std::string> names = condition_codes(planned.study);
+  const auto stands = standing(planned, rows);
+  if (!stands) return config::refusal("palp-study", stands.error());
   Json report{{"schema", "palp.study_compare/1"},
               {"study", planned.study.name},
-              {"standing", standing(planned, fit)},
+              {"standing", *stands},
               {"margin_ln", planned.study.margin}};
-  std::string text = standing(planned, fit) + "\n";
+  std::string text = *stands + "\n";
   for (const Measure measure : measures_of(planned.study.task)) {
     const auto pairs = compare_study(planned.study, fit, measure);
     Json all = Json::array();

@@ -15,9 +15,6 @@ namespace palp::study {
 void declare_compare(config::CommandLine& line, std::string& folder);
 [[nodiscard]] config::ExitStatus run_compare(const std::string& folder);
 
-/// "confirmatory", or "exploratory" and why.
-[[nodiscard]] std::string standing(const PlannedStudy& planned, const StudyFit& fit);
-
 /// A table for people.
 [[nodiscard]] std::string pairs_text(const std::vector<ConditionPair>& pairs,
                                      const std::vector<std::string>& names,

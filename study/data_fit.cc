@@ -150,19 +150,24 @@ std::string why_excluded(const Study& study, const ParticipantRows& of) {
 
 std::vector<std::string> condition_codes(const Study& study) {
   std::vector<std::string> out;
-  for (std::size_t i = 0; i < study.conditions.size(); ++i) out.push_back(condition_code(study, i));
+  for (std::size_t i = 0; i < study.conditions.size(); ++i) out.push_back(condition_code(i));
+  return out;
+}
+
+std::vector<Exclusion> exclusions(const Study& study, const std::vector<ParticipantRows>& rows) {
+  std::vector<Exclusion> out;
+  for (const ParticipantRows& of : rows) {
+    if (const std::string why = why_excluded(study, of); !why.empty()) out.push_back({of.id, why});
+  }
   return out;
 }
 
 StudyFit fit_study(const Study& study, const std::vector<ParticipantRows>& rows) {
   const AnswerTable table{study.task, {}, {.jnd_count = 121}, study.levels};
-  StudyFit out;
+  StudyFit out{.blocks = {}, .excluded = exclusions(study, rows), .participants = 0};
   for (const ParticipantRows& of : rows) {
     if (of.rows.empty()) continue;
     ++out.participants;
-    if (const std::string why = why_excluded(study, of); !why.empty()) {
-      out.excluded.push_back({of.id, why});
-    }
     for (std::size_t i = 0; i < study.conditions.size(); ++i) {
       out.blocks.push_back(fit_block(study, table, i, of));
     }

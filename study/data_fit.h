@@ -46,7 +46,7 @@ struct SearchFigures {
 /// One participant under one condition.
 struct FittedBlock {
   std::string id{};
-  std::size_t condition{};  ///< of the study file
+  std::size_t condition{};  ///< of the study
   std::size_t trials{};     ///< answered, catch trials included
   bool complete{};
   Marginal ln_jnd{};
@@ -70,6 +70,10 @@ struct StudyFit {
   std::size_t participants{};  ///< with any answer
 };
 
+/// By the rules of the study.
+[[nodiscard]] std::vector<Exclusion> exclusions(const Study& study,
+                                                const std::vector<ParticipantRows>& rows);
+
 /// `rows` as read_rows() gives them.
 [[nodiscard]] StudyFit fit_study(const Study& study, const std::vector<ParticipantRows>& rows);
 
@@ -84,7 +88,7 @@ struct ConditionPair {
   std::vector<Measured> differences{};  ///< [-], of each participant
 };
 
-/// Each pair of conditions in the order of the study file; none where fewer than two took part.
+/// Each pair of conditions in the order of the study; none where fewer than two took part.
 [[nodiscard]] std::vector<ConditionPair> compare_study(const Study& study,
                                                        const StudyFit& fit,
                                                        Measure measure);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 ///     sub-01/ses-01/beh/sub-01_ses-01_task-TASK_run-01_beh.tsv     a line for each trial
 ///     sourcedata/sub-01/run-01_part-1_{surgeon,patient}.mcap       traces, of real sites alone
 ///     code/study.textproto schedule.json plan.json PREREGISTRATION.md key.json
+///     code/observer.json withdrawn.txt unblinded.txt               as far as they came to be
 ///     derivatives/palp-study/                                      what fit, compare, report say
 namespace palp::study {
 
@@ -35,29 +37,51 @@ struct DataSet {
   [[nodiscard]] std::string trials(const std::string& id,
                                    std::string_view task,
                                    std::size_t block) const;
-  /// Identifiers of those whose folders are there, in order.
-  [[nodiscard]] std::vector<std::string> participants() const;
-  /// participants.tsv follows what is there. The error is a CannotOpen.
-  [[nodiscard]] Result<void> list_participants(const std::string& kind) const;
+  /// Identifiers of those whose folders are there, in order, of the study or not. A link is an
+  /// error. Errors are CannotOpen here and below.
+  [[nodiscard]] Result<std::vector<std::string>> participants() const;
+  /// For the participant's answers; refused where a link leads elsewhere.
+  [[nodiscard]] Result<void> make_trials_folder(const std::string& id) const;
+  /// Whether an output may be written there: not over what the folder itself consists of. Below
+  /// the folder derivatives/ alone is free.
+  [[nodiscard]] Result<void> may_write(const std::string& path) const;
 };
 
 /// A study that was planned, with what registration says of it.
 struct PlannedStudy {
   DataSet data{};
-  Study study{};
+  Study study{};  ///< its conditions in the order of their letters
   std::string study_text{};
-  /// Study file and schedule are still those that were registered.
+  /// Study file, schedule, key and pre-registration are still those that were registered.
   bool registered{};
   std::string why_not{};  ///< !registered
 };
+/// Needs the key of the letters.
 [[nodiscard]] Result<PlannedStudy> open_study(const std::string& folder);
+/// For what goes by no letter, and must be possible without the key: conditions are as the study's
+/// file has them, and nothing is said of the registration.
+[[nodiscard]] Result<PlannedStudy> open_without_key(const std::string& folder);
 
 /// All answers of a participant.
 struct ParticipantRows {
   std::string id{};
   std::vector<TrialRow> rows;
 };
+/// Of the study's participants whose folders are there, without those who withdrew.
 [[nodiscard]] Result<std::vector<ParticipantRows>> read_rows(const PlannedStudy& planned);
+/// Folders of participants whom the study does not have.
+[[nodiscard]] Result<std::vector<std::string>> strangers(const PlannedStudy& planned);
+
+/// What is to be found in a cell of a block's file.
+[[nodiscard]] RowRules row_rules(const Study& study, std::size_t block);
+
+/// participants.tsv follows what is there: who answered is what the rows say, and columns that
+/// somebody added stay.
+[[nodiscard]] Result<void> list_participants(const PlannedStudy& planned);
+
+/// A regular file's content; nothing where there is none. Any other failure is an error, so that
+/// what cannot be read is not taken for what is not there.
+[[nodiscard]] Result<std::optional<std::string>> read_if_there(const std::string& path);
 
 /// SHA-256 in hexadecimal digits.
 [[nodiscard]] std::string fingerprint(std::string_view text);

@@ -34,7 +34,7 @@ std::vector<Answers> pooled_rows(const std::vector<TrialRow>& rows) {
   return pooled(out);
 }
 
-std::string psignifit(const std::vector<ParticipantRows>& rows) {
+std::string psignifit(const std::vector<ParticipantRows>& rows, const std::vector<Exclusion>&) {
   std::string text;
   for (const ParticipantRows& of : rows) {
     for (const auto& [condition, trials] : by_condition(of)) {
@@ -49,7 +49,7 @@ std::string psignifit(const std::vector<ParticipantRows>& rows) {
   return text;
 }
 
-std::string palamedes(const std::vector<ParticipantRows>& rows) {
+std::string palamedes(const std::vector<ParticipantRows>& rows, const std::vector<Exclusion>&) {
   std::string text = "% Rows: a participant under a condition, as in `who`.\n";
   std::size_t row = 0;
   for (const ParticipantRows& of : rows) {
@@ -73,29 +73,39 @@ std::string palamedes(const std::vector<ParticipantRows>& rows) {
 
 /// A row a trial, in the order in which they were answered.
 template <class RowText>
-std::string a_row_each(std::string header, const std::vector<ParticipantRows>& rows, RowText row) {
+std::string a_row_each(const std::string& columns,
+                       const std::vector<ParticipantRows>& rows,
+                       const std::vector<Exclusion>& excluded,
+                       RowText row) {
+  std::string text = columns + ",excluded\n";
   for (const ParticipantRows& of : rows) {
+    const bool out = std::ranges::find(excluded, of.id, &Exclusion::id) != excluded.end();
     std::size_t number = 0;
     for (const TrialRow& one : of.rows) {
-      if (one.ask.kind != TrialKind::Practice) header += row(of.id, number++, one) + '\n';
+      if (one.ask.kind != TrialKind::Practice)
+        text += row(of.id, number++, one) + (out ? ",1\n" : ",0\n");
     }
   }
-  return header;
+  return text;
 }
 
-std::string quickpsy(const std::vector<ParticipantRows>& rows) {
-  return a_row_each("participant,condition,level,response\n",
+std::string quickpsy(const std::vector<ParticipantRows>& rows,
+                     const std::vector<Exclusion>& excluded) {
+  return a_row_each("participant,condition,level,response",
                     rows,
+                    excluded,
                     [](const std::string& id, std::size_t, const TrialRow& row) {
                       return id + ',' + row.condition + ',' + number_text(row.ask.level) + ',' +
                              (row.yes() ? "1" : "0");
                     });
 }
 
-std::string psychopy(const std::vector<ParticipantRows>& rows) {
+std::string psychopy(const std::vector<ParticipantRows>& rows,
+                     const std::vector<Exclusion>& excluded) {
   return a_row_each(
-      "participant,session,trials.thisN,trials.intensity,trials.response,trials.rt,condition\n",
+      "participant,session,trials.thisN,trials.intensity,trials.response,trials.rt,condition",
       rows,
+      excluded,
       [](const std::string& id, std::size_t number, const TrialRow& row) {
         return id + ",01," + std::to_string(number) + ',' + number_text(row.ask.level) + ',' +
                (row.yes() ? "1" : "0") + ',' + number_text(row.outcome.response_time) + ',' +
@@ -103,9 +113,10 @@ std::string psychopy(const std::vector<ParticipantRows>& rows) {
       });
 }
 
-std::string lme4(const std::vector<ParticipantRows>& rows) {
-  return a_row_each("participant,condition,level,correct,trial\n",
+std::string lme4(const std::vector<ParticipantRows>& rows, const std::vector<Exclusion>& excluded) {
+  return a_row_each("participant,condition,level,correct,trial",
                     rows,
+                    excluded,
                     [](const std::string& id, std::size_t number, const TrialRow& row) {
                       return id + ',' + row.condition + ',' + number_text(row.ask.level) + ',' +
                              (row.yes() ? "1" : "0") + ',' + std::to_string(number + 1);
@@ -115,15 +126,17 @@ std::string lme4(const std::vector<ParticipantRows>& rows) {
 }  // namespace
 
 std::optional<std::string> export_text(std::string_view format,
-                                       const std::vector<ParticipantRows>& rows) {
-  using Export = std::string (*)(const std::vector<ParticipantRows>&);
+                                       const std::vector<ParticipantRows>& rows,
+                                       const std::vector<Exclusion>& excluded) {
+  using Export =
+      std::string (*)(const std::vector<ParticipantRows>&, const std::vector<Exclusion>&);
   constexpr std::array<std::pair<std::string_view, Export>, 5> kExports{{{"psignifit", psignifit},
                                                                          {"quickpsy", quickpsy},
                                                                          {"palamedes", palamedes},
                                                                          {"psychopy", psychopy},
                                                                          {"lme4", lme4}}};
   for (const auto& [name, write] : kExports) {
-    if (name == format) return write(rows);
+    if (name == format) return write(rows, excluded);
   }
   return std::nullopt;
 }

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <iterator>
 
 #include "common/config/json.h"
 #include "common/config/report.h"
+#include "common/core/formatted.h"
 #include "common/core/printable.h"
 #include "common/core/whole_file.h"
 #include "study/answer_posterior.h"
@@ -50,6 +50,9 @@ Result<Row> row_of(const ConditionAnswers& of, const Task& task, const FitFlags&
   std::vector<double> levels;
   Row row;
   row.condition = of.condition;
+  if (std::ranges::all_of(of.answers, [](const Answers& at) { return at.level == 0; })) {
+    return fail("every level is 0: nothing was there to be told apart");
+  }
   for (const Answers& at : of.answers) {
     if (!task.two_sided && at.level < 0) {
       return fail("a level below 0 is of a two-sided task: add --two-sided");
@@ -110,10 +113,8 @@ Json row_json(const Row& row, const Task& task) {
 }
 
 std::string row_text(const Row& row, const Task& task) {
-  std::array<char, 256> line{};
-  std::snprintf(line.data(),
-                line.size(),
-                "%-24s  %6zu  %6.1f  %8.1f  %6.1f to %-6.1f  %6.1f",
+  std::string text =
+      formatted("%-24s  %6zu  %6.1f  %8.1f  %6.1f to %-6.1f  %6.1f",
                 harmless_line(row.condition.empty() ? "all" : row.condition).c_str(),
                 row.trials,
                 100.0 * static_cast<double>(row.yes) / static_cast<double>(row.trials),
@@ -121,25 +122,18 @@ std::string row_text(const Row& row, const Task& task) {
                 said_level(task, std::exp(row.ln_jnd.low)),
                 said_level(task, std::exp(row.ln_jnd.high)),
                 100 * row.lapse);
-  std::string text{line.data()};
   if (task.two_sided) {
-    std::snprintf(line.data(),
-                  line.size(),
-                  "  %8.1f  %6.1f to %-6.1f",
-                  percent_of_level(row.pse.median),
-                  percent_of_level(row.pse.low),
-                  percent_of_level(row.pse.high));
-    text += line.data();
+    text += formatted("  %8.1f  %6.1f to %-6.1f",
+                      percent_of_level(row.pse.median),
+                      percent_of_level(row.pse.low),
+                      percent_of_level(row.pse.high));
   }
   if (row.curve) {
-    std::snprintf(line.data(),
-                  line.size(),
-                  "  %9.4f  %7.4f to %-7.4f  %8.4f",
-                  row.curve->threshold.likeliest,
-                  row.curve->threshold.low,
-                  row.curve->threshold.high,
-                  row.curve->width.likeliest);
-    text += line.data();
+    text += formatted("  %9.4f  %7.4f to %-7.4f  %8.4f",
+                      row.curve->threshold.likeliest,
+                      row.curve->threshold.low,
+                      row.curve->threshold.high,
+                      row.curve->width.likeliest);
   }
   return text + "\n";
 }
@@ -210,6 +204,11 @@ Result<FitStatement> fit_statement(const AnswersFile& file, const FitFlags& flag
 ExitStatus run_fit(const FitFlags& flags) {
   std::error_code ignored;
   if (std::filesystem::is_directory(flags.file, ignored)) {
+    if (flags.two_sided || !flags.curve.empty() || flags.intervals != FitFlags{}.intervals) {
+      return {ExitCode::BadInput,
+              "palp-study: --intervals, --two-sided and --curve are of tables; a study's folder "
+              "says itself what was asked"};
+    }
     return run_fit_study(flags.file, flags.report);
   }
   const auto text = read_whole_file(flags.file, std::size_t{64} << 20);

@@ -1,16 +1,14 @@
 #include "study/keep_command.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <vector>
 
 #include "common/config/report.h"
 #include "common/core/printable.h"
-#include "common/core/whole_file.h"
 #include "study/data_set.h"
 #include "study/exports.h"
-#include "study/journal.h"
-#include "study/replay_rows.h"
+#include "study/standing.h"
+#include "study/withdrawn.h"
 
 namespace palp::study {
 namespace {
@@ -20,35 +18,6 @@ using config::ExitCode;
 using config::ExitStatus;
 
 ExitStatus refused(const Error& fault) { return config::refusal("palp-study", fault); }
-
-/// The rows of one block.
-std::vector<TrialRow> rows_of(const ParticipantRows& of, std::size_t block) {
-  std::vector<TrialRow> out;
-  std::ranges::copy_if(
-      of.rows, std::back_inserter(out), [&](const TrialRow& row) { return row.block == block; });
-  return out;
-}
-
-/// What is wrong with a participant's answers, a sentence each.
-std::vector<std::string> faults_of(const Study& study,
-                                   const AnswerTable& table,
-                                   const ParticipantRows& of) {
-  for (std::size_t participant = 0; participant < study.participants; ++participant) {
-    if (participant_id(participant) != of.id) continue;
-    std::vector<std::string> faults;
-    std::size_t number = 0;
-    for (const BlockPlan& plan : participant_plan(study, participant)) {
-      Block block{study, table, plan};
-      const auto told =
-          replay_rows(block, rows_of(of, ++number), condition_code(study, plan.condition));
-      if (!told) {
-        faults.push_back(of.id + ", block " + std::to_string(number) + ": " + told.error().text);
-      }
-    }
-    return faults;
-  }
-  return {of.id + " is none of the study's participants"};
-}
 
 }  // namespace
 
@@ -66,9 +35,12 @@ void declare_export(config::CommandLine& line, KeepFlags& flags) {
 ExitStatus run_export(const KeepFlags& flags) {
   const auto planned = open_study(flags.folder);
   if (!planned) return refused(planned.error());
+  if (auto may = planned->data.may_write(flags.out); !may) return refused(may.error());
   const auto rows = read_rows(*planned);
   if (!rows) return refused(rows.error());
-  const auto written = config::write_whole_file(flags.out, *export_text(flags.format, *rows));
+  const auto excluded = exclusions(planned->study, *rows);
+  const auto written =
+      config::write_whole_file(flags.out, *export_text(flags.format, *rows, excluded));
   if (!written) return {ExitCode::CannotOpen, "palp-study: " + written.error().text};
   return {ExitCode::Done, "written: " + flags.out + "\n"};
 }
@@ -84,18 +56,18 @@ ExitStatus run_check(const KeepFlags& flags) {
   if (!planned) return refused(planned.error());
   const auto rows = read_rows(*planned);
   if (!rows) return refused(rows.error());
-  const AnswerTable table = table_of(planned->study);
-  std::vector<std::string> faults;
-  if (!planned->registered) faults.push_back(planned->why_not);
-  std::size_t answers = 0;
-  for (const ParticipantRows& of : *rows) {
-    answers += of.rows.size();
-    for (std::string& one : faults_of(planned->study, table, of)) faults.push_back(std::move(one));
-  }
+  auto replay = replay_study(*planned, *rows);
+  if (!replay) return refused(replay.error());
+  const auto looked = early_look(planned->data);
+  if (!looked) return refused(looked.error());
+  std::vector<std::string>& faults = replay->faults;
+  if (!planned->registered) faults.insert(faults.begin(), planned->why_not);
   if (faults.empty()) {
+    std::size_t answers = 0;
+    for (const ParticipantRows& of : *rows) answers += of.rows.size();
     return {ExitCode::Done,
             "as registered; " + std::to_string(answers) + " answers of " +
-                std::to_string(rows->size()) + " participants fit the schedule\n"};
+                std::to_string(rows->size()) + " participants fit the schedule" + *looked + "\n"};
   }
   std::string text;
   for (const std::string& one : faults) text += (text.empty() ? "palp-study: " : "; ") + one;
@@ -110,11 +82,11 @@ void declare_withdraw(config::CommandLine& line, KeepFlags& flags) {
   line.footer(
       "Deletes what the participant answered and the traces of it, and what fit, compare and "
       "report derived from all.\n"
-      "Exports elsewhere are yours to delete.");
+      "Exports are yours to delete: those in the folder are named.");
 }
 
 ExitStatus run_withdraw(const KeepFlags& flags) {
-  const auto planned = open_study(flags.folder);
+  const auto planned = open_without_key(flags.folder);
   if (!planned) return refused(planned.error());
   bool known = false;
   for (std::size_t i = 0; i < planned->study.participants; ++i) {
@@ -124,23 +96,28 @@ ExitStatus run_withdraw(const KeepFlags& flags) {
     return {ExitCode::BadInput,
             "palp-study: " + printable(flags.participant) + " is none of the study's participants"};
   }
-  const auto rows = read_rows(*planned);
-  std::string kind = "person";
-  if (rows && !rows->empty() && !rows->front().rows.empty()) kind = rows->front().rows.front().kind;
-  const std::string path = planned->data.code("withdrawn.txt");
-  const std::string before = read_whole_file(path).value_or(std::string{});
-  auto log = Journal::open(path, before.size());
-  if (!log) return refused(log.error());
-  if (auto added = log->add(flags.participant + '\n'); !added) return refused(added.error());
+  if (auto added = add_withdrawn(planned->data, flags.participant); !added) {
+    return refused(added.error());
+  }
+  if (auto gone = delete_participant(planned->data, flags.participant); !gone) {
+    return refused(gone.error());
+  }
   std::error_code fault;
-  fs::remove_all(flags.folder + '/' + flags.participant, fault);
-  if (!fault) fs::remove_all(planned->data.traces_folder(flags.participant), fault);
-  if (!fault) fs::remove_all(planned->data.derived(""), fault);
+  fs::remove_all(planned->data.derived(""), fault);
   if (fault) return {ExitCode::CannotOpen, "palp-study: cannot delete: " + fault.message()};
   if (auto made = make_folder(planned->data.derived("")); !made) return refused(made.error());
-  if (auto listed = planned->data.list_participants(kind); !listed) return refused(listed.error());
-  return {ExitCode::Done,
-          flags.participant + " is deleted; fit and report have to be made again\n"};
+  if (auto listed = list_participants(*planned); !listed) return refused(listed.error());
+  const auto left = files_with(planned->data, flags.participant);
+  if (!left) {
+    return refused({flags.participant +
+                        " is deleted, but not all files were searched for it: " + left.error().text,
+                    true});
+  }
+  std::string text = flags.participant + " is deleted; fit and report have to be made again\n";
+  for (const std::string& path : *left) {
+    text += printable(path) + " still names " + flags.participant + ": it is yours to delete\n";
+  }
+  return {ExitCode::Done, text};
 }
 
 }  // namespace palp::study

@@ -10,6 +10,7 @@
 
 #include "common/config/command_line.h"
 #include "common/config/program_run.h"
+#include "common/io/process/entropy.h"
 #include "common/io/process/parallel.h"
 #include "site_program/build_info.h"
 #include "study/closed_loop/contrast_command.h"
@@ -113,7 +114,7 @@ int run_program(int argc, char** argv) {
       std::string{site_program::version()} + ", commit " + std::string{site_program::git_commit()};
   return config::run_program(line, argc, argv, [&]() -> config::ExitStatus {
     const std::string verb = line.chosen_verb();
-    if (verb == "plan") return run_plan(plan, made_by);
+    if (verb == "plan") return run_plan(plan, made_by, io::draw_entropy);
     if (verb == "run") return run(run_flags);
     if (verb == "foretell") return run_foretell(foretold, for_each_index);
     if (verb == "contrast") return run_contrast(contrast);

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 
 #include "common/config/command_line.h"
-#include "study/study_file.h"
 
 namespace palp::study {
 
@@ -11,17 +13,14 @@ namespace palp::study {
 struct PlanFlags {
   std::string file{};
   std::string folder{};
+  std::optional<std::uint64_t> letters{};  ///< nothing: by chance
 };
 
 void declare_plan(config::CommandLine& line, PlanFlags& flags);
-/// `made_by`: version and commit of this program.
-[[nodiscard]] config::ExitStatus run_plan(const PlanFlags& flags, const std::string& made_by);
-
-/// What is registered before anybody is asked: question, conditions, measure, numbers and why,
-/// order, exclusions, analysis, seed, fingerprints.
-[[nodiscard]] std::string preregistration(const Study& study,
-                                          const std::string& study_sha256,
-                                          const std::string& schedule_sha256,
-                                          const std::string& made_by);
+/// `made_by`: version and commit of this program; `entropy`: 64 bits that nobody can guess, from
+/// which the letters are drawn.
+[[nodiscard]] config::ExitStatus run_plan(const PlanFlags& flags,
+                                          const std::string& made_by,
+                                          const std::function<std::uint64_t()>& entropy);
 
 }  // namespace palp::study

@@ -3,9 +3,9 @@
 #include "common/config/report.h"
 #include "common/core/whole_file.h"
 #include "common/plot/pdf.h"
-#include "study/compare_command.h"
-#include "study/journal.h"
+#include "study/standing.h"
 #include "study/study_report.h"
+#include "study/who_answers.h"
 
 namespace palp::study {
 namespace {
@@ -15,18 +15,6 @@ using config::ExitStatus;
 
 ExitStatus closed(const Error& fault) {
   return {ExitCode::CannotOpen, "palp-study: " + fault.text};
-}
-
-/// That somebody looked, and how much was answered by then, stays in the folder.
-Result<void> log_unblinding(const PlannedStudy& planned, const StudyFit& fit) {
-  std::size_t trials = 0;
-  for (const FittedBlock& one : fit.blocks) trials += one.trials;
-  const std::string path = planned.data.code("unblinded.txt");
-  const std::string before = read_whole_file(path).value_or(std::string{});
-  auto log = Journal::open(path, before.size());
-  if (!log) return tl::unexpected(log.error());
-  return log->add("unblinded after " + std::to_string(trials) + " answers of " +
-                  std::to_string(fit.participants) + " participants\n");
 }
 
 /// As SVG and, where asked for, as PDF, in the width of a journal's page.
@@ -42,12 +30,11 @@ Result<void> write_figure(const DataSet& data,
   return config::write_whole_file(data.derived(name + ".pdf"), *page);
 }
 
-/// The conditions that each answer's kind shows; one kind is all there is.
-std::string kind_of(const std::vector<ParticipantRows>& rows) {
-  for (const ParticipantRows& of : rows) {
-    if (!of.rows.empty()) return of.rows.front().kind;
-  }
-  return {};
+/// One kind is all there is, or something is wrong.
+std::string kinds_text(const std::vector<ParticipantRows>& rows) {
+  std::string text;
+  for (const std::string& kind : kinds_of(rows)) text += (text.empty() ? "" : ", ") + kind;
+  return text;
 }
 
 }  // namespace
@@ -66,19 +53,26 @@ ExitStatus run_report(const StudyReportFlags& flags) {
   if (!planned) return config::refusal("palp-study", planned.error());
   const auto rows = read_rows(*planned);
   if (!rows) return config::refusal("palp-study", rows.error());
+  if (auto may = planned->data.may_write(flags.out); !flags.out.empty() && !may) {
+    return config::refusal("palp-study", may.error());
+  }
   const Study& study = planned->study;
   const StudyFit fit = fit_study(study, *rows);
   if (fit.blocks.empty()) {
     return {ExitCode::BadInput, "palp-study: " + flags.folder + " holds no answered trial"};
   }
+  if (flags.unblind) {
+    if (auto logged = log_unblinding(*planned, *rows); !logged) return closed(logged.error());
+  }
+  const auto stands = standing(*planned, *rows);
+  if (!stands) return config::refusal("palp-study", stands.error());
   ReportParts parts{
-      .standing = standing(*planned, fit),
+      .standing = *stands,
       .preregistration =
           read_whole_file(planned->data.code("PREREGISTRATION.md")).value_or("missing"),
       .names = condition_codes(study),
-      .kind = kind_of(*rows)};
+      .kind = kinds_text(*rows)};
   if (flags.unblind) {
-    if (auto logged = log_unblinding(*planned, fit); !logged) return closed(logged.error());
     for (std::size_t i = 0; i < parts.names.size(); ++i) parts.names[i] = study.conditions[i].name;
   }
   const std::string out = flags.out.empty() ? planned->data.derived("report.html") : flags.out;

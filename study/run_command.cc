@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <utility>
 #include <vector>
 
-#include "common/core/whole_file.h"
 #include "study/journal.h"
 #include "study/replay_rows.h"
+#include "study/who_answers.h"
+#include "study/withdrawn.h"
 
 namespace palp::study {
 namespace {
@@ -34,11 +36,40 @@ struct BlockEnd {
   std::size_t answered{};  ///< in this run
 };
 
-/// The rows of an earlier run, told to the block again.
-Result<RowsFile> rows_before(const std::string& path, const Study& study) {
-  const auto text = read_whole_file(path, kTableMax);
-  if (!text) return RowsFile{};
-  return parse_rows(*text, path, study.task);
+/// Nobody who has withdrawn is asked on; what was written since goes too.
+Result<void> refuse_withdrawn(const Runner& runner, const std::string& id) {
+  const auto gone = has_withdrawn(runner.planned.data, id);
+  if (!gone) return tl::unexpected(gone.error());
+  if (!*gone) return {};
+  if (auto deleted = delete_participant(runner.planned.data, id); !deleted) return deleted;
+  return fail(id + " has withdrawn: nothing more is asked");
+}
+
+/// The file of a block, locked, with the rows of earlier runs in it.
+struct OpenBlock {
+  Journal journal;
+  std::vector<TrialRow> before;
+};
+Result<OpenBlock> open_block(const Runner& runner, const std::string& id, std::size_t number) {
+  const Study& study = runner.planned.study;
+  const std::string path = runner.planned.data.trials(id, task_name(study), number);
+  if (auto wanted = refuse_withdrawn(runner, id); !wanted) return tl::unexpected(wanted.error());
+  if (auto made = runner.planned.data.make_trials_folder(id); !made) {
+    return tl::unexpected(made.error());
+  }
+  auto journal = Journal::open(path);
+  if (!journal) return tl::unexpected(journal.error());
+  // Who withdrew just before the file was made would have it all the same.
+  if (auto wanted = refuse_withdrawn(runner, id); !wanted) return tl::unexpected(wanted.error());
+  auto before = parse_rows(journal->text(), path, row_rules(study, number));
+  if (!before) return tl::unexpected(before.error());
+  if (auto cut = journal->cut(before->whole); !cut) return tl::unexpected(cut.error());
+  if (before->whole == 0) {
+    if (auto added = journal->add(row_header(study.task)); !added) {
+      return tl::unexpected(added.error());
+    }
+  }
+  return OpenBlock{std::move(*journal), std::move(before->rows)};
 }
 
 Result<BlockEnd> run_block(const Runner& runner,
@@ -48,26 +79,25 @@ Result<BlockEnd> run_block(const Runner& runner,
                            double clock) {
   const Study& study = runner.planned.study;
   const std::string id = participant_id(participant);
-  const std::string path = runner.planned.data.trials(id, task_name(study), number);
-  const std::string code = condition_code(study, plan.condition);
-  const auto before = rows_before(path, study);
-  if (!before) return tl::unexpected(before.error());
+  const std::string code = condition_code(plan.condition);
+  auto opened = open_block(runner, id, number);
+  if (!opened) return tl::unexpected(opened.error());
+  auto& [journal, before] = *opened;
   Block block{study, runner.table, plan};
-  if (auto told = replay_rows(block, before->rows, code); !told) return fail(path, told.error());
-  auto journal = Journal::open(path, before->whole);
-  if (!journal) return tl::unexpected(journal.error());
-  if (before->whole == 0) {
-    if (auto added = journal->add(row_header(study.task)); !added)
-      return tl::unexpected(added.error());
+  if (auto told = replay_rows(block, before, code); !told) {
+    return fail(runner.planned.data.trials(id, task_name(study), number), told.error());
   }
   BlockEnd end{.clock = clock, .excluded = false, .answered = 0};
-  if (!before->rows.empty()) {
-    const TrialOutcome& last = before->rows.back().outcome;
+  if (!before.empty()) {
+    const TrialOutcome& last = before.back().outcome;
     end.clock = milliseconds(last.onset + last.duration);
   }
   while (!block.done()) {
+    if (auto wanted = refuse_withdrawn(runner, id); !wanted) return tl::unexpected(wanted.error());
     const TrialAsk ask = block.next();
     const auto outcome = runner.observer({participant, plan.condition}, ask);
+    // A session may have been begun for somebody who withdrew in the rest before it.
+    if (auto wanted = refuse_withdrawn(runner, id); !wanted) return tl::unexpected(wanted.error());
     if (!outcome) return tl::unexpected(outcome.error());
     TrialRow row{.ask = ask,
                  .outcome = *outcome,
@@ -83,7 +113,7 @@ Result<BlockEnd> run_block(const Runner& runner,
     const Marginal believed = block.believed(ask.track);
     row.believed_mean = believed.mean;
     row.believed_sd = believed.sd;
-    if (auto added = journal->add(row_text(row)); !added) return tl::unexpected(added.error());
+    if (auto added = journal.add(row_text(row)); !added) return tl::unexpected(added.error());
     end.clock = milliseconds(end.clock + row.outcome.duration);
     ++end.answered;
     if (runner.each) {
@@ -95,13 +125,12 @@ Result<BlockEnd> run_block(const Runner& runner,
   return end;
 }
 
-/// @returns trials answered now.
-Result<std::size_t> run_participant(const Runner& runner, std::size_t participant) {
+/// @returns trials answered now; nothing: the participant withdrew before.
+Result<std::optional<std::size_t>> run_participant(const Runner& runner, std::size_t participant) {
   const Study& study = runner.planned.study;
-  const std::string id = participant_id(participant);
-  if (auto made = make_folder(runner.planned.data.trials_folder(id)); !made) {
-    return tl::unexpected(made.error());
-  }
+  const auto gone = has_withdrawn(runner.planned.data, participant_id(participant));
+  if (!gone) return tl::unexpected(gone.error());
+  if (*gone) return std::nullopt;
   std::size_t answered = 0;
   double clock = 0;
   std::size_t number = 0;
@@ -128,18 +157,30 @@ Result<std::vector<std::size_t>> chosen(const RunFlags& flags, const PlannedStud
     return fail("--participant is " + std::to_string(*flags.participant) + ", the study has " +
                 std::to_string(count));
   }
-  const std::string withdrawn =
-      read_whole_file(planned.data.code("withdrawn.txt")).value_or(std::string{});
+  const auto withdrawn = withdrawn_participants(planned.data);
+  if (!withdrawn) return tl::unexpected(withdrawn.error());
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < count; ++i) {
     if (flags.participant && *flags.participant != i + 1) continue;
-    if (withdrawn.find(participant_id(i) + '\n') == std::string::npos) {
+    if (std::ranges::find(*withdrawn, participant_id(i)) == withdrawn->end()) {
       out.push_back(i);
     } else if (flags.participant) {
       return fail(participant_id(i) + " has withdrawn");
     }
   }
   return out;
+}
+
+/// Answers of one folder are of one kind.
+Result<void> bind_to(const RunFlags& flags, const PlannedStudy& planned) {
+  const auto rows = read_rows(planned);
+  if (!rows) return tl::unexpected(rows.error());
+  WhoAnswers who{.kind = kind_of(flags, planned.study), .observer = {}, .people = {}};
+  if (flags.observer != kPerson) {
+    who.observer = flags.observer;
+    who.people = flags.people;
+  }
+  return bind_folder(planned, *rows, who);
 }
 
 }  // namespace
@@ -191,25 +232,36 @@ ExitStatus run_run(const RunFlags& flags,
   if (flags.observer == kPerson && !flags.participant) {
     return {ExitCode::BadInput, "palp-study: --observer person needs --participant: one at a time"};
   }
+  if (!planned->registered) {
+    return {ExitCode::BadInput, "palp-study: nobody is asked: " + planned->why_not};
+  }
   const auto who = chosen(flags, *planned);
   if (!who) return config::refusal("palp-study", who.error());
+  if (auto bound = bind_to(flags, *planned); !bound) {
+    return config::refusal("palp-study", bound.error());
+  }
   const auto observer = make_observer(planned->study);
   if (!observer) return config::refusal("palp-study", observer.error());
+  // Whatever becomes of this run, those of earlier ones are on the list.
+  if (auto listed = list_participants(*planned); !listed) {
+    return config::refusal("palp-study", listed.error());
+  }
   const AnswerTable table = table_of(planned->study);
   const Runner runner{*planned, table, *observer, say, flags.each, kind_of(flags, planned->study)};
-  std::vector<Result<std::size_t>> ends(who->size());
+  std::vector<Result<std::optional<std::size_t>>> ends(who->size());
   for_each_index(who->size(), [&](std::size_t i) { ends[i] = run_participant(runner, (*who)[i]); });
+  const auto listed = list_participants(*planned);
   std::size_t answered = 0;
+  std::size_t through = 0;
   for (const auto& end : ends) {
     if (!end) return config::refusal("palp-study", end.error());
-    answered += *end;
+    answered += end->value_or(std::size_t{0});
+    if (end->has_value()) ++through;
   }
-  const auto listed = planned->data.list_participants(runner.kind);
   if (!listed) return config::refusal("palp-study", listed.error());
-  std::string text = std::to_string(who->size()) + " participants through, " +
-                     std::to_string(answered) + " trials answered now\n";
-  if (!planned->registered) text += "warning: " + planned->why_not + "\n";
-  return {ExitCode::Done, text};
+  return {ExitCode::Done,
+          std::to_string(through) + " participants through, " + std::to_string(answered) +
+              " trials answered now\n"};
 }
 
 }  // namespace palp::study

@@ -18,7 +18,6 @@ constexpr std::size_t kRunMax = 4;
 constexpr std::size_t kDecoys = 4;
 
 // Streams of one study: some for all, then kStreams for each block of each participant.
-constexpr std::uint64_t kCodes = 1;
 constexpr std::uint64_t kBlocks = 16;
 constexpr std::uint64_t kStreams = 16;
 constexpr std::uint64_t kSides = 0;
@@ -31,14 +30,6 @@ constexpr std::uint64_t kHidden = 6;
 
 std::uint64_t stream_of(std::size_t participant, std::size_t condition, std::uint64_t what) {
   return kBlocks + (participant * kConditionsMax + condition) * kStreams + what;
-}
-
-/// 0 to count-1 in an order drawn by seed.
-std::vector<std::size_t> drawn_order(std::size_t count, std::uint64_t seed, std::uint64_t stream) {
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, {}, [&](std::size_t i) { return random_bits(seed, stream, i); });
-  return order;
 }
 
 /// Which of the slots are catch trials: one in each equal stretch.
@@ -104,6 +95,13 @@ Json slots_json(const std::vector<Slot>& slots, bool searches) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> drawn_order(std::size_t count, std::uint64_t seed, std::uint64_t stream) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return random_bits(seed, stream, i); });
+  return order;
+}
 
 std::vector<std::size_t> balanced_draw(std::size_t count,
                                        std::size_t kinds,
@@ -171,10 +169,8 @@ std::vector<BlockPlan> participant_plan(const Study& study, std::size_t particip
   return blocks;
 }
 
-std::string condition_code(const Study& study, std::size_t condition) {
-  const auto order = drawn_order(study.conditions.size(), study.seed, kCodes);
-  const auto at = std::ranges::find(order, condition) - order.begin();
-  return std::string(1, static_cast<char>('A' + at));
+std::string condition_code(std::size_t condition) {
+  return std::string(1, static_cast<char>('A' + condition));
 }
 
 std::string schedule_text(const Study& study) {
@@ -184,7 +180,7 @@ std::string schedule_text(const Study& study) {
   for (std::size_t p = 0; p < study.participants; ++p) {
     Json blocks = Json::array();
     for (const BlockPlan& block : participant_plan(study, p)) {
-      blocks.push_back(Json{{"condition", condition_code(study, block.condition)},
+      blocks.push_back(Json{{"condition", condition_code(block.condition)},
                             {"practice", slots_json(block.practice, searches)},
                             {"trials", slots_json(block.trials, searches)}});
     }

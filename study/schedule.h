@@ -53,9 +53,14 @@ struct BlockPlan {
 /// Blocks in the order of a row of a Williams square. `participant` from 0.
 [[nodiscard]] std::vector<BlockPlan> participant_plan(const Study& study, std::size_t participant);
 
-/// The letter that stands for a condition on every screen and in every file; the letters are dealt
-/// out by the seed.
-[[nodiscard]] std::string condition_code(const Study& study, std::size_t condition);
+/// The letter that stands for a condition on every screen and in every file. Conditions are in the
+/// order of their letters but where a study is as its file has it (letters.h).
+[[nodiscard]] std::string condition_code(std::size_t condition);
+
+/// 0 to count-1 in an order drawn by seed.
+[[nodiscard]] std::vector<std::size_t> drawn_order(std::size_t count,
+                                                   std::uint64_t seed,
+                                                   std::uint64_t stream);
 
 /// `count` numbers below `kinds` >= 2, as even as can be and never more than 4 equal ones on end.
 [[nodiscard]] std::vector<std::size_t> balanced_draw(std::size_t count,
@@ -64,7 +69,7 @@ struct BlockPlan {
                                                      std::uint64_t stream);
 
 /// The schedule of all participants as JSON, with codes in place of conditions: what is registered
-/// and hashed.
+/// and hashed. It does not depend on which condition has which code.
 [[nodiscard]] std::string schedule_text(const Study& study);
 
 }  // namespace palp::study

@@ -231,6 +231,9 @@ Result<void> check_study(const proto::config::Study& message) {
   if (message.practice().right() > message.practice().of()) {
     return fail("practice.right must not be above practice.of");
   }
+  if (message.practice().right() > message.practice().trials_max()) {
+    return fail("practice.right must not be above practice.trials_max");
+  }
   if (message.trials() < message.tracks()) return fail("trials must not be fewer than tracks");
   return {};
 }

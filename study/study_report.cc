@@ -217,7 +217,8 @@ std::string report_html(const Study& study, const StudyFit& fit, const ReportPar
   page += figure_svg(answers_figure(study, fit, parts.names), style);
   page += fits_html(study, fit, parts);
   page += "<h2>Excluded</h2>\n<ul>\n";
-  for (const Exclusion& one : fit.excluded) page += "<li>" + one.id + ": " + one.why + "</li>\n";
+  for (const Exclusion& one : fit.excluded)
+    page += "<li>" + escaped(one.id) + ": " + escaped(one.why) + "</li>\n";
   if (fit.excluded.empty()) page += "<li>nobody</li>\n";
   page += "</ul>\n<h2>What a reader asks for</h2>\n" + checklist(study, fit, parts);
   page += "<h2>As it was registered</h2>\n<pre>" + escaped(parts.preregistration) +

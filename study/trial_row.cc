@@ -1,5 +1,6 @@
 #include "study/trial_row.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -61,6 +62,10 @@ constexpr std::size_t kForceMean = kError + 2;
 
 constexpr double kMillimetres = 1e3;  // [1/m]
 
+constexpr std::array<std::string_view, 3> kWho{"person", "pilot", "simulated"};
+
+constexpr const char* kNoHeader = "the first line does not name the columns of this version";
+
 /// All but those of words.
 Result<std::vector<double>> numbers_of(const std::vector<std::string_view>& cells,
                                        const std::vector<Column>& columns) {
@@ -77,17 +82,58 @@ Result<std::vector<double>> numbers_of(const std::vector<std::string_view>& cell
   return numbers;
 }
 
+/// Which numbers are whole and from where, and what is none of the study's.
+Result<void> check_cells(const std::vector<std::string_view>& cells,
+                         const std::vector<double>& numbers,
+                         const std::vector<Column>& columns,
+                         const RowRules& rules) {
+  const auto refused = [&](std::size_t at, const char* expected) {
+    return fail(std::string{columns[at].name} + " is \"" + printable(cells[at]) + "\", expected " +
+                expected);
+  };
+  for (const Cell::Place at : {Cell::Block,
+                               Cell::Trial,
+                               Cell::Track,
+                               Cell::Interval,
+                               Cell::Response,
+                               Cell::Correct,
+                               Cell::Taps}) {
+    if (numbers[at] != std::floor(numbers[at])) return refused(at, "a whole number");
+  }
+  for (std::size_t at = 0; at < cells.size(); ++at) {
+    const bool of_any_sign =
+        at == Cell::Level || at == Cell::Mean || (rules.task.ranks && at == kTau);
+    if (!of_any_sign && numbers[at] < 0) return refused(at, "no negative number");
+  }
+  if (numbers[Cell::Trial] < 1) return refused(Cell::Trial, "a number from 1");
+  const auto block = static_cast<std::size_t>(numbers[Cell::Block]);
+  if (block < 1 || block > rules.conditions || (rules.block > 0 && block != rules.block)) {
+    return refused(Cell::Block, "the block of the file");
+  }
+  const std::string_view condition = cells[Cell::Condition];
+  if (condition.size() != 1 || condition[0] < 'A' ||
+      static_cast<std::size_t>(condition[0] - 'A') >= rules.conditions) {
+    return refused(Cell::Condition, "a letter of the study");
+  }
+  if (!kind_of(cells[Cell::Kind])) return refused(Cell::Kind, "trial, catch or practice");
+  if (std::ranges::find(kWho, cells[Cell::Who]) == std::end(kWho)) {
+    return refused(Cell::Who, "person, pilot or simulated");
+  }
+  return {};
+}
+
 Result<TrialRow> row_of(const std::vector<std::string_view>& cells,
                         const std::vector<Column>& columns,
-                        const Task& task) {
+                        const RowRules& rules) {
+  const Task& task = rules.task;
   const auto numbers = numbers_of(cells, columns);
   if (!numbers) return tl::unexpected(numbers.error());
   const std::vector<double>& number = *numbers;
+  if (auto checked = check_cells(cells, number, columns, rules); !checked) {
+    return tl::unexpected(checked.error());
+  }
   const auto kind = kind_of(cells[Cell::Kind]);
   const auto whole = [&](Cell::Place at) { return static_cast<std::size_t>(number[at]); };
-  if (!kind || number[Cell::Block] < 1 || number[Cell::Trial] < 1 || number[Cell::Track] < 0) {
-    return fail("trial_type, block, trial or track is none");
-  }
   for (const Cell::Place at : {Cell::Interval, Cell::Response}) {
     if (number[at] < 1 || number[at] > static_cast<double>(choices(task))) {
       return fail(std::string{columns[at].name} + " is none of the trial's");
@@ -220,23 +266,29 @@ std::string row_text(const TrialRow& row) {
   return text + '\n';
 }
 
-Result<RowsFile> parse_rows(std::string_view text, const std::string& name, const Task& task) {
+Result<RowsFile> parse_rows(std::string_view text, const std::string& name, const RowRules& rules) {
+  const Task& task = rules.task;
   RowsFile out;
   const std::vector<Column> columns = row_columns(task);
   for (std::size_t number = 1, begin = 0;; ++number) {
     const std::size_t end = text.find('\n', begin);
-    if (end == std::string_view::npos) break;
+    if (end == std::string_view::npos) {
+      if (number == 1 && !row_header(task).starts_with(text)) {
+        return fail(name + ": " + kNoHeader);
+      }
+      break;
+    }
     const std::string_view line = text.substr(begin, end - begin);
     begin = end + 1;
     if (number == 1) {
       if (std::string{line} + '\n' != row_header(task)) {
-        return fail(name + ": the first line does not name the columns of this version");
+        return fail(name + ": " + kNoHeader + (line.ends_with('\r') ? ": it ends in CR" : ""));
       }
     } else {
       const std::string where = name + ", line " + std::to_string(number);
       const auto cells = tab_cells(line);
       if (cells.size() != columns.size()) return fail(where + " has another number of cells");
-      auto row = row_of(cells, columns, task);
+      auto row = row_of(cells, columns, rules);
       if (!row) return fail(where, row.error());
       out.rows.push_back(std::move(*row));
     }

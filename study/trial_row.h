@@ -50,9 +50,18 @@ struct RowsFile {
   std::vector<TrialRow> rows;
   std::size_t whole{};  ///< [bytes]
 };
+
+/// What a row may hold.
+struct RowRules {
+  Task task{};
+  std::size_t conditions{kConditionsMax};  ///< of the study
+  std::size_t block{};                     ///< of all rows, from 1; 0: any
+};
+/// Every cell is looked at. A file that has content, but neither the header of this version nor
+/// the beginning of it, is refused.
 [[nodiscard]] Result<RowsFile> parse_rows(std::string_view text,
                                           const std::string& name,
-                                          const Task& task);
+                                          const RowRules& rules);
 
 /// Column by column: name, meaning, unit: for task-*_beh.json. What is common to all tasks comes
 /// first.

@@ -50,9 +50,11 @@ struct Destination {
 /// Writes `text` there, into the temporary file or straight. Zero, or the error number.
 int fill_file(const Destination& to, std::string_view text) {
   // Opening a pipe that nobody reads would wait for a reader. At the temporary name there is
-  // nothing but what a run left that was killed, or a link that somebody laid there.
+  // nothing but what a run left that was killed, or what somebody laid there, whose file it would
+  // stay: it goes.
+  if (to.renamed) (void)::unlink(to.temporary.c_str());
   const int flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK | O_NOCTTY |
-                    (to.renamed ? O_NOFOLLOW : 0);
+                    (to.renamed ? O_NOFOLLOW | O_EXCL : 0);
   const int file = ::open((to.renamed ? to.temporary : to.target).c_str(), flags, 0666);
   if (file < 0) {
     return errno;

@@ -55,6 +55,9 @@ TEST(AnswersFileTest, SaysInOneSentenceWhatIsWrongAndWhere) {
             "f.tsv, line 2: level_ln is \"0,1\", expected a number");
   EXPECT_EQ(sentence("level_ln\tcorrect\n0.1\tyes\n"),
             "f.tsv, line 2: correct is \"yes\", expected 0, 1 or n/a");
+  EXPECT_EQ(sentence("level_ln\tcorrect\n-10.5\t1\n"),
+            "f.tsv, line 2: level_ln is -10.5, expected no more than 10 of either sign");
+  EXPECT_TRUE(parse_answers("level_ms\tcorrect\n200\t1\n", "f.tsv"));
   EXPECT_EQ(sentence("level_ln\tcorrect\n\n0.1\n"), "f.tsv, line 3 has 1 cells, expected 2");
   EXPECT_EQ(sentence("level_ln\tcorrect\tcorrect\n"), "f.tsv names the column 'correct' twice");
   EXPECT_EQ(sentence("level_ln\tcorrect\n"), "f.tsv holds no answered trial");

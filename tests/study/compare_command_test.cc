@@ -1,5 +1,7 @@
 #include "study/compare_command.h"
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "common/config/json.h"
@@ -28,14 +30,41 @@ TEST(CompareCommandTest, WritesWhatFitAndCompareSay) {
   EXPECT_FALSE(json.contains("pse"));
 }
 
-TEST(CompareCommandTest, ConfirmatoryOnlyAsRegisteredAndWithEverybody) {
+TEST(CompareCommandTest, SaysWhetherSimulatedAnswersAreAsRegisteredAndOfEverybody) {
   const test::PlannedFolder folder;
   (void)folder.run(test::PlannedFolder::formula(), 1);
-  EXPECT_EQ(run_compare(folder.folder()).text.find("exploratory: 1 of 3"), 0U);
+  EXPECT_EQ(run_compare(folder.folder()).text.find("simulated: 1 of 3"), 0U);
   (void)folder.run();
-  EXPECT_EQ(run_compare(folder.folder()).text.find("confirmatory"), 0U);
+  EXPECT_EQ(run_compare(folder.folder()).text.find("simulated: as registered"), 0U);
   std::ofstream{folder.folder() + "/code/study.textproto", std::ios::app} << "\n";
-  EXPECT_EQ(run_compare(folder.folder()).text.find("exploratory"), 0U);
+  EXPECT_EQ(run_compare(folder.folder()).text.find("simulated: the study file"), 0U);
+}
+
+TEST(CompareCommandTest, WhereNothingCanBeComparedNoTableIsShown) {
+  const test::PlannedFolder folder;
+  (void)folder.run(test::PlannedFolder::formula(), 1);
+  const auto end = run_compare(folder.folder());
+  EXPECT_EQ(end.code, config::ExitCode::Done);
+  EXPECT_NE(end.text.find("nothing to compare"), std::string::npos) << end.text;
+  EXPECT_EQ(end.text.find("p (Holm)"), std::string::npos);
+}
+
+TEST(CompareCommandTest, WhatIsNoNumberIsNotShownAsOneAndALongNameHidesNothing) {
+  ConditionPair pair{.first = 0, .second = 1, .participants = 2};
+  pair.test = paired_test(std::array{0.1, 0.1}, 0.15);
+  pair.p_holm = pair.test.p;
+  const std::string text = pairs_text({pair}, {std::string(300, 'a'), "b"}, Measure::Jnd);
+  EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+  EXPECT_NE(text.find("1.105     n/a to n/a"), std::string::npos) << text;
+}
+
+TEST(CompareCommandTest, AReportDoesNotTakeThePlaceOfTheStudysOwnFiles) {
+  const test::PlannedFolder folder;
+  (void)folder.run();
+  const std::string list = folder.folder() + "/participants.tsv";
+  const std::string before = test::content_of(list);
+  EXPECT_EQ(run_fit_study(folder.folder(), list).code, config::ExitCode::BadInput);
+  EXPECT_EQ(test::content_of(list), before);
 }
 
 }  // namespace

@@ -37,6 +37,21 @@ TEST(CompareTest, AgreesWithStudentsSleepData) {
   EXPECT_NEAR(found.p_ranks, 2.0 / 512, 1e-12);
 }
 
+// Two people with the very same difference prove nothing of all others.
+TEST(CompareTest, DifferencesThatAreAllAlikeAreNotTested) {
+  for (const double value : {0.0, 0.1}) {
+    const PairedTest found = paired_test(std::array{value, value, value}, 0.15);
+    EXPECT_NEAR(found.mean, value, 1e-12);
+    for (const double none : {found.low, found.high, found.p, found.hedges_g, found.equivalent}) {
+      EXPECT_TRUE(std::isnan(none));
+    }
+  }
+  const auto adjusted = holm_adjusted(std::array{0.02, std::nan(""), 0.03});
+  EXPECT_DOUBLE_EQ(adjusted[0], 0.04);
+  EXPECT_TRUE(std::isnan(adjusted[1]));
+  EXPECT_DOUBLE_EQ(adjusted[2], 0.04);
+}
+
 TEST(CompareTest, SignsTurnedTurnTheMeanAndNothingElse) {
   std::vector<double> values;
   std::vector<double> turned;

@@ -29,7 +29,7 @@ std::vector<ParticipantRows> answered(const Study& study,
         const bool yes = random_uniform(9, plan.stream, ask.number) <
                          answer_share(study.task, traits, ask.level);
         TrialRow row{.ask = ask,
-                     .condition = condition_code(study, plan.condition),
+                     .condition = condition_code(plan.condition),
                      .block = number,
                      .task = study.task};
         const std::size_t asked = study.task.two_sided ? 1 : ask.stronger;
@@ -104,7 +104,7 @@ TEST(DataFitTest, WhoCannotPractiseIsLeftOutAndAnUnfinishedBlockDoesNotCount) {
   const auto plans = participant_plan(study, 2);
   rows[2].rows.clear();
   for (Block block{study, table, plans[0]}; !block.done();) {
-    TrialRow row{.ask = block.next(), .condition = condition_code(study, plans[0].condition)};
+    TrialRow row{.ask = block.next(), .condition = condition_code(plans[0].condition)};
     row.block = 1;
     row.outcome.chosen = 1 - row.ask.stronger;
     block.told(row.yes());

@@ -148,7 +148,7 @@ TEST(DetectionTest, SensitivityAndCriterionAreThoseOfThePeople) {
   EXPECT_EQ(run_compare(folder.folder()).code, config::ExitCode::Done);
   const auto report = run_report({.folder = folder.folder()});
   EXPECT_EQ(report.code, config::ExitCode::Done) << report.text;
-  const auto lme4 = export_text("lme4", *read_rows(planned));
+  const auto lme4 = export_text("lme4", *read_rows(planned), {});
   ASSERT_TRUE(lme4);
   EXPECT_NE(lme4->find(",0,"), std::string::npos);
 }

@@ -6,6 +6,7 @@
 
 #include "common/config/json.h"
 #include "study/simulated_observer.h"
+#include "tests/study/study_fixture.h"
 
 namespace palp::study {
 namespace {
@@ -39,6 +40,31 @@ TEST(FitCommandTest, FindsTheJndOfEachCondition) {
     EXPECT_LT(*conditions[index]["jnd_ln_low"].number(), truth);
     EXPECT_GT(*conditions[index]["jnd_ln_high"].number(), truth);
     EXPECT_NEAR(std::log(*conditions[index]["jnd_ln"].number() / truth), 0, 0.15);
+  }
+}
+
+TEST(FitCommandTest, WhereNothingWasThereNothingIsFitted) {
+  const auto statement = fit_statement({.conditions = {{"lan", {{0, 5, 9}}}}}, {});
+  ASSERT_FALSE(statement);
+  EXPECT_NE(statement.error().text.find("every level is 0"), std::string::npos);
+}
+
+TEST(FitCommandTest, ALongNameHidesNoFigure) {
+  const auto levels = even_levels(0.03, 0.9, 8);
+  const auto answers = answered({}, {.jnd = 0.12}, levels);
+  const auto statement = fit_statement({.conditions = {{std::string(300, 'a'), answers}}}, {});
+  ASSERT_TRUE(statement);
+  EXPECT_NE(statement->text.find(" 1600 "), std::string::npos) << statement->text;
+}
+
+TEST(FitCommandTest, FlagsThatDoNothingWithAFolderAreRefused) {
+  const test::PlannedFolder folder;
+  (void)folder.run();
+  EXPECT_EQ(run_fit({.file = folder.folder()}).code, config::ExitCode::Done);
+  for (const FitFlags& flags : {FitFlags{.file = folder.folder(), .intervals = 5},
+                                FitFlags{.file = folder.folder(), .two_sided = true},
+                                FitFlags{.file = folder.folder(), .curve = "normal"}}) {
+    EXPECT_EQ(run_fit(flags).code, config::ExitCode::BadInput);
   }
 }
 

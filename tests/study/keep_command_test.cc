@@ -17,7 +17,7 @@ TEST(CheckCommandTest, HoldsAsRegisteredAndNoticesAChangedAnswer) {
   (void)folder.run();
   EXPECT_EQ(run_check({.folder = folder.folder()}).code, ExitCode::Done);
   const auto planned = *open_study(folder.folder());
-  const std::string path = planned.data.trials("sub-03", "stiffness", 2);
+  const std::string path = planned.data.trials("sub-03", "stiffness", 3);
   std::string text = test::content_of(path);
   std::ofstream{path} << text.substr(0, text.rfind('\n', text.size() - 2) + 1);
   EXPECT_EQ(run_check({.folder = folder.folder()}).code, ExitCode::Done);  // not yet at its end
@@ -25,7 +25,7 @@ TEST(CheckCommandTest, HoldsAsRegisteredAndNoticesAChangedAnswer) {
   std::ofstream{path} << text.substr(0, text.find('\n') + 1) << text.substr(second);
   const auto gone = run_check({.folder = folder.folder()});
   EXPECT_EQ(gone.code, ExitCode::Missed);
-  EXPECT_NE(gone.text.find("sub-03, block 2"), std::string::npos) << gone.text;
+  EXPECT_NE(gone.text.find("sub-03, block 3"), std::string::npos) << gone.text;
   std::ofstream{path} << text;
   fs::create_directories(folder.folder() + "/sub-77/ses-01/beh");
   EXPECT_EQ(run_check({.folder = folder.folder()}).code, ExitCode::Missed);
@@ -49,6 +49,24 @@ TEST(WithdrawCommandTest, LeavesNothingOfAParticipant) {
   EXPECT_EQ(run_check({.folder = folder.folder()}).code, ExitCode::Done);
 }
 
+TEST(WithdrawCommandTest, NeedsNoKey) {
+  const test::PlannedFolder folder;
+  (void)folder.run();
+  fs::remove(folder.folder() + "/code/key.json");
+  EXPECT_EQ(run_withdraw({.folder = folder.folder(), .participant = "sub-02"}).code,
+            ExitCode::Done);
+  EXPECT_FALSE(fs::exists(folder.folder() + "/sub-02"));
+}
+
+TEST(WithdrawCommandTest, NamesFilesOfTheFolderThatAreNotItsToDelete) {
+  const test::PlannedFolder folder;
+  (void)folder.run();
+  const std::string own = folder.folder() + "/notes.txt";
+  std::ofstream{own} << "sub-02 came late\n";
+  const auto end = run_withdraw({.folder = folder.folder(), .participant = "sub-02"});
+  EXPECT_NE(end.text.find("notes.txt still names sub-02"), std::string::npos) << end.text;
+}
+
 TEST(WithdrawCommandTest, DeletesNobodyElse) {
   const test::PlannedFolder folder;
   for (const char* other : {"sub-04", "..", "code", "", "sub-01/ses-01"}) {
@@ -59,13 +77,24 @@ TEST(WithdrawCommandTest, DeletesNobodyElse) {
   EXPECT_TRUE(fs::exists(folder.folder() + "/code/plan.json"));
 }
 
+TEST(ExportCommandTest, DoesNotWriteOverAnswers) {
+  const test::PlannedFolder folder;
+  (void)folder.run();
+  const std::string before = folder.answers();
+  const std::string out = DataSet{folder.folder()}.trials("sub-01", "stiffness", 1);
+  EXPECT_EQ(run_export({.folder = folder.folder(), .out = out}).code, ExitCode::BadInput);
+  EXPECT_EQ(folder.answers(), before);
+}
+
 TEST(ExportCommandTest, WritesTheFile) {
   const test::PlannedFolder folder;
   (void)folder.run();
   const std::string out = folder.beside("lme4.csv");
   EXPECT_EQ(run_export({.folder = folder.folder(), .format = "lme4", .out = out}).code,
             ExitCode::Done);
-  EXPECT_EQ(test::content_of(out).find("participant,condition,level,correct,trial\nsub-01,"), 0U);
+  EXPECT_EQ(
+      test::content_of(out).find("participant,condition,level,correct,trial,excluded\nsub-01,"),
+      0U);
 }
 
 }  // namespace

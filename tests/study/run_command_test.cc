@@ -1,7 +1,10 @@
 #include "study/run_command.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/study/study_fixture.h"
 
@@ -81,6 +84,72 @@ TEST(RunCommandTest, AChangedAnswerStopsIt) {
   const auto end = folder.run();
   EXPECT_EQ(end.code, config::ExitCode::BadInput);
   EXPECT_NE(end.text.find("is not the one that the schedule"), std::string::npos) << end.text;
+}
+
+TEST(RunCommandTest, AStudyThatIsNotAsRegisteredAsksNobody) {
+  const test::PlannedFolder folder;
+  std::ofstream{folder.folder() + "/code/study.textproto", std::ios::app} << "# later\n";
+  const auto end = folder.run([](const Study&) -> Result<Observer> {
+    ADD_FAILURE() << "somebody is asked";
+    return fail("nobody");
+  });
+  EXPECT_EQ(end.code, config::ExitCode::BadInput);
+  EXPECT_NE(end.text.find("nobody is asked: the study file"), std::string::npos) << end.text;
+}
+
+// What cannot be read is not taken for nothing.
+TEST(RunCommandTest, WritesOverNoAnswersThatItCannotRead) {
+  const test::PlannedFolder folder;
+  (void)folder.run();
+  const auto planned = *open_study(folder.folder());
+  const std::string path = planned.data.trials("sub-01", "stiffness", 1);
+  std::string old_lines = test::content_of(path);
+  std::ranges::replace(old_lines, '\n', '\r');
+  for (const std::string& text : {old_lines, std::string{"answers"}, std::string{"a\tb\n1\t2\n"}}) {
+    std::ofstream{path} << text;
+    EXPECT_EQ(folder.run().code, config::ExitCode::BadInput) << text.substr(0, 20);
+    EXPECT_EQ(test::content_of(path), text);
+  }
+  fs::remove(path);
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  EXPECT_EQ(folder.run().code, config::ExitCode::CannotOpen);
+}
+
+TEST(RunCommandTest, KeepsWhatItCutsOff) {
+  const test::PlannedFolder folder;
+  (void)folder.run();
+  const auto planned = *open_study(folder.folder());
+  const std::string path = planned.data.trials("sub-01", "stiffness", 3);
+  const std::string text = test::content_of(path);
+  fs::resize_file(path, text.size() - 1);  // as an editor without a last line end
+  EXPECT_EQ(folder.run().code, config::ExitCode::Done);
+  EXPECT_EQ(test::content_of(path), text);
+  EXPECT_EQ(test::content_of(path + ".cut"), text.substr(text.rfind('\n', text.size() - 2) + 1));
+}
+
+TEST(RunCommandTest, FollowsNoLinkOutOfTheFolder) {
+  const test::PlannedFolder folder;
+  fs::create_directories(folder.beside("elsewhere"));
+  fs::create_directory_symlink(folder.beside("elsewhere"), folder.folder() + "/sub-02");
+  EXPECT_EQ(folder.run().code, config::ExitCode::CannotOpen);
+  EXPECT_TRUE(fs::is_empty(folder.beside("elsewhere")));
+  fs::remove(folder.folder() + "/sub-02");
+  fs::create_directory_symlink(folder.beside("elsewhere"), folder.folder() + "/sourcedata");
+  EXPECT_EQ(folder.run().code, config::ExitCode::CannotOpen);
+}
+
+TEST(RunCommandTest, ListsWhoAnsweredWhateverBecameOfTheRun) {
+  const test::PlannedFolder folder;
+  const auto end = folder.run([](const Study& study) -> Result<Observer> {
+    return [all = formula_participants(study, {})](const TrialPlace& place,
+                                                   const TrialAsk& ask) -> Result<TrialOutcome> {
+      if (place.participant == 1) return fail("the power went off");
+      return all(place, ask);
+    };
+  });
+  EXPECT_EQ(end.code, config::ExitCode::BadInput);
+  EXPECT_EQ(test::content_of(folder.folder() + "/participants.tsv"),
+            "participant_id\tkind\nsub-01\tsimulated\nsub-02\tn/a\nsub-03\tsimulated\n");
 }
 
 TEST(RunCommandTest, WhoCannotPractiseGoesNoFurther) {

@@ -93,6 +93,7 @@ TEST(StudyFileTest, WhatCannotBeIsRefusedInOneSentence) {
         one + "levels { from_ln: 0 }",
         one + "levels { from_ln: 1 to_ln: 0.5 }",
         one + "practice { right: 9 of: 8 }",
+        one + "practice { right: 8 of: 10 trials_max: 7 }",
         one + "task: \"bias\" method: \"staircase\"",
         one + "task: \"bias\" intervals: 3",
         std::string{"condition { name: \"one\" taps: 1 taps_unjudged: 1 }"},

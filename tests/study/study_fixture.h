@@ -37,7 +37,9 @@ class PlannedFolder {
       : root_{palp::test::own_path("study" + std::to_string(++count()))} {
     std::filesystem::create_directories(root_);
     std::ofstream{root_ / "study.textproto"} << text;
-    planned_ = run_plan({.file = root_ / "study.textproto", .folder = folder()}, "a test");
+    planned_ = run_plan({.file = root_ / "study.textproto", .folder = folder(), .letters = 1},
+                        "a test",
+                        [] { return std::uint64_t{7}; });
   }
   ~PlannedFolder() { std::filesystem::remove_all(root_); }
   PlannedFolder(const PlannedFolder&) = delete;
@@ -56,6 +58,15 @@ class PlannedFolder {
                    one_after_the_other,
                    [](const std::string&) {});
   }
+  /// As a person at the page, whoever answers.
+  [[nodiscard]] config::ExitStatus run_person(const MakeObserver& make,
+                                              std::uint64_t participant) const {
+    return run_run(
+        {.folder = folder(), .participant = participant, .observer = std::string{kPerson}},
+        make,
+        one_after_the_other,
+        [](const std::string&) {});
+  }
   [[nodiscard]] static MakeObserver formula() {
     return [](const Study& study) -> Result<Observer> {
       return formula_participants(study, PeopleTraits{});
@@ -65,7 +76,8 @@ class PlannedFolder {
   [[nodiscard]] std::string answers() const {
     const auto planned = *open_study(folder());
     std::string text;
-    for (const std::string& id : planned.data.participants()) {
+    const auto ids = *planned.data.participants();
+    for (const std::string& id : ids) {
       for (std::size_t block = 1; block <= planned.study.conditions.size(); ++block) {
         text += content_of(planned.data.trials(id, task_name(planned.study), block));
       }

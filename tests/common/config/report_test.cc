@@ -56,6 +56,22 @@ TEST_F(ReportTest, SaysBeforehandWhetherAFileCanBeWrittenAndLeavesNothing) {
   EXPECT_FALSE(can_write_file(path("")));
 }
 
+// Who laid a file at the temporary name would own what is written, and could read and change it.
+TEST_F(ReportTest, WhatSomebodyLaidAtTheTemporaryNameIsNotWrittenTo) {
+  const std::string laid = path("a.json.partial." + std::to_string(::getpid()));
+  const int held = ::open(laid.c_str(), O_RDWR | O_CREAT, 0666);
+  ASSERT_GE(held, 0);
+  ASSERT_TRUE(write_whole_file(path("a.json"), "secret"));
+  struct stat old {};
+  struct stat now {};
+  ASSERT_EQ(::fstat(held, &old), 0);
+  ASSERT_EQ(::stat(path("a.json").c_str(), &now), 0);
+  EXPECT_EQ(old.st_size, 0);
+  EXPECT_NE(old.st_ino, now.st_ino);
+  ::close(held);
+  EXPECT_EQ(file_count(), 1U);
+}
+
 TEST_F(ReportTest, AReaderOfTheOldFileKeepsIt) {
   ASSERT_TRUE(write_whole_file(path("a.json"), "old"));
   std::filesystem::create_hard_link(path("a.json"), path("held"));
@@ -84,8 +100,9 @@ TEST_F(ReportTest, ALinkAtTheTemporaryNameIsNotFollowed) {
   const std::string temporary = path("a.json") + ".partial." + std::to_string(::getpid());
   ASSERT_TRUE(write_whole_file(path("victim"), "old"));
   std::filesystem::create_symlink(path("victim"), temporary);
-  EXPECT_FALSE(write_whole_file(path("a.json"), "new"));
+  EXPECT_TRUE(write_whole_file(path("a.json"), "new"));
   EXPECT_EQ(read_whole_file(path("victim")), "old");
+  EXPECT_FALSE(std::filesystem::is_symlink(path("a.json")));
 }
 
 TEST_F(ReportTest, FollowsALinkInsteadOfReplacingIt) {
