@@ -79,7 +79,7 @@ std::string preregistration(const Study& study,
       "posterior of each participant and condition (palp-study fit); paired t and signed ranks of "
       "ln JND, Holm over the family; equal only by two one-sided tests within " +
           number_text(study.margin));
-  say("Ethics", study.ethics_body.empty() ? "" : study.ethics_body + ", " + study.ethics_number);
+  say("Ethics", study.ethics.body.empty() ? "" : study.ethics.body + ", " + study.ethics.number);
   say("Seed", std::to_string(study.seed));
   say("SHA-256 of the study file", fingerprints.study);
   say("SHA-256 of the schedule", fingerprints.schedule);

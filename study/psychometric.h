@@ -34,9 +34,9 @@ struct Task {
   bool ranks{};
   /// Which interval was delayed: levels are delays [ms] of the round trip on top of the link's.
   bool delays{};
-  /// > 0: a place is searched for, and found or not: how many places as wide as what counts as
-  /// found the area holds.
-  double places{};
+  /// A place is searched for, and found or not: how many places as wide as what counts as found the
+  /// area holds.
+  double places{};  ///< [-], above 0; 0: no search
 };
 
 /// Intervals that are felt in a trial.

@@ -147,7 +147,7 @@ Result<std::optional<std::size_t>> run_participant(const Runner& runner, std::si
 /// Without an approval answers of people are a pilot's.
 std::string kind_of(const RunFlags& flags, const Study& study) {
   if (flags.observer != kPerson) return "simulated";
-  return study.ethics_body.empty() ? "pilot" : "person";
+  return study.ethics.body.empty() ? "pilot" : "person";
 }
 
 /// Those that are to go through the study, without those who withdrew.

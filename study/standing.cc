@@ -127,7 +127,7 @@ Result<std::string> standing(const PlannedStudy& planned,
   const std::string kind = kinds.size() == 1 ? kinds.front() : "";
   if (kind == "simulated") return "simulated: " + (why->empty() ? "as registered" : *why) + *looked;
   if (!why->empty()) return "exploratory: " + *why + *looked;
-  if (kind != "person" || planned.study.ethics_body.empty()) {
+  if (kind != "person" || planned.study.ethics.body.empty()) {
     return "exploratory: a pilot, for no approval was named" + *looked;
   }
   if (planned.study.primary.empty()) {

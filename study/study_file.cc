@@ -82,15 +82,23 @@ double reach_of(const std::vector<BallDepth>& depths) noexcept {
   return (depths.back().contrast - depths.front().contrast) / 2;
 }
 
-/// `depths`: of a ranking of balls, which goes no farther than they do.
-std::vector<double> levels_of(const proto::config::Study& message,
-                              const std::vector<BallDepth>& depths) {
+/// Where `study` has its task and its depths. A ranking of balls goes no farther than these do.
+std::vector<double> levels_of(const proto::config::Study& message, const Study& study) {
   const auto& levels = message.levels();
-  if (message.task() != "bias") {
-    const double to = depths.empty() ? levels.to_ln() : std::min(levels.to_ln(), reach_of(depths));
-    return even_levels(levels.from_ln(), to, levels.count());
-  }
   std::vector<double> out;
+  if (study.task.delays) {
+    const auto& delays = message.delays();
+    return even_levels(delays.from_ms(), delays.to_ms(), delays.count());
+  }
+  if (!study.depths.empty() && !study.task.ranks) {
+    if (study.task.yes_no) out.push_back(0);
+    for (const BallDepth& one : study.depths) out.push_back(one.contrast);
+    return out;
+  }
+  if (study.asks != StudyTask::Bias) {
+    const double reach = study.depths.empty() ? levels.to_ln() : reach_of(study.depths);
+    return even_levels(levels.from_ln(), std::min(levels.to_ln(), reach), levels.count());
+  }
   const double step = 2 * levels.to_ln() / (levels.count() - 1);
   for (std::uint32_t i = 0; i < levels.count(); ++i) out.push_back(-levels.to_ln() + step * i);
   return out;
@@ -252,8 +260,7 @@ Result<Study> parse_study(std::string_view text, const std::string& name) {
                                   ? message.instructions()
                                   : std::string{word_of(message.task()).instructions},
               .primary = message.analysis().primary(),
-              .ethics_body = message.ethics().body(),
-              .ethics_number = message.ethics().number(),
+              .ethics = {message.ethics().body(), message.ethics().number()},
               .seed = message.seed(),
               .participants = message.participants(),
               .asks = word_of(message.task()).task,
@@ -288,16 +295,8 @@ Result<Study> parse_study(std::string_view text, const std::string& name) {
     }
     if (!message.has_travel_s()) study.travel = kTravelFar;
   }
-  if (study.task.delays) {
-    const auto& delays = message.delays();
-    study.levels = even_levels(delays.from_ms(), delays.to_ms(), delays.count());
-    study.practice.level = delays.practice_ms();
-  } else if (study.depths.empty() || study.task.ranks) {
-    study.levels = levels_of(message, study.depths);
-  } else {
-    if (study.task.yes_no) study.levels.push_back(0);
-    for (const BallDepth& one : study.depths) study.levels.push_back(one.contrast);
-  }
+  if (study.task.delays) study.practice.level = message.delays().practice_ms();
+  study.levels = levels_of(message, study);
   for (const auto& one : message.condition()) study.conditions.push_back(condition_of(one));
   return study;
 }

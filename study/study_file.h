@@ -79,14 +79,19 @@ struct SearchArea {
   double limit{};   ///< [s]
 };
 
+/// Who approved of a study.
+struct Approval {
+  std::string body{};  ///< empty: a pilot
+  std::string number{};
+};
+
 /// What a participant is asked, how often, and what is done with the answers.
 struct Study {
   std::string name{};
   std::string question{};
   std::string instructions{};
-  std::string primary{};      ///< the comparison that decides
-  std::string ethics_body{};  ///< empty: a pilot
-  std::string ethics_number{};
+  std::string primary{};  ///< the comparison that decides
+  Approval ethics{};
   std::uint64_t seed{1};
   std::size_t participants{16};
   StudyTask asks{StudyTask::Stiffness};

@@ -108,8 +108,8 @@ std::string checklist(const Study& study, const StudyFit& fit, const ReportParts
   text += row("Who answered", parts.kind);
   text +=
       row("Ethics",
-          study.ethics_body.empty() ? (simulated ? "none needed: nobody but programs answered" : "")
-                                    : study.ethics_body + ", " + study.ethics_number);
+          study.ethics.body.empty() ? (simulated ? "none needed: nobody but programs answered" : "")
+                                    : study.ethics.body + ", " + study.ethics.number);
   for (const char* what : {"Consent, recruitment",
                            "Ages and handedness, as ranges",
                            "Device, its workspace, rate, peak and continuous force",

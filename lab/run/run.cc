@@ -298,6 +298,10 @@ std::vector<judge::Stay> strokes_of(const std::vector<DepthEstimate>& estimates,
   return strokes;
 }
 
+netem::PathPlan way_down(const Scenario& scenario) {
+  return {.impairment = scenario.down, .changes = scenario.down_changes};
+}
+
 }  // namespace
 
 RunResult simulate(const Scenario& scenario, const RunFiles& files) {
@@ -306,11 +310,7 @@ RunResult simulate(const Scenario& scenario, const RunFiles& files) {
   const TimePoint start = simulator.now();
   Digest digest;
   SessionFiles session_files{scenario, files, start};
-  netem::Pipe pipe{netem::PathPlan{.impairment = scenario.up},
-                   netem::PathPlan{.impairment = scenario.down, .changes = scenario.down_changes},
-                   scenario.seed,
-                   kInFlightMax,
-                   start};
+  netem::Pipe pipe{{scenario.up}, way_down(scenario), scenario.seed, kInFlightMax, start};
   DarkPath dark{scenario};
   const auto valve = [&](auto end) { return std::make_unique<Valve>(std::move(end), dark.shut()); };
   SurgeonEnd surgeon{scenario, valve(pipe.surgeon_end()), session_files.surgeon(), digest};

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "study/real_sites/person_view.h"
+#include "study/withdrawn.h"
 
 namespace palp::study {
 namespace {
@@ -79,6 +80,11 @@ Result<void> Person::meet(const TrialPlace& place) {
   if (session_ && place.condition == condition_) return {};
   if (session_) {
     if (auto rested = rest(); !rested) return rested;
+    // No further page is opened for who withdrew meanwhile.
+    const std::string id = participant_id(place.participant);
+    const auto gone = has_withdrawn(setting_.data, id);
+    if (!gone) return tl::unexpected(gone.error());
+    if (*gone) return fail(id + " has withdrawn");
     session_->stop();
     session_.reset();
   }

@@ -1,7 +1,6 @@
 #include "study/real_sites/site_session.h"
 
 #include <filesystem>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -65,10 +64,13 @@ void forget_inputs(const SiteSetting& setting) {
 }
 
 /// Where a program listens, once it says so; nothing: it does not start.
-std::optional<std::string> listens(io::ChildProgram& program, const std::string& log) {
+/// `pipe`: to wait by.
+std::optional<std::string> listens(io::ChildProgram& program,
+                                   const std::string& log,
+                                   io::MessagePipe& pipe) {
   for (Duration waited{}; waited < kStart && program.running(); waited += kLook) {
     if (auto address = address_in(log)) return address;
-    std::this_thread::sleep_for(kLook);
+    pipe.wait(kLook);
   }
   return std::nullopt;
 }
@@ -128,11 +130,11 @@ Result<SiteSession> SiteSession::start(const Condition& condition, const SiteSet
   const std::string log = setting.work + "/surgeon.log";
   auto patient = io::ChildProgram::start(patient_command(condition, setting), patient_log);
   if (!patient) return tl::unexpected(patient.error());
-  std::optional<std::string> peer = listens(*patient, patient_log);
+  std::optional<std::string> peer = listens(*patient, patient_log, pipes->first);
   if (!peer) return fail_to_reach("the patient's site does not start" + reason_in(patient_log));
   std::optional<Relay> relay;
   if (setting.changes_delay) {
-    auto started = start_relay(setting, *peer);
+    auto started = start_relay(setting, *peer, pipes->first);
     if (!started) return tl::unexpected(started.error());
     relay = std::move(*started);
     peer = relay->address;
@@ -156,7 +158,8 @@ Result<SiteSession> SiteSession::start(const Condition& condition, const SiteSet
 }
 
 Result<SiteSession::Relay> SiteSession::start_relay(const SiteSetting& setting,
-                                                    const std::string& patient) {
+                                                    const std::string& patient,
+                                                    io::MessagePipe& pipe) {
   const std::string log = setting.work + "/relay.log";
   const std::string control = setting.work + "/relay";
   auto program = io::ChildProgram::start({setting.programs + "/palp-netem",
@@ -169,7 +172,7 @@ Result<SiteSession::Relay> SiteSession::start_relay(const SiteSetting& setting,
                                           "unix:" + control},
                                          log);
   if (!program) return tl::unexpected(program.error());
-  const auto address = listens(*program, log);
+  const auto address = listens(*program, log, pipe);
   if (!address) return fail_to_reach("the relay does not start" + reason_in(log));
   auto line = RelayLine::connect(control);
   if (!line) return tl::unexpected(line.error());

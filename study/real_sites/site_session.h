@@ -76,7 +76,8 @@ class SiteSession {
     std::string address;
   };
   [[nodiscard]] static Result<Relay> start_relay(const SiteSetting& setting,
-                                                 const std::string& patient);
+                                                 const std::string& patient,
+                                                 io::MessagePipe& pipe);
   SiteSession(io::ChildProgram patient, io::ChildProgram surgeon, io::MessagePipe pipe) noexcept
       : patient_{std::move(patient)}, surgeon_{std::move(surgeon)}, pipe_{std::move(pipe)} {}
   void hear(const std::string& message);

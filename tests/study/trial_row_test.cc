@@ -141,17 +141,17 @@ TEST(TrialRowTest, EachTaskHasItsColumns) {
   delay.task.delays = true;
   delay.ask.level = 84.8528137;
   for (const TrialRow& row : {rank, search, delay}) {
-    const auto file = parse_rows(row_header(row.task) + row_text(row), "f", row.task);
+    const auto file = parse_rows(row_header(row.task) + row_text(row), "f", {.task = row.task});
     ASSERT_TRUE(file) << file.error().text;
     EXPECT_EQ(row_text(file->rows.at(0)), row_text(row));
-    EXPECT_FALSE(parse_rows(row_header({}) + row_text(row), "f", row.task));
+    EXPECT_FALSE(parse_rows(row_header({}) + row_text(row), "f", {.task = row.task}));
   }
   EXPECT_NE(row_text(rank).find("0.333333333\n"), std::string::npos);
   EXPECT_NE(row_header(delay.task).find("level_ms"), std::string::npos);
   // A tau that does not follow from the orders was changed by hand.
   std::string text = row_header(rank.task) + row_text(rank);
   text.replace(text.rfind("0.333333333"), 11, "1");
-  EXPECT_FALSE(parse_rows(text, "f", rank.task));
+  EXPECT_FALSE(parse_rows(text, "f", {.task = rank.task}));
 }
 
 }  // namespace
