@@ -23,6 +23,8 @@ inline constexpr std::string_view kExportFormats[]{
 /// - lme4: CSV, a row a trial: participant, condition, level, correct, trial, excluded; for
 ///   glmer(correct ~ 0 + level:condition + (0 + level | participant), binomial("probit")),
 ///   without an intercept: of two equal ones half are chosen, so a JND is qnorm(0.75) over a slope.
+///   Whether conditions differ is for (0 + level:condition | participant) and a likelihood ratio:
+///   people differ in how much they do.
 ///   At two-sided tasks the intercept is the bias, and the model has one for each condition:
 ///   correct ~ 0 + condition + level:condition + (1 + level | participant).
 /// `excluded` is 1 where the participant is left out by the rules of the study: psignifit and

@@ -29,6 +29,10 @@ Track asked(const AnswerTable& table,
   return track;
 }
 
+double drawn_lapse(const RecoverySet& set, std::uint64_t observer) noexcept {
+  return std::lerp(set.lapse_min, set.lapse_max, random_uniform(set.seed, kLapse, observer));
+}
+
 }  // namespace
 
 std::vector<RecoveryCase> recover(const RecoverySet& set,
@@ -40,7 +44,7 @@ std::vector<RecoveryCase> recover(const RecoverySet& set,
     const double share = random_uniform(set.seed, kJnd, i);
     const ObserverTraits traits{.jnd = set.jnd_min * std::pow(set.jnd_max / set.jnd_min, share),
                                 .pse = 0,
-                                .lapse = set.lapse_max * random_uniform(set.seed, kLapse, i)};
+                                .lapse = drawn_lapse(set, i)};
     const Track track = asked(table, set, traits, i);
     cases[i] = {traits, track.trials(), track.posterior().ln_jnd()};
   });
@@ -81,7 +85,7 @@ GroupSummary repeat_group(const GroupSet& set,
       ObserverTraits traits{
           .jnd = middle * std::exp(set.spread * random_normal(set.observers.seed, kJnd, person)),
           .pse = 0,
-          .lapse = set.observers.lapse_max * random_uniform(set.observers.seed, kLapse, person)};
+          .lapse = drawn_lapse(set.observers, person)};
       const Track first = asked(table, set.observers, traits, 2 * person);
       traits.jnd *= std::exp(set.condition_ln);
       const Track second = asked(table, set.observers, traits, 2 * person + 1);

@@ -22,7 +22,8 @@ struct RecoverySet {
   std::size_t levels{25};
   double jnd_min{0.08};    ///< [-], drawn evenly in its logarithm
   double jnd_max{0.30};    ///< [-]
-  double lapse_max{0.05};  ///< [-], drawn evenly from 0
+  double lapse_min{};      ///< [-], drawn evenly
+  double lapse_max{0.05};  ///< [-]
   std::uint64_t seed{1};
 };
 

@@ -28,6 +28,7 @@ RecoverySet set_of(const SimulateFlags& flags) {
   RecoverySet set{.task = {.intervals = static_cast<int>(flags.intervals)},
                   .jnd_min = flags.jnd_min,
                   .jnd_max = flags.jnd_max,
+                  .lapse_min = flags.lapse_min,
                   .lapse_max = flags.lapse_max,
                   .seed = flags.seed};
   set.method.kind = *std::ranges::find(
@@ -150,6 +151,7 @@ void declare_simulate(config::CommandLine& line, SimulateFlags& flags) {
              "of each observer; yes-no: of each kind");
   line.number("--jnd-min", flags.jnd_min, {.min = 0.02, .max = 1.5}, "least JND, of ln");
   line.number("--jnd-max", flags.jnd_max, {.min = 0.02, .max = 1.5}, "greatest JND, of ln");
+  line.number("--lapse-min", flags.lapse_min, {.min = 0, .max = 0.5}, "least lapse rate");
   line.number("--lapse-max", flags.lapse_max, {.min = 0, .max = 0.5}, "greatest lapse rate");
   line.whole("--participants", flags.participants, {.min = 2, .max = 1000}, "with --set group");
   line.number("--ratio",
@@ -165,8 +167,11 @@ void declare_simulate(config::CommandLine& line, SimulateFlags& flags) {
 }
 
 ExitStatus run_simulate(const SimulateFlags& flags, const ForEachIndex& for_each_index) {
-  if (!(flags.jnd_min < flags.jnd_max)) {
-    return {ExitCode::BadInput, "palp-study: --jnd-min must be below --jnd-max"};
+  if (flags.jnd_min > flags.jnd_max) {
+    return {ExitCode::BadInput, "palp-study: --jnd-min must not be above --jnd-max"};
+  }
+  if (flags.lapse_min > flags.lapse_max) {
+    return {ExitCode::BadInput, "palp-study: --lapse-min must not be above --lapse-max"};
   }
   const Outcome outcome = flags.set == "recover"       ? recovered(flags, for_each_index)
                           : flags.set == "group"       ? grouped(flags, for_each_index)

@@ -17,6 +17,7 @@ struct SimulateFlags {
   std::uint64_t trials{60};
   double jnd_min{0.08};    ///< [-]
   double jnd_max{0.30};    ///< [-]
+  double lapse_min{};      ///< [-]
   double lapse_max{0.05};  ///< [-]
   std::uint64_t participants{16};
   double ratio{1};      ///< [-], of the conditions' JND

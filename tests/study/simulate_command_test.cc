@@ -28,6 +28,9 @@ TEST(SimulateCommandTest, ARangeThatIsNoneIsRefused) {
   SimulateFlags flags;
   flags.jnd_min = 0.5;
   EXPECT_EQ(run_simulate(flags, one_after_the_other).code, config::ExitCode::BadInput);
+  flags = {};
+  flags.lapse_min = 0.06;
+  EXPECT_EQ(run_simulate(flags, one_after_the_other).code, config::ExitCode::BadInput);
 }
 
 TEST(SimulateCommandTest, PowerSaysHowMany) {
