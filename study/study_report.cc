@@ -200,11 +200,12 @@ std::string report_html(const Study& study, const StudyFit& fit, const ReportPar
       escaped(study.name) +
       "</title>\n<style>body{font:16px sans-serif;max-width:60em;margin:2em auto;padding:0 1em}"
       "table{border-collapse:collapse}td{border:1px solid #ccc;padding:.3em .6em}"
-      "pre{overflow:auto;background:#f4f4f4;padding:.6em}svg{max-width:100%;height:auto}</style>"
+      "pre{overflow:auto;background:#f4f4f4;padding:.6em}.said{white-space:pre-wrap}svg{max-width:"
+      "100%;height:auto}</style>"
       "</head><body>\n<h1>" +
       escaped(study.name) + "</h1>\n<p>" + escaped(study.question) + "</p>\n<p><strong>" +
       escaped(parts.standing) + "</strong></p>\n";
-  page += "<h2>Results</h2>\n<pre>";
+  page += "<h2>Results</h2>\n<pre class=\"said\">";
   for (std::size_t i = 0; i < study.conditions.size(); ++i) {
     page += escaped(condition_text(study, fit, i, parts.names[i]));
   }
