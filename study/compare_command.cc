@@ -103,7 +103,7 @@ ExitStatus run_fit_study(const std::string& folder, const std::string& report) {
   if (auto may = planned.data.may_write(report); !report.empty() && !may) {
     return config::refusal("palp-study", may.error());
   }
-  const std::string table = fit_table(planned.study, fit, condition_codes(planned.study));
+  const std::string table = fit_table(planned.study, fit, condition_codes(planned.study), true);
   const auto written = config::write_whole_file(planned.data.derived("fit.tsv"), table);
   if (!written) return {ExitCode::CannotOpen, "palp-study: " + written.error().text};
   Json conditions = Json::array();

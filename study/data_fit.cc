@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/core/conventions.h"
 #include "common/core/formatted.h"
@@ -13,6 +14,16 @@ namespace {
 
 constexpr double kErrorLeast = 0.1e-3;  // [m], of which a logarithm is taken
 constexpr double kTimeLeast = 0.1;      // [s], likewise
+
+/// Of differences [as the measure]. Posteriors that are hardly narrower than the prior are alike
+/// whatever people can do: above it nothing is called equal.
+constexpr double kKnownSd = 0.5;
+
+double mean_sd(const std::vector<Measured>& differences) {
+  double sum = 0;
+  for (const Measured& one : differences) sum += one.sd;
+  return sum / static_cast<double>(differences.size());
+}
 
 /// Nothing: the block has no such measure.
 std::optional<Measured> measured(const FittedBlock& block, Measure measure) noexcept {
@@ -74,9 +85,7 @@ SearchFigures search_figures(const std::vector<const TrialRow*>& rows) {
     for (const TrialRow* row : rows) values.push_back(value(row->outcome));
     return median(std::move(values));
   };
-  return {.error = median_of([](const TrialOutcome& one) { return one.error; }),
-          .time = median_of([](const TrialOutcome& one) { return one.response_time; }),
-          .path = median_of([](const TrialOutcome& one) { return one.path; }),
+  return {.path = median_of([](const TrialOutcome& one) { return one.path; }),
           .contacts = median_of([](const TrialOutcome& one) { return one.taps; }),
           .force_mean = median_of([](const TrialOutcome& one) { return one.force_mean; }),
           .force_max = median_of([](const TrialOutcome& one) { return one.force_max; }),
@@ -144,6 +153,36 @@ std::string why_excluded(const Study& study, const ParticipantRows& of) {
     }
   }
   return {};
+}
+
+/// Cells of a search.
+template <class Number>
+void add_search(const std::optional<SearchFigures>& search, bool blind, Number number) {
+  const auto figure = [&](double value) { number(search ? std::optional{value} : std::nullopt); };
+  const SearchFigures of = search.value_or(SearchFigures{});
+  figure(std::exp(of.ln_error.value) / kMillimetre);
+  figure(std::exp(of.ln_time.value));
+  figure(of.path / kMillimetre);
+  if (blind) return;
+  figure(of.contacts);
+  figure(of.force_mean);
+  figure(of.force_max);
+}
+
+/// Where balls lie that are told in order, or down to where one is found.
+std::string depths_text(const Study& study, double jnd) {
+  const auto found = depth_found(study, jnd);
+  if (!study.task.ranks) {
+    return found ? formatted(", found down to %.1f mm", *found / kMillimetre)
+                 : ", found beyond the depths of the study";
+  }
+  const double middle = middle_contrast(study);
+  const auto deepest = depth_of(study, middle - jnd);
+  if (!found || !deepest) return ", in order at no depths of the study";
+  return formatted(", in order at %.1f, %.1f and %.1f mm",
+                   *found / kMillimetre,
+                   *depth_of(study, middle) / kMillimetre,
+                   *deepest / kMillimetre);
 }
 
 }  // namespace
@@ -227,6 +266,9 @@ std::vector<ConditionPair> compare_study(const Study& study, const StudyFit& fit
       pair.participants = differences.size();
       if (pair.participants < 2) continue;
       pair.test = paired_test(differences, study.margin);
+      if (mean_sd(pair.differences) > kKnownSd) {
+        pair.test.equivalent = std::numeric_limits<double>::quiet_NaN();
+      }
       pair.group = group_posterior(pair.differences);
       out.push_back(std::move(pair));
     }
@@ -240,7 +282,8 @@ std::vector<ConditionPair> compare_study(const Study& study, const StudyFit& fit
 
 std::string fit_table(const Study& study,
                       const StudyFit& fit,
-                      const std::vector<std::string>& names) {
+                      const std::vector<std::string>& names,
+                      bool blind) {
   const std::string jnd = "\tjnd_" + level_suffix(study.task);
   std::string text = "participant_id\tcondition\ttrials\tcomplete\texcluded" + jnd + jnd + "_low" +
                      jnd +
@@ -249,7 +292,8 @@ std::string fit_table(const Study& study,
                      "\tdepth_mm_high";
   if (study.task.ranks) text += "\tkendall_tau";
   if (study.task.places > 0) {
-    text += "\terror_mm\tsearch_s\tpath_mm\tcontacts\tforce_mean_n\tforce_max_n";
+    text += "\terror_mm\tsearch_s\tpath_mm";
+    if (!blind) text += "\tcontacts\tforce_mean_n\tforce_max_n";
   }
   text += '\n';
   for (const FittedBlock& block : fit.blocks) {
@@ -259,15 +303,19 @@ std::string fit_table(const Study& study,
     };
     text += block.id + '\t' + names[block.condition] + '\t' + std::to_string(block.trials) + '\t' +
             (block.complete ? "1" : "0") + '\t' + (why == fit.excluded.end() ? "n/a" : why->why);
+    // Without an answer the posterior is the prior.
+    const auto known = [&](double value) {
+      number(block.trials > 0 ? std::optional{value} : std::nullopt);
+    };
     for (const double ln : {block.ln_jnd.median, block.ln_jnd.low, block.ln_jnd.high}) {
-      number(std::exp(ln));
+      known(std::exp(ln));
     }
-    number(block.ln_jnd.mean);
-    number(block.ln_jnd.sd);
+    known(block.ln_jnd.mean);
+    known(block.ln_jnd.sd);
     for (const double pse : {block.pse.median, block.pse.low, block.pse.high}) {
-      number(study.task.two_sided ? std::optional{pse} : std::nullopt);
+      study.task.two_sided ? known(pse) : number(std::nullopt);
     }
-    number(block.lapse);
+    known(block.lapse);
     for (double Sensitivity::*const value : {&Sensitivity::d_prime,
                                              &Sensitivity::d_prime_sd,
                                              &Sensitivity::criterion,
@@ -277,23 +325,12 @@ std::string fit_table(const Study& study,
     // The smaller the JND, the deeper is found what is found.
     for (const double ln : {block.ln_jnd.median, block.ln_jnd.high, block.ln_jnd.low}) {
       const auto depth = depth_found(study, std::exp(ln));
-      number(depth ? std::optional{*depth / kMillimetre} : std::nullopt);
+      depth ? known(*depth / kMillimetre) : number(std::nullopt);
     }
     if (study.task.ranks) {
       number(block.kendall_tau ? std::optional{block.kendall_tau->value} : std::nullopt);
     }
-    if (study.task.places > 0) {
-      const auto& search = block.search;
-      const auto figure = [&](double SearchFigures::*value, double unit) {
-        number(search ? std::optional{(*search).*value / unit} : std::nullopt);
-      };
-      figure(&SearchFigures::error, kMillimetre);
-      figure(&SearchFigures::time, 1);
-      figure(&SearchFigures::path, kMillimetre);
-      figure(&SearchFigures::contacts, 1);
-      figure(&SearchFigures::force_mean, 1);
-      figure(&SearchFigures::force_max, 1);
-    }
+    if (study.task.places > 0) add_search(block.search, blind, number);
     text += '\n';
   }
   return text;
@@ -314,13 +351,8 @@ std::string condition_text(const Study& study,
   std::string text = "condition " + name + ": " + std::to_string(blocks.size()) + " participants" +
                      formatted(", JND %.1f ", said_level(study.task, jnd)) + said_unit(study.task) +
                      " (geometric mean)";
-  if (!study.depths.empty()) {
-    const char* const what = study.task.ranks ? "in order" : "found";
-    const auto depth = depth_found(study, jnd);
-    text += std::string{", "} + what +
-            (depth ? formatted(" down to %.1f mm", *depth / kMillimetre)
-                   : " beyond the depths of the study");
-  }
+  if (jnd > study.levels.back()) text += ", beyond the levels that were asked";
+  if (!study.depths.empty()) text += depths_text(study, jnd);
   if (study.task.yes_no) {
     text += formatted(", d' %.2f",
                       mean_of([](const FittedBlock& one) { return one.sensitivity->d_prime; })) +
@@ -332,10 +364,12 @@ std::string condition_text(const Study& study,
                       mean_of([](const FittedBlock& one) { return one.kendall_tau->value; }));
   }
   if (study.task.places > 0) {
-    text +=
-        formatted(", error %.1f mm",
-                  mean_of([](const FittedBlock& one) { return one.search->error / kMillimetre; })) +
-        formatted(" in %.1f s", mean_of([](const FittedBlock& one) { return one.search->time; }));
+    const double error =
+        std::exp(mean_of([](const FittedBlock& one) { return one.search->ln_error.value; }));
+    const double time =
+        std::exp(mean_of([](const FittedBlock& one) { return one.search->ln_time.value; }));
+    text += formatted(", error %.1f mm", error / kMillimetre) +
+            formatted(" in %.1f s (geometric means)", time);
   }
   return text + '\n';
 }

@@ -31,15 +31,13 @@ enum class Measure : std::uint8_t {
   return measure != Measure::Pse && measure != Measure::Tau;
 }
 
-/// How a participant searched: medians over the trials.
+/// How a participant searched: medians over the trials, but for error and time.
 struct SearchFigures {
-  double error{};       ///< [m], from what was hidden
-  double time{};        ///< [s]
   double path{};        ///< [m]
   double contacts{};    ///< [1]
   double force_mean{};  ///< [N]
   double force_max{};   ///< [N]
-  Measured ln_error{};  ///< of metres, mean
+  Measured ln_error{};  ///< of metres, from what was hidden, mean
   Measured ln_time{};   ///< of seconds, mean
 };
 
@@ -96,10 +94,12 @@ struct ConditionPair {
 /// The blocks of one condition that count.
 [[nodiscard]] std::vector<FittedBlock> counted(const StudyFit& fit, std::size_t condition);
 
-/// derivatives/palp-study/fit.tsv. `names`: of the conditions, codes unless unblinded.
+/// derivatives/palp-study/fit.tsv. `names`: of the conditions, codes unless unblinded. `blind`:
+/// touches and forces of a search are left out, for they tell conditions that differ in them.
 [[nodiscard]] std::string fit_table(const Study& study,
                                     const StudyFit& fit,
-                                    const std::vector<std::string>& names);
+                                    const std::vector<std::string>& names,
+                                    bool blind);
 
 /// A line on a condition, over those who count: JND, and what else the task measures. Empty: nobody
 /// does.

@@ -1,5 +1,6 @@
 #include "study/formula_participant.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -106,14 +107,16 @@ TrialOutcome searched(const Study& study,
     out.error = distance({along(0), along(1)}, ask.hidden);
     if ((out.error <= area.within) == found) break;
   }
-  const std::size_t touches = raster(area).size();
+  const std::vector<Place> places = raster_in_time(area, seconds(kTap));
+  const std::size_t touches = places.size();
   out.taps = static_cast<int>(touches);
-  out.path = raster_length(area);
+  out.path = length_of(places);
   out.force_max = kForce;
   out.force_mean = kForce;
   out.contact = static_cast<double>(touches) * seconds(kTap) / 2;
-  out.response_time = static_cast<double>(touches) * seconds(kTap) +
-                      drawn_response_time(study.seed, place, ask.number);
+  out.response_time = std::min(area.limit,
+                               static_cast<double>(touches) * seconds(kTap) +
+                                   drawn_response_time(study.seed, place, ask.number));
   out.duration = out.response_time + seconds(TrialTimes{}.travel);
   return out;
 }

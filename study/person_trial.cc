@@ -4,6 +4,8 @@ namespace palp::study {
 namespace {
 
 constexpr double kContact = 0.1;  // [N], above the noise and the steps of a sensor
+constexpr double kClear = 0.05;   // [N], a touch has ended below it, after kClearFor
+constexpr Duration kClearFor = std::chrono::milliseconds{80};
 
 PersonStage stage_of(TrialStage stage) noexcept {
   switch (stage) {
@@ -29,6 +31,7 @@ void PersonTrial::begin_anew(PersonNotice why) noexcept {
   trial_.reset();
   notice_ = why;
   stage_ = PersonStage::Press;
+  touching_now_ = false;
   stood_.reset();
   path_ = touched_ = 0;
   touching_ = 0;
@@ -51,10 +54,13 @@ void PersonTrial::step(TimePoint now, const SiteNews& news, std::optional<std::s
   if (stage_ == PersonStage::Touch && plan_.hidden) follow(news);
   trial_->tick(now,
                {.force = news.force,
-                .contact = news.contact_force > kContact,
+                .contact = touches(now, news.contact_force),
                 .pedal = news.engaged,
                 .answer = answer});
   if (trial_->stage() == TrialStage::Ended) return begin_anew(PersonNotice::LetGo);
+  if (plan_.hidden && trial_->answer() && trial_->contact() == Duration{}) {
+    return begin_anew(PersonNotice::Untouched);
+  }
   const PersonStage next = stage_of(trial_->stage());
   const bool came = stage_ == PersonStage::Travel && next == PersonStage::Touch;
   if (came && distance(news.stands, plan_.places[trial_->interval()]) > kSamePlace) {
@@ -66,6 +72,17 @@ void PersonTrial::step(TimePoint now, const SiteNews& news, std::optional<std::s
   } else if (came && plan_.hidden) {
     place_->reach = plan_.hidden->reach;
   }
+}
+
+/// One touch is one, however slowly the tip comes and however much the sensor's noise is.
+bool PersonTrial::touches(TimePoint now, double force) noexcept {
+  if (force > (touching_now_ ? kClear : kContact)) {
+    touching_now_ = true;
+    touched_at_ = now;
+  } else if (now - touched_at_ > kClearFor) {
+    touching_now_ = false;
+  }
+  return touching_now_;
 }
 
 /// How the tip goes about a search.

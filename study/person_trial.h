@@ -60,8 +60,9 @@ enum class PersonStage : std::uint8_t {
 /// Why a trial began anew.
 enum class PersonNotice : std::uint8_t {
   None,
-  LetGo,   ///< the pedal came up, or a site did
-  HeldUp,  ///< the stage did not come to its place in time
+  LetGo,      ///< the pedal came up, or a site did
+  HeldUp,     ///< the stage did not come to its place in time
+  Untouched,  ///< a search in which the tissue was never touched
 };
 
 /// A trial at real sites: waits until the hand is engaged and clear of the tissue, goes through a
@@ -94,6 +95,7 @@ class PersonTrial {
   void begin_anew(PersonNotice why) noexcept;
   void step(TimePoint now, const SiteNews& news, std::optional<std::size_t> answer);
   void follow(const SiteNews& news) noexcept;
+  [[nodiscard]] bool touches(TimePoint now, double force) noexcept;
 
   PersonTrialPlan plan_;
   std::optional<Trial> trial_;  ///< under way
@@ -107,6 +109,8 @@ class PersonTrial {
   double touched_{};            ///< [N], sum over the ticks in contact
   std::size_t touching_{};      ///< those
   std::size_t attempts_{};
+  bool touching_now_{};
+  TimePoint touched_at_{};  ///< last
 };
 
 }  // namespace palp::study

@@ -1,5 +1,6 @@
 #include "study/raster.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -23,8 +24,14 @@ std::vector<Place> raster(const SearchArea& area) {
   return out;
 }
 
-double raster_length(const SearchArea& area) {
-  const std::vector<Place> places = raster(area);
+std::vector<Place> raster_in_time(const SearchArea& area, double each) {
+  std::vector<Place> out = raster(area);
+  const auto most = static_cast<std::size_t>(std::max(1.0, std::floor(area.limit / each)));
+  if (most < out.size()) out.resize(most);
+  return out;
+}
+
+double length_of(const std::vector<Place>& places) noexcept {
   double length = 0;
   for (std::size_t i = 1; i < places.size(); ++i) length += distance(places[i - 1], places[i]);
   return length;

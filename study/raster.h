@@ -12,7 +12,11 @@ namespace palp::study {
 /// of the area farther than `within` from the nearest one.
 [[nodiscard]] std::vector<Place> raster(const SearchArea& area);
 
+/// As many of them as the limit of the search lets somebody touch who needs `each` [s] for one, one
+/// at least.
+[[nodiscard]] std::vector<Place> raster_in_time(const SearchArea& area, double each);
+
 /// From the first one to the last [m].
-[[nodiscard]] double raster_length(const SearchArea& area);
+[[nodiscard]] double length_of(const std::vector<Place>& places) noexcept;
 
 }  // namespace palp::study

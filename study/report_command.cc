@@ -73,6 +73,7 @@ ExitStatus run_report(const StudyReportFlags& flags) {
       .names = condition_codes(study),
       .kind = kinds_text(*rows)};
   if (flags.unblind) {
+    parts.blind = false;
     for (std::size_t i = 0; i < parts.names.size(); ++i) parts.names[i] = study.conditions[i].name;
   }
   const std::string out = flags.out.empty() ? planned->data.derived("report.html") : flags.out;

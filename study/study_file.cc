@@ -8,6 +8,7 @@
 
 #include "common/config/document.h"
 #include "common/config/settings_text.h"
+#include "common/core/formatted.h"
 #include "common/core/printable.h"
 #include "proto/config.pb.h"
 #include "study/orders.h"
@@ -15,8 +16,10 @@
 namespace palp::study {
 namespace {
 
-constexpr double kPlacesLeast = 2;  // [-], or a guess were nearly right
-constexpr double kTravelFar = 4;    // [s], from one hidden ball to the next
+constexpr double kPlacesLeast = 2;   // [-], or a guess were nearly right
+constexpr double kTravelFar = 4;     // [s], from one hidden ball to the next
+constexpr double kWithinLeast = 1;   // [mm], or a search were never done
+constexpr double kDelayComes = 1.2;  // [s], a ramp of a second, and the way of the tip
 
 struct TaskWord {
   StudyTask task;
@@ -188,7 +191,17 @@ Result<void> check_task(const proto::config::Study& message, StudyTask task) {
   if (message.delays().from_ms() >= message.delays().to_ms()) {
     return fail("delays.from_ms must be below delays.to_ms");
   }
+  if (message.search().within_mm() > 0 && message.search().within_mm() < kWithinLeast) {
+    return fail("search.within_mm must be 0 or " + formatted("%g", kWithinLeast) + " at least");
+  }
   for (const auto& one : message.condition()) {
+    const double link = (one.up().delay_ms() + one.down().delay_ms()) / 1e3;
+    const double needed = kDelayComes + link + message.delays().to_ms() / 1e3;
+    if (task == StudyTask::Delay && message.travel_s() < needed) {
+      return fail("condition " + one.name() + ": travel_s must be " + formatted("%.2f", needed) +
+                  " at least, for a delay comes within a second and the stage's place is told as "
+                  "late as the link and the delay are");
+    }
     if (task == StudyTask::Delay && one.feedback() != "force" && one.feedback() != "none") {
       return fail("condition " + one.name() +
                   ": task delay is answered by what the hand is given: feedback force or none");

@@ -74,20 +74,18 @@ plot::Curve shares_of(const std::vector<Answers>& answers) {
   return curve;
 }
 
-/// Of an observer with the medians of those who count.
+/// Of an observer with the means of those who count.
 plot::Curve function_of(const Study& study, const std::vector<FittedBlock>& blocks) {
-  const auto median = [&](auto value) {
-    std::vector<double> all;
-    for (const FittedBlock& one : blocks) all.push_back(value(one));
-    std::ranges::sort(all);
-    return all[all.size() / 2];
+  const auto mean = [&](auto value) {
+    double sum = 0;
+    for (const FittedBlock& one : blocks) sum += value(one);
+    return sum / static_cast<double>(blocks.size());
   };
   const ObserverTraits traits{
-      .jnd = std::exp(median([](const FittedBlock& one) { return one.ln_jnd.median; })),
-      .pse =
-          study.task.two_sided ? median([](const FittedBlock& one) { return one.pse.median; }) : 0,
-      .lapse = median([](const FittedBlock& one) { return one.lapse; })};
-  plot::Curve curve{.name = "median observer", .colour = plot::kOrange};
+      .jnd = std::exp(mean([](const FittedBlock& one) { return one.ln_jnd.mean; })),
+      .pse = study.task.two_sided ? mean([](const FittedBlock& one) { return one.pse.mean; }) : 0,
+      .lapse = mean([](const FittedBlock& one) { return one.lapse; })};
+  plot::Curve curve{.name = "mean observer", .colour = plot::kOrange};
   for (int i = 0; i <= 100; ++i) {
     const double from = study.task.two_sided ? study.levels.front() : 0;
     const double level = from + (study.levels.back() - from) * i / 100;
@@ -130,7 +128,7 @@ std::string checklist(const Study& study, const StudyFit& fit, const ReportParts
 
 std::string fits_html(const Study& study, const StudyFit& fit, const ReportParts& parts) {
   return "<details><summary>Every participant's estimates</summary><pre>" +
-         escaped(fit_table(study, fit, parts.names)) + "</pre></details>\n";
+         escaped(fit_table(study, fit, parts.names, parts.blind)) + "</pre></details>\n";
 }
 
 }  // namespace

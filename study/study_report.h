@@ -14,6 +14,7 @@ struct ReportParts {
   std::string standing{};         ///< confirmatory or not, and why
   std::string preregistration{};  ///< as it was registered
   std::vector<std::string> names{};
+  bool blind{true};    ///< `names` are codes
   std::string kind{};  ///< who answered
 };
 
@@ -23,7 +24,7 @@ struct ReportParts {
                                       const std::vector<std::string>& names);
 
 /// Shares of answers by level over all participants, with Wilson's 95 % intervals, beside the
-/// function of the median observer: a panel for each condition.
+/// function of the mean observer: a panel for each condition.
 [[nodiscard]] plot::Figure answers_figure(const Study& study,
                                           const StudyFit& fit,
                                           const std::vector<std::string>& names);

@@ -199,13 +199,13 @@ FeltSearch search(const FeltSession& session,
                   const Judgement& judgement,
                   std::uint64_t seed,
                   std::uint64_t stream) {
-  const std::vector<Place> cells = raster(area);
+  const std::vector<Place> cells = raster_in_time(area, FeltSession::place_time(session.taps()));
   FeltSetting setting{.seed = seed, .hidden = HiddenBall{ask.level, ask.hidden}};
   for (std::size_t i = 0; i < cells.size(); ++i) {
     setting.places.push_back(
         {.depth = depths_drawn(session.taps(), judgement.depth_sd, seed, i), .at = cells[i]});
   }
-  FeltSearch out{.felt = session.feel(setting)};
+  FeltSearch out{.felt = session.feel(setting), .path = length_of(cells)};
   const auto anywhere = [&](std::uint64_t axis) {
     return area.side * (random_uniform(seed, kGuess, axis) - 0.5);
   };
@@ -271,7 +271,7 @@ TrialOutcome FeltParticipants::answer(const TrialPlace& place, const TrialAsk& a
             .force_max = one.felt.force_max,
             .contact = one.felt.contact,
             .error = error,
-            .path = raster_length(area_),
+            .path = one.path,
             .force_mean = one.felt.force_mean};
   }
   const FeltSetting setting = setting_of(ask, task_, session.taps(), judgement.depth_sd, seed);

@@ -96,11 +96,13 @@ inline constexpr double kNoBall = -1;  ///< [m], deeper than any
 struct FeltSearch {
   Place said{};
   FeltTrial felt{};
+  double path{};  ///< [m]
 };
 
 /// Who searches goes over the area in rows, taps each place as often as the condition says, and
 /// says the one that was the stiffest: a cell's middle, so that no ball is farther from the nearest
-/// one than what counts as found. A guess anywhere in the area where it lapses or nothing is felt.
+/// one than what counts as found. It ends where the time does. A guess anywhere in the area where
+/// it lapses or nothing is felt.
 [[nodiscard]] FeltSearch search(const FeltSession& session,
                                 const SearchArea& area,
                                 const TrialAsk& ask,

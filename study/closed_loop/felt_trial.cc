@@ -225,6 +225,10 @@ Result<FeltSession> FeltSession::make(const Condition& condition, const LevelCur
   return FeltSession{std::make_unique<Parts>(Parts{std::move(*scenario), curves}), condition};
 }
 
+double FeltSession::place_time(int taps) noexcept {
+  return seconds(kStride + milliseconds{50} + taps * (kTap + kPause));
+}
+
 FeltTrial FeltSession::judged_of(FeltTrial felt) const {
   for (FeltInterval& interval : felt.intervals) {
     for (std::vector<double>* taps : {&interval.ln_slopes, &interval.ln_drawn}) {

@@ -69,6 +69,8 @@ class FeltSession {
   [[nodiscard]] FeltTrial feel(const FeltSetting& setting) const;
   /// The same hand at the same tissue with its own finger: no device, no link, no stage.
   [[nodiscard]] FeltTrial touch(const FeltSetting& setting) const;
+  /// [s], that a place of a search takes with so many taps.
+  [[nodiscard]] static double place_time(int taps) noexcept;
   [[nodiscard]] Feedback feedback() const noexcept { return feedback_; }
   [[nodiscard]] int taps() const noexcept { return taps_; }
   /// Taps of an interval by which an observer judges: all but the first ones of the condition.

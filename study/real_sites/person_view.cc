@@ -37,6 +37,8 @@ std::string_view text_of(PersonNotice notice) noexcept {
       return "The hand was let go of: this trial begins anew.";
     case PersonNotice::HeldUp:
       return "The stage was held up: lift before it travels. This trial begins anew.";
+    case PersonNotice::Untouched:
+      return "The tissue was never touched. This trial begins anew.";
   }
   return "";
 }

@@ -15,6 +15,7 @@ constexpr double kStep = 4e-3;   // [m], of the grid
 constexpr double kApart = 3;     // [radii], of a ball beyond the area that is searched for another
 constexpr double kReach = 0.24;  // [m], of a stage's travel, to all sides
 constexpr std::uint64_t kDeal = 0x7472617900000000;    // streams apart from those of schedules
+constexpr std::uint64_t kOff = 0x7472617900000002;     // off the grid
 constexpr std::uint64_t kChoice = 0x7472617900000001;  // which of several places
 
 /// Of each place of the tray.
@@ -68,12 +69,16 @@ Result<Tray> make_tray(const Study& study) {
   std::ranges::sort(order, {}, [&](std::size_t i) { return random_bits(study.seed, kDeal, i); });
   const double half = step * static_cast<double>(side - 1) / 2;
   Tray tray;
+  // A ball on a grid would be found by who reads where the stage stands.
+  const double off = searches ? study.ball->radius : 0;
   for (std::size_t i = 0; i < count; ++i) {
-    tray.places.push_back({(*levels)[i],
-                           {step * static_cast<double>(order[i] % side) - half,
-                            step * static_cast<double>(order[i] / side) - half}});
+    const auto along = [&](std::size_t cell, std::uint64_t axis) {
+      const double share = 2 * random_uniform(study.seed, kOff, 2 * i + axis) - 1;
+      return step * static_cast<double>(cell) - half + off * share;
+    };
+    tray.places.push_back({(*levels)[i], {along(order[i] % side, 0), along(order[i] / side, 1)}});
   }
-  const double corner = half + (searches ? study.search.side : kStep);
+  const double corner = half + off + (searches ? study.search.side : kStep);
   if (corner > kReach) {
     return fail(
         "so many areas as there are depths do not fit a stage's travel: ask for fewer "

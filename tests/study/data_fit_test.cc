@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/core/formatted.h"
 #include "common/core/random.h"
 #include "study/block.h"
 #include "tests/study/study_fixture.h"
@@ -122,10 +123,64 @@ TEST(DataFitTest, TheTableHasALineForEachParticipantAndCondition) {
   study.participants = 2;
   study.trials = 4;
   const StudyFit fit = fit_study(study, answered(study, {0.1, 0.1}));
-  const std::string text = fit_table(study, fit, condition_codes(study));
+  const std::string text = fit_table(study, fit, condition_codes(study), true);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5);
   EXPECT_EQ(text.find("near"), std::string::npos);
   EXPECT_NE(text.find("sub-02\tA\t"), std::string::npos);
+}
+
+// Touches and forces tell conditions that differ in them; of nobody's answers nothing is known.
+TEST(DataFitTest, TheTableOfASearchIsBlindAndSaysNothingWithoutAnswers) {
+  const Study study = *parse_study(
+      "task: \"locate\" participants: 1 trials: 4 practice { right: 0 } condition { name: \"one\" "
+      "} "
+      "condition { name: \"two\" } ball { radius_mm: 8 ratio: 100 } depth { top_mm: 5 contrast_ln: "
+      "0.4 } depth { top_mm: 9 contrast_ln: 0.2 }",
+      "s");
+  auto rows = answered(study, {0.1, 0.1});
+  std::erase_if(rows[0].rows, [](const TrialRow& row) { return row.condition == "B"; });
+  for (std::size_t i = 0; i < rows[0].rows.size(); ++i) {
+    rows[0].rows[i].outcome.error = i % 2 == 0 ? 2e-3 : 8e-3;
+    rows[0].rows[i].outcome.response_time = 10;
+  }
+  std::erase_if(rows[0].rows, [](const TrialRow& row) { return row.ask.kind != TrialKind::Trial; });
+  const StudyFit fit = fit_study(study, rows);
+  const std::string blind = fit_table(study, fit, condition_codes(study), true);
+  EXPECT_EQ(blind.find("contacts"), std::string::npos);
+  EXPECT_EQ(blind.find("force"), std::string::npos);
+  EXPECT_NE(fit_table(study, fit, condition_codes(study), false).find("contacts"),
+            std::string::npos);
+  EXPECT_NE(blind.find("sub-01\tB\t0\t0\tn/a\tn/a"), std::string::npos) << blind;
+  EXPECT_NE(condition_text(study, fit, 0, "A").find("error 4.0 mm in 10.0 s"), std::string::npos);
+}
+
+// Who is at chance in both conditions is not shown to be equal in them.
+TEST(DataFitTest, NothingIsCalledEqualOfWhatIsHardlyKnown) {
+  Study study = two_conditions();
+  study.participants = 6;
+  const auto all = answered(study, {0.15, 0.15});
+  EXPECT_LE(compare_study(study, fit_study(study, all), Measure::Jnd).at(0).test.equivalent, 1);
+  study.levels = even_levels(0.005, 0.01, 5);
+  study.catch_share = 0;
+  study.practice.right = 0;
+  const auto none = answered(study, {0.1, 0.4});
+  const auto pairs = compare_study(study, fit_study(study, none), Measure::Jnd);
+  ASSERT_EQ(pairs.size(), 1U);
+  EXPECT_TRUE(std::isnan(pairs[0].test.equivalent));
+}
+
+TEST(DataFitTest, ARankingOfBallsSaysWhereTheThreeLie) {
+  const Study study = *parse_study(
+      "task: \"rank\" participants: 2 condition { name: \"one\" } ball { radius_mm: 8 ratio: 100 } "
+      "levels { to_ln: 0.18 } depth { top_mm: 5 contrast_ln: 0.42 } depth { top_mm: 10 "
+      "contrast_ln: "
+      "0.13 } depth { top_mm: 20 contrast_ln: 0.02 }",
+      "s");
+  const StudyFit fit = fit_study(study, answered(study, {0.08}));
+  const std::string text = condition_text(study, fit, 0, "A");
+  EXPECT_NE(text.find("in order at "), std::string::npos) << text;
+  EXPECT_NE(text.find(formatted("%.1f", 1e3 * *depth_of(study, middle_contrast(study)))),
+            std::string::npos);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ struct Rig {
     news.contact_force = news.force = 0.6;
     pass(200 * kMs);
     news.contact_force = news.force = 0;
-    pass(2 * kMs);
+    pass(85 * kMs);  // a touch that has ended for so long is one
   }
   void to_the_question() {
     news.engaged = true;
@@ -154,6 +154,43 @@ TEST(PersonTrialTest, ASearchHasTheHandsOwnWayAndIsJudgedByWhereTheTipStands) {
   EXPECT_EQ(out.chosen, 0U);
   EXPECT_NEAR(out.path, 16e-3, 1e-9);
   EXPECT_NEAR(out.force_mean, 0.6, 1e-9);
+}
+
+// A sensor's steps about the border, and a tip that is drawn out slowly, make no touches of one.
+TEST(PersonTrialTest, OneTouchIsOneWhateverTheNoise) {
+  Rig rig;
+  rig.news.engaged = true;
+  rig.pass(1505 * kMs);
+  for (int i = 0; i < 60; ++i) {
+    rig.news.contact_force = i % 3 == 0 ? 0.15 : i % 3 == 1 ? 0.05 : 0;
+    rig.pass(20 * kMs);
+  }
+  EXPECT_EQ(rig.trial.interval(), 0U) << "it has not ended";
+  rig.news.contact_force = 0;
+  rig.pass(90 * kMs);
+  EXPECT_EQ(rig.trial.stage(), PersonStage::Travel);
+  EXPECT_EQ(rig.trial.interval(), 1U);
+}
+
+TEST(PersonTrialTest, ASearchThatNobodyMadeBeginsAnew) {
+  Rig rig;
+  TrialTimes times;
+  times.searches = true;
+  times.explore_max = std::chrono::seconds{5};
+  rig.trial = PersonTrial{{.places = {kFirst},
+                           .choices = 1,
+                           .decoy = kDecoy,
+                           .times = times,
+                           .hidden = HiddenAxis{kFirst, 20e-3, 8e-3}}};
+  rig.news.engaged = true;
+  rig.pass(2000 * kMs);
+  rig.pass(kMs, 0);
+  EXPECT_EQ(rig.trial.stage(), PersonStage::Press);
+  EXPECT_EQ(rig.trial.notice(), PersonNotice::Untouched);
+  rig.pass(2000 * kMs);
+  rig.tap();
+  rig.pass(kMs, 0);
+  EXPECT_EQ(rig.trial.stage(), PersonStage::Done);
 }
 
 }  // namespace

@@ -26,10 +26,16 @@ TEST(RasterTest, LeavesNothingOut) {
     EXPECT_LE(worst, area.within + 1e-12);
     const double rows = std::sqrt(static_cast<double>(places.size()));
     EXPECT_GT(area.side / (rows - 1) / std::sqrt(2.0), area.within * (1 - 1e-9));
-    EXPECT_NEAR(
-        raster_length(area), area.side / rows * static_cast<double>(places.size() - 1), 1e-12)
+    EXPECT_NEAR(length_of(places), area.side / rows * static_cast<double>(places.size() - 1), 1e-12)
         << "from one place to its neighbour";
   }
+}
+
+TEST(RasterTest, EndsWhereTheTimeDoes) {
+  const SearchArea area{.side = 40e-3, .within = 8e-3, .limit = 20};
+  EXPECT_EQ(raster_in_time(area, 1).size(), raster(area).size());
+  EXPECT_EQ(raster_in_time(area, 5).size(), 4U);
+  EXPECT_EQ(raster_in_time(area, 50).size(), 1U);
 }
 
 }  // namespace

@@ -112,6 +112,9 @@ TEST(StudyFileTest, WhatCannotBeIsRefusedInOneSentence) {
         one + "delays { from_ms: 5 }",
         one + "task: \"delay\" delays { from_ms: 50 to_ms: 20 }",
         std::string{"task: \"delay\" condition { name: \"one\" feedback: \"drawn\" }"},
+        one + "task: \"delay\" travel_s: 0.7",
+        std::string{"task: \"delay\" condition { name: \"one\" up { delay_ms: 250 } }"},
+        one + "task: \"locate\" search { within_mm: 0.1 } " + kBalls,
         one + "colour: \"red\"",
         one + "condition { name: \"a\\nb\" }"}) {
     const auto study = parse_study(text, "file");
