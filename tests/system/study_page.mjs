@@ -146,6 +146,12 @@ async function goThrough(page) {
     } else if (ask.stage === 'touch' && depths[ask.interval] === undefined) {
       await shoot(page, 'touch');
       depths[ask.interval] = await person.tap();
+      // A touch counts a moment after it has ended.
+      for (let i = 0; i < 30; i++) {
+        const now = await person.ask();
+        if (now.stage !== 'touch' || now.interval !== ask.interval) break;
+        await pause(20);
+      }
       if (!(await person.ask()).engaged) depths = {};
     } else if (ask.stage === 'touch') {
       depths = {};  // it did not count: once more
