@@ -1,6 +1,7 @@
 #include "monitor/desk.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/config/json.h"
@@ -253,7 +254,7 @@ std::string Desk::answer_study(const ClientBytes& call, TimePoint now) {
   const auto trial = said.at_or_null("trial").number();
   const auto choice = said.at_or_null("choice").number();
   const auto counts = [](const std::optional<double>& number) {
-    return number && *number >= 1 && *number <= 1e9;
+    return number && *number >= 1 && *number <= 1e9 && *number == std::floor(*number);
   };
   if (!counts(trial) || !counts(choice)) return "this answer names no trial or no choice";
   const StudyAnswer answer{.trial = static_cast<std::uint32_t>(*trial),

@@ -27,6 +27,14 @@ tl::unexpected<Error> is_link(const std::string& path) {
   return fail_to_reach(printable(path) + " is a link: a study's answers lie in its own folder");
 }
 
+/// What leads nowhere in the tree of files, like a pipe behind /dev/stdout, stays as it is named.
+fs::path resolved(const std::string& name) {
+  std::error_code fault;
+  const fs::path whole = fs::absolute(name, fault);
+  const fs::path out = fs::weakly_canonical(whole, fault);
+  return fault ? whole.lexically_normal() : out;
+}
+
 bool is_participant(const Study& study, const std::string& id) {
   for (std::size_t i = 0; i < study.participants; ++i) {
     if (participant_id(i) == id) return true;
@@ -188,17 +196,27 @@ Result<void> DataSet::make_trials_folder(const std::string& id) const {
 }
 
 Result<void> DataSet::may_write(const std::string& path) const {
-  // What leads nowhere in the tree of files, like a pipe behind /dev/stdout, stays as it is named.
-  const auto resolved = [](const std::string& name) {
-    std::error_code fault;
-    const fs::path out = fs::weakly_canonical(name, fault);
-    return fault ? fs::absolute(name, fault).lexically_normal() : out;
-  };
   const fs::path own = resolved(folder);
   const fs::path target = resolved(path);
   const fs::path below = target.lexically_relative(own);
   if (below.empty() || *below.begin() == ".." || *below.begin() == "derivatives") return {};
   return fail(printable(path) + " is in the study's own folder: below it derivatives/ is free");
+}
+
+Result<void> beside_studies(const std::string& path) {
+  const fs::path target = resolved(path);
+  for (fs::path above = target.parent_path(); above != above.parent_path();
+       above = above.parent_path()) {
+    std::error_code ignored;
+    if (!fs::exists(above / "code/plan.json", ignored) ||
+        !fs::exists(above / "code/study.textproto", ignored)) {
+      continue;
+    }
+    if (auto may = DataSet{above.string()}.may_write(target.string()); !may) {
+      return fail(printable(path) + " is in the folder of a study: below it derivatives/ is free");
+    }
+  }
+  return {};
 }
 
 Result<PlannedStudy> open_without_key(const std::string& folder) {

@@ -47,6 +47,9 @@ struct DataSet {
   [[nodiscard]] Result<void> may_write(const std::string& path) const;
 };
 
+/// Whether an output may be written there: in no study's folder, whose derivatives/ alone is free.
+[[nodiscard]] Result<void> beside_studies(const std::string& path);
+
 /// A study that was planned, with what registration says of it.
 struct PlannedStudy {
   DataSet data{};

@@ -17,6 +17,7 @@
 #include "study/closed_loop/felt_observer.h"
 #include "study/closed_loop/foretell_command.h"
 #include "study/compare_command.h"
+#include "study/data_set.h"
 #include "study/fit_command.h"
 #include "study/keep_command.h"
 #include "study/plan_command.h"
@@ -112,7 +113,7 @@ int run_program(int argc, char** argv) {
   declare_power(line.verb("power", "how many participants a comparison needs"), power);
   const std::string made_by =
       std::string{site_program::version()} + ", commit " + std::string{site_program::git_commit()};
-  return config::run_program(line, argc, argv, [&]() -> config::ExitStatus {
+  const auto body = [&]() -> config::ExitStatus {
     const std::string verb = line.chosen_verb();
     if (verb == "plan") return run_plan(plan, made_by, io::draw_entropy);
     if (verb == "run") return run(run_flags);
@@ -126,7 +127,8 @@ int run_program(int argc, char** argv) {
     if (verb == "withdraw") return run_withdraw(withdrawn);
     if (verb == "power") return run_power(power);
     return run_simulate(simulate, for_each_index);
-  });
+  };
+  return config::run_program(line, argc, argv, body, beside_studies);
 }
 
 }  // namespace

@@ -20,9 +20,18 @@ std::optional<ExitStatus> closed_output(const CommandLine& line) {
 int run_program(CommandLine& line,
                 int argc,
                 const char* const* argv,
-                const std::function<ExitStatus()>& body) {
+                const std::function<ExitStatus()>& body,
+                const MayReport& may_report) {
   std::optional<ExitStatus> exit_status = line.parse(argc, argv);
   try {
+    const std::string report = line.asked_report().file;
+    if (may_report && !report.empty()) {
+      if (const auto may = may_report(report); !may) {
+        // A line that is wrong besides is told first.
+        return leave(exit_status.value_or(
+            ExitStatus{ExitCode::BadInput, line.program() + ": --report: " + may.error().text}));
+      }
+    }
     if (!exit_status) exit_status = closed_output(line);
     if (!exit_status) exit_status = body();
   } catch (const std::exception& failure) {

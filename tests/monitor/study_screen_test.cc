@@ -76,7 +76,13 @@ TEST(StudyScreenTest, WhoOnlyLooksDoesNotAnswerAndNonsenseIsNone) {
   EXPECT_EQ(rig.answer(rig.join(Right::View), R"({"trial":7,"choice":2})"),
             "this client may only look");
   const std::uint32_t client = rig.join(Right::Control);
-  for (const char* wrong : {"{}", R"({"trial":7})", R"({"trial":0,"choice":1})", "[]", "x"}) {
+  for (const char* wrong : {"{}",
+                            R"({"trial":7})",
+                            R"({"trial":0,"choice":1})",
+                            R"({"trial":7,"choice":1.7})",
+                            R"({"trial":7.5,"choice":1})",
+                            "[]",
+                            "x"}) {
     EXPECT_EQ(rig.answer(client, wrong), "this answer names no trial or no choice") << wrong;
   }
   StudyAnswer answer;

@@ -110,6 +110,23 @@ TEST(DataSetTest, OutputsDoNotTakeThePlaceOfWhatTheFolderConsistsOf) {
   EXPECT_FALSE(data.may_write(folder.beside("link")));
 }
 
+TEST(DataSetTest, NothingIsWrittenIntoAnyStudysFolder) {
+  const test::PlannedFolder folder;
+  const DataSet data{folder.folder()};
+  EXPECT_TRUE(beside_studies(folder.beside("page.json")));
+  EXPECT_TRUE(beside_studies(data.derived("page.json")));
+  EXPECT_TRUE(beside_studies("/dev/stdout"));
+  EXPECT_TRUE(beside_studies("page.json"));
+  for (const std::string& path : {data.code("key.json"),
+                                  data.folder + "/new.json",
+                                  data.folder + "/sub-01/new/one.json",
+                                  data.derived("../../code/plan.json")}) {
+    EXPECT_FALSE(beside_studies(path)) << path;
+  }
+  std::filesystem::create_symlink(data.code("key.json"), folder.beside("key"));
+  EXPECT_FALSE(beside_studies(folder.beside("key")));
+}
+
 TEST(DataSetTest, AFolderWithoutAStudyIsNone) {
   const auto planned = open_study("/nowhere");
   ASSERT_FALSE(planned);

@@ -29,11 +29,13 @@ class ProgramRunTest : public testing::Test {
   }
   ~ProgramRunTest() override { std::filesystem::remove(file_); }
 
-  int run(std::vector<std::string> words, const std::function<ExitStatus()>& body) {
+  int run(std::vector<std::string> words,
+          const std::function<ExitStatus()>& body,
+          const MayReport& may_report = {}) {
     words.insert(words.end(), {"--report", file_});
     std::vector<const char*> argv{"palp-x", "try"};
     for (const std::string& word : words) argv.push_back(word.c_str());
-    return run_program(line_, static_cast<int>(argv.size()), argv.data(), body);
+    return run_program(line_, static_cast<int>(argv.size()), argv.data(), body, may_report);
   }
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] std::string written() const { return read_whole_file(file_).value_or(""); }
@@ -104,6 +106,20 @@ TEST_F(ProgramRunTest, NoOutputTakesThePlaceOfAnotherFileAndNothingRuns) {
             0);
   EXPECT_TRUE(ran) << "an old picture is drawn anew";
   std::filesystem::remove(precious);
+}
+
+TEST_F(ProgramRunTest, WhereNoReportMayBeNoneIsWrittenAndNothingRuns) {
+  ASSERT_TRUE(write_whole_file(file(), "precious"));
+  bool ran = false;
+  const auto body = [&] {
+    ran = true;
+    return ExitStatus{};
+  };
+  const auto nowhere = [](const std::string&) -> Result<void> { return fail("it is precious"); };
+  EXPECT_EQ(run({}, body, nowhere), 2);
+  EXPECT_EQ(run({"--speed", "2"}, body, nowhere), 2);
+  EXPECT_FALSE(ran);
+  EXPECT_EQ(written(), "precious");
 }
 
 TEST_F(ProgramRunTest, OfARunThatDidNotFailOnlyTheVerbReports) {
