@@ -15,7 +15,7 @@
 ///     sub-01/ses-01/beh/sub-01_ses-01_task-TASK_run-01_beh.tsv     a line for each trial
 ///     sourcedata/sub-01/run-01_part-1_{surgeon,patient}.mcap       traces, of real sites alone
 ///     code/study.textproto schedule.json plan.json PREREGISTRATION.md key.json
-///     code/observer.json withdrawn.txt unblinded.txt               as far as they came to be
+///     code/observer.json run.lock withdrawn.txt unblinded.txt      as far as they came to be
 ///     derivatives/palp-study/                                      what fit, compare, report say
 namespace palp::study {
 

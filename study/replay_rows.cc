@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace palp::study {
+namespace {
+
+constexpr double kBelievedSlack = 1e-6;  // [-], above what a row's digits cut off
+
+}  // namespace
 
 Result<void> replay_rows(Block& block, std::span<const TrialRow> rows, const std::string& code) {
   for (const TrialRow& row : rows) {
@@ -19,6 +24,11 @@ Result<void> replay_rows(Block& block, std::span<const TrialRow> rows, const std
       return fail(where + " is not the one that the schedule and the answers before it ask for");
     }
     block.told(row.yes());
+    const Marginal believed = block.believed(ask.track);
+    if (std::abs(row.believed_mean - believed.mean) > kBelievedSlack ||
+        std::abs(row.believed_sd - believed.sd) > kBelievedSlack) {
+      return fail(where + ": the posterior does not follow from the answers");
+    }
   }
   return {};
 }

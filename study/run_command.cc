@@ -172,15 +172,13 @@ Result<std::vector<std::size_t>> chosen(const RunFlags& flags, const PlannedStud
 }
 
 /// Answers of one folder are of one kind.
-Result<void> bind_to(const RunFlags& flags, const PlannedStudy& planned) {
-  const auto rows = read_rows(planned);
-  if (!rows) return tl::unexpected(rows.error());
+Result<RunLock> bind_to(const RunFlags& flags, const PlannedStudy& planned) {
   WhoAnswers who{.kind = kind_of(flags, planned.study), .observer = {}, .people = {}};
   if (flags.observer != kPerson) {
     who.observer = flags.observer;
     who.people = flags.people;
   }
-  return bind_folder(planned, *rows, who);
+  return bind_folder(planned, who);
 }
 
 }  // namespace
@@ -237,9 +235,8 @@ ExitStatus run_run(const RunFlags& flags,
   }
   const auto who = chosen(flags, *planned);
   if (!who) return config::refusal("palp-study", who.error());
-  if (auto bound = bind_to(flags, *planned); !bound) {
-    return config::refusal("palp-study", bound.error());
-  }
+  const auto bound = bind_to(flags, *planned);
+  if (!bound) return config::refusal("palp-study", bound.error());
   const auto observer = make_observer(planned->study);
   if (!observer) return config::refusal("palp-study", observer.error());
   // Whatever becomes of this run, those of earlier ones are on the list.

@@ -40,6 +40,26 @@ std::string said(std::string_view text) {
   return printable(out);
 }
 
+/// Compares, and writes only where this run is `alone`.
+Result<void> bind(const PlannedStudy& planned, const WhoAnswers& who, bool alone) {
+  const auto rows = read_rows(planned);
+  if (!rows) return tl::unexpected(rows.error());
+  const std::string wanted = text_of(who);
+  const auto refused = [&](const std::string& by) {
+    return fail(planned.data.folder + " holds answers by " + by + ", these would be by " +
+                said(wanted) + ": plan another folder for them");
+  };
+  for (const std::string& kind : kinds_of(*rows)) {
+    if (kind != who.kind) return refused(kind);
+  }
+  const auto before = read_if_there(path_of(planned.data));
+  if (!before) return tl::unexpected(before.error());
+  if (*before && **before == wanted) return {};
+  // A folder is there before its first trial is asked: somebody may be at it.
+  if (!rows->empty() || !alone) return refused(*before ? said(**before) : "nobody who is known");
+  return config::write_whole_file(path_of(planned.data), wanted);
+}
+
 }  // namespace
 
 std::vector<std::string> kinds_of(const std::vector<ParticipantRows>& rows) {
@@ -60,23 +80,16 @@ Result<std::string> bound_kind(const DataSet& data) {
   return std::string{Json::parse(**text).at_or_null("kind").text().value_or("nobody")};
 }
 
-Result<void> bind_folder(const PlannedStudy& planned,
-                         const std::vector<ParticipantRows>& rows,
-                         const WhoAnswers& who) {
-  const std::string wanted = text_of(who);
-  const auto refused = [&](const std::string& by) {
-    return fail(planned.data.folder + " holds answers by " + by + ", these would be by " +
-                said(wanted) + ": plan another folder for them");
-  };
-  for (const std::string& kind : kinds_of(rows)) {
-    if (kind != who.kind) return refused(kind);
+Result<RunLock> bind_folder(const PlannedStudy& planned, const WhoAnswers& who) {
+  auto lock = RunLock::open(planned.data.code("run.lock"));
+  if (!lock) return lock;
+  if (lock->alone()) {
+    if (auto bound = bind(planned, who, true); !bound) return tl::unexpected(bound.error());
   }
-  const auto before = read_if_there(path_of(planned.data));
-  if (!before) return tl::unexpected(before.error());
-  if (*before && **before == wanted) return {};
-  // A folder is there before its first trial is asked: somebody may be at it.
-  if (!rows.empty()) return refused(*before ? said(**before) : "nobody who is known");
-  return config::write_whole_file(path_of(planned.data), wanted);
+  if (auto shared = lock->beside_others(); !shared) return tl::unexpected(shared.error());
+  // Somebody else may have bound it between the two locks.
+  if (auto bound = bind(planned, who, false); !bound) return tl::unexpected(bound.error());
+  return lock;
 }
 
 }  // namespace palp::study

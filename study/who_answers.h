@@ -5,6 +5,7 @@
 
 #include "study/data_set.h"
 #include "study/formula_participant.h"
+#include "study/run_lock.h"
 
 namespace palp::study {
 
@@ -18,9 +19,8 @@ struct WhoAnswers {
 
 /// Binds the folder to them, in code/observer.json, where nobody has answered yet; later refuses
 /// everybody else, so that answers of one folder are of one kind.
-[[nodiscard]] Result<void> bind_folder(const PlannedStudy& planned,
-                                       const std::vector<ParticipantRows>& rows,
-                                       const WhoAnswers& who);
+/// Nobody binds it anew while somebody runs: the lock lasts as long as the run.
+[[nodiscard]] Result<RunLock> bind_folder(const PlannedStudy& planned, const WhoAnswers& who);
 
 /// Kinds that the rows have, in order, each once.
 [[nodiscard]] std::vector<std::string> kinds_of(const std::vector<ParticipantRows>& rows);

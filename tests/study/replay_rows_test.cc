@@ -20,6 +20,8 @@ struct Standing {
       TrialRow row{.ask = asked.next(), .condition = "A"};
       row.outcome.chosen = row.ask.number % 3 == 0 ? 1 - row.ask.stronger : row.ask.stronger;
       asked.told(row.yes());
+      row.believed_mean = asked.believed(row.ask.track).mean;
+      row.believed_sd = asked.believed(row.ask.track).sd;
       out.push_back(row);
     }
     return out;
@@ -54,6 +56,8 @@ TEST(ReplayRowsTest, NoticesEveryChange) {
   EXPECT_TRUE(refused([&](auto& all) { all[last].ask.stronger ^= 1; }));
   EXPECT_TRUE(refused([&](auto& all) { all[last].ask.track ^= 1; }));
   EXPECT_TRUE(refused([&](auto& all) { all[last].ask.kind = TrialKind::Practice; }));
+  EXPECT_TRUE(refused([&](auto& all) { all[last].believed_mean += 1e-5; }));
+  EXPECT_TRUE(refused([&](auto& all) { all[last].believed_sd += 1e-5; }));
   EXPECT_TRUE(refused([&](auto& all) { all.erase(all.begin()); }));
   EXPECT_TRUE(refused([&](auto& all) { all.push_back(all.back()); }));
 }

@@ -35,6 +35,18 @@ TEST(WhoAnswersTest, NorWhereAPersonHasJustBegun) {
   EXPECT_NE(end.text.find("enough"), std::string::npos);
 }
 
+// Before the first folder of a participant is there, too.
+TEST(WhoAnswersTest, NobodyBindsAFolderAnewWhileSomebodyRuns) {
+  const test::PlannedFolder folder;
+  const auto end = folder.run([&](const Study& study) -> Result<Observer> {
+    EXPECT_EQ(folder.run_person(test::PlannedFolder::formula(), 1).code, ExitCode::BadInput);
+    EXPECT_EQ(folder.run(test::PlannedFolder::formula(), 2).code, ExitCode::Done);
+    return formula_participants(study, PeopleTraits{});
+  });
+  EXPECT_EQ(end.code, ExitCode::Done) << end.text;
+  EXPECT_EQ(*bound_kind({folder.folder()}), "simulated");
+}
+
 TEST(WhoAnswersTest, OneObserverWithOneSetOfTraitsAnswers) {
   const test::PlannedFolder folder;
   (void)folder.run(test::PlannedFolder::formula(), 1);
@@ -58,7 +70,7 @@ TEST(WhoAnswersTest, OneObserverWithOneSetOfTraitsAnswers) {
 TEST(WhoAnswersTest, AFolderWithoutAnswersIsAnybodys) {
   const test::PlannedFolder folder;
   const auto planned = *open_study(folder.folder());
-  ASSERT_TRUE(bind_folder(planned, {}, {.kind = "pilot"}));
+  ASSERT_TRUE(bind_folder(planned, {.kind = "pilot"}));
   EXPECT_EQ(*bound_kind(planned.data), "pilot");
   EXPECT_EQ(folder.run().code, ExitCode::Done);
   EXPECT_EQ(*bound_kind(planned.data), "simulated");
