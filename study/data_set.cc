@@ -269,7 +269,10 @@ Result<std::vector<std::string>> strangers(const PlannedStudy& planned) {
 }
 
 RowRules row_rules(const Study& study, std::size_t block) {
-  return {.task = study.task, .conditions = study.conditions.size(), .block = block};
+  return {.task = study.task,
+          .conditions = study.conditions.size(),
+          .block = block,
+          .within = study.search.within};
 }
 
 Result<void> list_participants(const PlannedStudy& planned) {

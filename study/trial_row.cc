@@ -61,6 +61,7 @@ constexpr std::size_t kPath = kError + 1;
 constexpr std::size_t kForceMean = kError + 2;
 
 constexpr double kMillimetres = 1e3;  // [1/m]
+constexpr double kDigits = 1e-9;      // [m], that a row's digits cut off
 
 constexpr std::array<std::string_view, 3> kWho{"person", "pilot", "simulated"};
 
@@ -166,6 +167,10 @@ Result<TrialRow> row_of(const std::vector<std::string_view>& cells,
   if (number[Cell::Correct] != (row.yes() ? 1 : 0)) {
     return fail("correct does not follow from interval and response");
   }
+  const double border = rules.within;
+  const bool near = row.outcome.error < border + kDigits;
+  const bool far = row.outcome.error > border - kDigits;
+  if (border > 0 && !(row.yes() ? near : far)) return fail("error_mm does not agree with correct");
   const double tau = task.ranks ? kendall_tau(row.ask.stronger, row.outcome.chosen) : 0;
   if (task.ranks && std::abs(number[kTau] - tau) > 1e-8) {
     return fail("kendall_tau does not follow from interval and response");

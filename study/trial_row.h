@@ -56,6 +56,7 @@ struct RowRules {
   Task task{};
   std::size_t conditions{kConditionsMax};  ///< of the study
   std::size_t block{};                     ///< of all rows, from 1; 0: any
+  double within{};                         ///< [m], of a search: found; 0: not looked at
 };
 /// Every cell is looked at. A file that has content, but neither the header of this version nor
 /// the beginning of it, is refused.

@@ -148,6 +148,10 @@ TEST(TrialRowTest, EachTaskHasItsColumns) {
   }
   EXPECT_NE(row_text(rank).find("0.333333333\n"), std::string::npos);
   EXPECT_NE(row_header(delay.task).find("level_ms"), std::string::npos);
+  // Found is found within its distance.
+  const std::string said = row_header(search.task) + row_text(search);
+  EXPECT_TRUE(parse_rows(said, "f", {.task = search.task, .within = 8e-3}));
+  EXPECT_FALSE(parse_rows(said, "f", {.task = search.task, .within = 13e-3}));
   // A tau that does not follow from the orders was changed by hand.
   std::string text = row_header(rank.task) + row_text(rank);
   text.replace(text.rfind("0.333333333"), 11, "1");
