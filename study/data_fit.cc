@@ -82,6 +82,7 @@ Measured mean_of_rows(const std::vector<const TrialRow*>& rows, Value value) {
 SearchFigures search_figures(const std::vector<const TrialRow*>& rows) {
   const auto median_of = [&rows](auto value) {
     std::vector<double> values;
+    values.reserve(rows.size());
     for (const TrialRow* row : rows) values.push_back(value(row->outcome));
     return median(std::move(values));
   };
@@ -274,6 +275,7 @@ std::vector<ConditionPair> compare_study(const Study& study, const StudyFit& fit
     }
   }
   std::vector<double> p;
+  p.reserve(out.size());
   for (const ConditionPair& pair : out) p.push_back(pair.test.p);
   const std::vector<double> adjusted = holm_adjusted(p);
   for (std::size_t i = 0; i < out.size(); ++i) out[i].p_holm = adjusted[i];

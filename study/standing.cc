@@ -119,9 +119,9 @@ Result<StudyReplay> replay_study(const PlannedStudy& planned,
 
 Result<std::string> standing(const PlannedStudy& planned,
                              const std::vector<ParticipantRows>& rows) {
-  const auto why = why_not(planned, rows);
+  auto why = why_not(planned, rows);
   if (!why) return why;
-  const auto looked = early_look(planned.data);
+  auto looked = early_look(planned.data);
   if (!looked) return looked;
   const std::vector<std::string> kinds = kinds_of(rows);
   const std::string kind = kinds.size() == 1 ? kinds.front() : "";

@@ -38,6 +38,7 @@ struct GroupMean {
 };
 GroupMean group_mean(const std::vector<FittedBlock>& blocks) {
   std::vector<Measured> values;
+  values.reserve(blocks.size());
   for (const FittedBlock& one : blocks) values.push_back({one.ln_jnd.mean, one.ln_jnd.sd});
   if (values.size() < 2) return {values.empty() ? 0 : values[0].value, 0};
   double mean = 0;
