@@ -101,10 +101,7 @@ TrialOutcome searched(const Study& study,
   const std::uint64_t stream = trial_stream(place, ask.number);
   TrialOutcome out{.chosen = found ? std::size_t{0} : 1};
   for (std::uint64_t i = 0;; i += 2) {
-    const auto along = [&](std::uint64_t axis) {
-      return area.side * (random_uniform(study.seed, stream, kWhere + i + axis) - 0.5);
-    };
-    out.error = distance({along(0), along(1)}, ask.hidden);
+    out.error = distance(drawn_place(area, study.seed, stream, kWhere + i), ask.hidden);
     if ((out.error <= area.within) == found) break;
   }
   const std::vector<Place> places = raster_in_time(area, seconds(kTap));

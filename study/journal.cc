@@ -11,11 +11,10 @@
 #include <unistd.h>
 
 #include "common/core/printable.h"
+#include "study/data_set.h"
 
 namespace palp::study {
 namespace {
-
-constexpr std::size_t kJournalMax = std::size_t{64} << 20;  // [bytes]
 
 tl::unexpected<Error> cannot(const char* what, const std::string& path) {
   return fail_to_reach(std::string{"cannot "} + what + ' ' + printable(path) + ": " +
@@ -49,7 +48,7 @@ Result<void> Journal::read() {
     if (count < 0) return cannot("read", path_);
     if (count == 0) return {};
     text_.append(block.data(), static_cast<std::size_t>(count));
-    if (text_.size() > kJournalMax) return fail_to_reach(printable(path_) + " is too long");
+    if (text_.size() > kTableMax) return fail_to_reach(printable(path_) + " is too long");
   }
 }
 

@@ -31,10 +31,10 @@ void PersonTrial::begin_anew(PersonNotice why) noexcept {
   trial_.reset();
   notice_ = why;
   stage_ = PersonStage::Press;
-  touching_now_ = false;
+  touching_ = false;
   stood_.reset();
-  path_ = touched_ = 0;
-  touching_ = 0;
+  path_ = force_sum_ = 0;
+  force_ticks_ = 0;
 }
 
 void PersonTrial::tick(TimePoint now, const SiteNews& news, std::optional<std::size_t> answer) {
@@ -76,13 +76,13 @@ void PersonTrial::step(TimePoint now, const SiteNews& news, std::optional<std::s
 
 /// One touch is one, however slowly the tip comes and however much the sensor's noise is.
 bool PersonTrial::touches(TimePoint now, double force) noexcept {
-  if (force > (touching_now_ ? kClear : kContact)) {
-    touching_now_ = true;
+  if (force > (touching_ ? kClear : kContact)) {
+    touching_ = true;
     touched_at_ = now;
   } else if (now - touched_at_ > kClearFor) {
-    touching_now_ = false;
+    touching_ = false;
   }
-  return touching_now_;
+  return touching_;
 }
 
 /// How the tip goes about a search.
@@ -90,8 +90,8 @@ void PersonTrial::follow(const SiteNews& news) noexcept {
   path_ += distance(news.stands, stood_.value_or(news.stands));
   stood_ = news.stands;
   if (news.contact_force <= kContact) return;
-  touched_ += news.contact_force;
-  ++touching_;
+  force_sum_ += news.contact_force;
+  ++force_ticks_;
 }
 
 TrialOutcome PersonTrial::outcome(TimePoint now) const {
@@ -106,7 +106,7 @@ TrialOutcome PersonTrial::outcome(TimePoint now) const {
   out.error = distance(stood_.value_or(plan_.places.front()), plan_.hidden->axis);
   out.chosen = out.error <= plan_.hidden->within ? 0 : 1;
   out.path = path_;
-  out.force_mean = touching_ > 0 ? touched_ / static_cast<double>(touching_) : 0;
+  out.force_mean = force_ticks_ > 0 ? force_sum_ / static_cast<double>(force_ticks_) : 0;
   return out;
 }
 

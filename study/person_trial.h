@@ -106,10 +106,10 @@ class PersonTrial {
   // Of a search.
   std::optional<Place> stood_;  ///< a tick before
   double path_{};               ///< [m]
-  double touched_{};            ///< [N], sum over the ticks in contact
-  std::size_t touching_{};      ///< those
+  double force_sum_{};          ///< [N], sum over the ticks in contact
+  std::size_t force_ticks_{};   ///< those
   std::size_t attempts_{};
-  bool touching_now_{};
+  bool touching_{};
   TimePoint touched_at_{};  ///< last
 };
 

@@ -1,11 +1,10 @@
 #include "study/preregistration.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "common/config/number.h"
+#include "common/core/formatted.h"
 #include "study/compare.h"
 
 namespace palp::study {
@@ -13,11 +12,7 @@ namespace {
 
 using config::number_text;
 
-std::string per_cent(double share) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.0f %%", 100 * share);
-  return text.data();
-}
+std::string per_cent(double share) { return formatted("%.0f %%", 100 * share); }
 
 std::string power_table(const Study& study) {
   std::string text = "| ratio of JNDs | participants needed at 80 % power |\n| --- | --- |\n";

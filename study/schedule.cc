@@ -137,12 +137,8 @@ std::vector<BlockPlan> participant_plan(const Study& study, std::size_t particip
     const auto decoy = [&](std::size_t i) {
       return static_cast<std::size_t>(random_bits(study.seed, stream(kPlaces), i) % kDecoys);
     };
-    const auto hidden = [&](std::size_t i) -> Place {
-      const auto along = [&](std::size_t axis) {
-        return study.search.side *
-               (random_uniform(study.seed, stream(kHidden), 2 * i + axis) - 0.5);
-      };
-      return {along(0), along(1)};
+    const auto hidden = [&](std::size_t i) {
+      return drawn_place(study.search, study.seed, stream(kHidden), 2 * i);
     };
     BlockPlan block{.condition = condition, .stream = stream(kLevels)};
     const std::vector<bool> is_catch = catches(study, stream(kCatches));

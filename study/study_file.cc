@@ -10,6 +10,7 @@
 #include "common/config/settings_text.h"
 #include "common/core/formatted.h"
 #include "common/core/printable.h"
+#include "common/core/random.h"
 #include "proto/config.pb.h"
 #include "study/orders.h"
 
@@ -338,6 +339,16 @@ std::optional<double> depth_found(const Study& study, double jnd) noexcept {
 
 double middle_contrast(const Study& study) noexcept {
   return (study.depths.front().contrast + study.depths.back().contrast) / 2;
+}
+
+Place drawn_place(const SearchArea& area,
+                  std::uint64_t seed,
+                  std::uint64_t stream,
+                  std::uint64_t index) noexcept {
+  const auto along = [&](std::uint64_t i) {
+    return area.side * (random_uniform(seed, stream, i) - 0.5);
+  };
+  return {along(index), along(index + 1)};
 }
 
 AnswerTable table_of(const Study& study) { return {study.task, {}, {}, study.levels}; }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/core/place.h"
 #include "common/core/result.h"
 #include "study/answer_posterior.h"
 #include "study/track.h"
@@ -136,6 +137,13 @@ inline constexpr std::size_t kConditionsMax = 6;  ///< codes A to F
 
 /// As the study file has it: "stiffness".
 [[nodiscard]] std::string_view task_name(const Study& study) noexcept;
+
+/// Anywhere in the area of a search, from its middle [m]: two numbers of the stream, from `index`
+/// on.
+[[nodiscard]] Place drawn_place(const SearchArea& area,
+                                std::uint64_t seed,
+                                std::uint64_t stream,
+                                std::uint64_t index) noexcept;
 
 /// The grid on which the tracks of a study, and its fits, hold what they believe.
 [[nodiscard]] AnswerTable table_of(const Study& study);

@@ -206,10 +206,7 @@ FeltSearch search(const FeltSession& session,
         {.depth = depths_drawn(session.taps(), judgement.depth_sd, seed, i), .at = cells[i]});
   }
   FeltSearch out{.felt = session.feel(setting), .path = length_of(cells)};
-  const auto anywhere = [&](std::uint64_t axis) {
-    return area.side * (random_uniform(seed, kGuess, axis) - 0.5);
-  };
-  out.said = {anywhere(0), anywhere(1)};
+  out.said = drawn_place(area, seed, kGuess, 0);
   if (random_uniform(seed, stream, kLapse) < judgement.lapse) return out;
   std::optional<double> most;
   for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -129,13 +129,13 @@ void tell_depths(const std::vector<DepthEstimate>& estimates,
 /// Goes through a Trial with what a hand meets, and keeps what it felt.
 class Listener {
  public:
-  /// `step` [N] of forces that are drawn.
-  /// `unjudged`: taps of each interval after which the force is watched for a lag.
+  /// `step` [N] of forces that are drawn. `unjudged`: taps of each interval after which the force
+  /// is watched for a lag, where there may be one.
   Listener(const FeltSetting& setting, int taps, int unjudged, double step)
       : trial_{setting.places.size(), taps, false, times_of(setting)},
         slopes_(setting.places.size()),
         drawn_(setting.places.size(), DrawnTaps{step}),
-        lags_(setting.places.size()),
+        lags_(delayed(setting) ? setting.places.size() : 0),
         unjudged_{unjudged} {}
 
   /// `force` [N] at the hand, `tip_force` [N] at the tip.
@@ -146,7 +146,8 @@ class Listener {
     trial_.tick(now, {.force = force, .contact = tip_force > kContact});
     if (trial_.stage() == TrialStage::Explore) {
       slopes_[trial_.interval()].feel(position, force);
-      if (trial_.taps_of_interval() >= unjudged_) lags_[trial_.interval()].feel(position, force);
+      const bool watched = !lags_.empty() && trial_.taps_of_interval() >= unjudged_;
+      if (watched) lags_[trial_.interval()].feel(position, force);
     }
     if (tip_force > kContact) {
       touched_ += tip_force;
@@ -154,13 +155,12 @@ class Listener {
     }
     if (trial_.stage() == TrialStage::Answer && asked_ == 0) asked_ = seconds(trial_.length(now));
   }
-  /// `lags`: how late the force was, which takes a while to find.
-  [[nodiscard]] FeltTrial heard(bool lags) const {
+  [[nodiscard]] FeltTrial heard() const {
     std::vector<FeltInterval> intervals;
     for (std::size_t i = 0; i < slopes_.size(); ++i) {
       intervals.push_back(
           {.ln_slopes = slopes_[i].ln_slopes(), .ln_drawn = drawn_[i].ln_stiffness()});
-      if (lags) intervals.back().lag = lags_[i].lag();
+      if (!lags_.empty()) intervals.back().lag = lags_[i].lag();
     }
     return {.intervals = std::move(intervals),
             .duration = asked_ > 0 ? asked_ : seconds(trial_.length(now_)),
@@ -174,7 +174,7 @@ class Listener {
   Trial trial_;
   std::vector<FeltSlopes> slopes_;  ///< of each interval
   std::vector<DrawnTaps> drawn_;    ///< likewise
-  std::vector<FeltLag> lags_;       ///< likewise
+  std::vector<FeltLag> lags_;       ///< likewise; none: no interval is delayed
   int unjudged_;
   double touched_{};  ///< [N], sum over the ticks that the tip touched
   int touching_{};    ///< those
@@ -250,7 +250,7 @@ FeltTrial FeltSession::feel(const FeltSetting& setting) const {
     const TimePoint at = TimePoint{} + from_seconds(tick.at);
     listener.tick(at, tick.hand, tick.hand_force, tick.contact_force);
   }
-  FeltTrial felt = judged_of(listener.heard(delayed(setting)));
+  FeltTrial felt = judged_of(listener.heard());
   tell_depths(result.depths, setting, felt);
   return felt;
 }
@@ -260,7 +260,7 @@ FeltTrial FeltSession::touch(const FeltSetting& setting) const {
   for (const lab::TouchTick& tick : lab::direct_touch(parts_->with(setting, true))) {
     listener.tick(TimePoint{} + tick.at, tick.position, tick.force, tick.force);
   }
-  return judged_of(listener.heard(delayed(setting)));
+  return judged_of(listener.heard());
 }
 
 }  // namespace palp::study

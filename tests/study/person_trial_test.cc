@@ -118,17 +118,22 @@ TEST(PersonTrialTest, AnAnswerBeforeTheQuestionIsNone) {
   EXPECT_EQ(rig.trial.stage(), PersonStage::Answer);
 }
 
-TEST(PersonTrialTest, ASearchHasTheHandsOwnWayAndIsJudgedByWhereTheTipStands) {
-  Rig rig;
+/// From kFirst on.
+PersonTrial search_for(const Place& axis, Duration limit) {
   TrialTimes times;
   times.searches = true;
-  times.explore_max = std::chrono::seconds{60};
+  times.explore_max = limit;
+  return PersonTrial{{.places = {kFirst},
+                      .choices = 1,
+                      .decoy = kDecoy,
+                      .times = times,
+                      .hidden = HiddenAxis{axis, 20e-3, 8e-3}}};
+}
+
+TEST(PersonTrialTest, ASearchHasTheHandsOwnWayAndIsJudgedByWhereTheTipStands) {
+  Rig rig;
   const Place axis{kFirst.x + 12e-3, kFirst.y - 5e-3};
-  rig.trial = PersonTrial{{.places = {kFirst},
-                           .choices = 1,
-                           .decoy = kDecoy,
-                           .times = times,
-                           .hidden = HiddenAxis{axis, 20e-3, 8e-3}}};
+  rig.trial = search_for(axis, std::chrono::seconds{60});
   rig.news.engaged = true;
   rig.pass(1400 * kMs);
   EXPECT_EQ(rig.trial.place(), StagePlace{kFirst});
@@ -174,14 +179,7 @@ TEST(PersonTrialTest, OneTouchIsOneWhateverTheNoise) {
 
 TEST(PersonTrialTest, ASearchThatNobodyMadeBeginsAnew) {
   Rig rig;
-  TrialTimes times;
-  times.searches = true;
-  times.explore_max = std::chrono::seconds{5};
-  rig.trial = PersonTrial{{.places = {kFirst},
-                           .choices = 1,
-                           .decoy = kDecoy,
-                           .times = times,
-                           .hidden = HiddenAxis{kFirst, 20e-3, 8e-3}}};
+  rig.trial = search_for(kFirst, std::chrono::seconds{5});
   rig.news.engaged = true;
   rig.pass(2000 * kMs);
   rig.pass(kMs, 0);
