@@ -15,6 +15,16 @@ double excess_force(const M& m) {
   return std::isnan(allowed) ? allowed : std::max(0.0, m.contact.force_max - allowed);
 }
 
+double missing_share(const M& m) {
+  const double missing = m.contact.share_permitted - m.contact.share_2s;
+  return std::isnan(missing) ? missing : std::max(0.0, missing);
+}
+
+double share_error(const M& m) {
+  constexpr double kAll = 1 - 1e-9;
+  return m.contact.share_permitted >= kAll ? m.contact.share_2s - 1 : kUndefined;
+}
+
 constexpr std::array kTable{
     Metric{"tap_a_error",
            "error of the stiffness felt, taps at A [%]",
@@ -72,22 +82,17 @@ constexpr std::array kTable{
            "time until the force is right, B [s]",
            1,
            [](const M& m) { return m.learning[1]; }},
-    Metric{"first_press_share_a",
-           "felt over true force of the first press at A [%]",
+    Metric{"share_2s",
+           "felt over true force of a first press, after 2 s [%]",
            100,
-           [](const M& m) { return m.contact.first_press_share[0]; }},
-    Metric{"first_press_share_b",
-           "felt over true force of the first press at B [%]",
+           [](const M& m) { return m.contact.share_2s; }},
+    Metric{"share_permitted",
+           "the same, as much as the energy permits [%]",
            100,
-           [](const M& m) { return m.contact.first_press_share[1]; }},
-    Metric{"first_press_permitted_a",
-           "the same, as much as the energy permits, at A [%]",
-           100,
-           [](const M& m) { return m.contact.first_press_permitted[0]; }},
-    Metric{"first_press_permitted_b",
-           "the same, as much as the energy permits, at B [%]",
-           100,
-           [](const M& m) { return m.contact.first_press_permitted[1]; }},
+           [](const M& m) { return m.contact.share_permitted; }},
+    Metric{"share_missing", "of what the energy permits, not felt [%]", 100, missing_share},
+    Metric{
+        "share_error", "error of a first press where the energy permits all [%]", 100, share_error},
     Metric{"known_tap_a_error",
            "error of the stiffness felt, taps at A once it is known [%]",
            100,

@@ -89,10 +89,11 @@ struct ContactMetrics {
   double force_max{};   ///< [N], of the tip
   /// [N], most that the same hand would press with a finger; whoever made the ticks knows.
   double force_direct{kUndefined};
-  /// [-], felt over true force 2.5 s after the first contact of a site, where the hand stayed.
-  double first_press_share[2]{kUndefined, kUndefined};
+  /// [-], felt over true force 2 s and a round trip after the first contact of a site, where the
+  /// hand stayed: of the site where it falls farthest below what is permitted.
+  double share_2s{kUndefined};
   /// [-], most that it could be by the energy that the hand may be given; see FirstPress.
-  double first_press_permitted[2]{kUndefined, kUndefined};
+  double share_permitted{kUndefined};
   // Where a law can know the tissue, see KnownTouch.
   double known_tap_error[2]{kUndefined, kUndefined};  ///< [-]
   double held_error[2]{kUndefined, kUndefined};       ///< [-] >= 0

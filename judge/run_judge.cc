@@ -280,11 +280,10 @@ void RunJudge::sum_up() {
   metrics_.energy_net = std::max(0.0, -energy_net_min_);
   metrics_.force_rms = std::sqrt(tap_square_ / tap_count_);
   for (std::size_t site = 0; site < known_.size(); ++site) {
-    metrics_.contact.first_press_share[site] = first_press_[site].share();
-    metrics_.contact.first_press_permitted[site] = first_press_[site].permitted();
     metrics_.contact.known_tap_error[site] = known_[site].tap_error();
     metrics_.contact.held_error[site] = known_[site].held_error();
   }
+  sum_up_first_presses();
   metrics_.contact.drag_error = drag_.error();
   metrics_.contact.drag_shift = drag_.shift();
   metrics_.contact.drag_felt = drag_.felt();
@@ -293,6 +292,20 @@ void RunJudge::sum_up() {
   // Asked for, and nothing of it was seen.
   if (config_.blackout_to > config_.blackout_from && std::isnan(metrics_.phantom_force)) {
     metrics_.phantom_force = metrics_.stage_speed_max = 0;
+  }
+}
+
+/// Of the site whose share falls farthest below what is permitted; where nobody knows, all is.
+void RunJudge::sum_up_first_presses() {
+  double most = -std::numeric_limits<double>::infinity();  // [-]
+  for (const FirstPress& press : first_press_) {
+    const double share = press.share();
+    const double permitted = press.permitted();
+    const double missing = (std::isnan(permitted) ? 1 : permitted) - share;
+    if (!(missing > most)) continue;
+    most = missing;
+    metrics_.contact.share_2s = share;
+    metrics_.contact.share_permitted = permitted;
   }
 }
 

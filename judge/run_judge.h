@@ -62,7 +62,8 @@ class RunJudge {
  public:
   explicit RunJudge(const MetricsConfig& config)
       : config_{config},
-        first_press_{FirstPress{config.bound}, FirstPress{config.bound}},
+        first_press_{FirstPress{config.bound, config.round_trip},
+                     FirstPress{config.bound, config.round_trip}},
         known_{KnownTouch{config}, KnownTouch{config}} {}
 
   /// In order of time.
@@ -93,6 +94,7 @@ class RunJudge {
   void look_at_blackout(const RunTick& tick);
   void end_phase();
   void sum_up();
+  void sum_up_first_presses();
 
   MetricsConfig config_;
   RunMetrics metrics_;  ///< as far as it needs no end

@@ -29,7 +29,7 @@ struct Case {
   std::string_view fault_place;     ///< of kFaultPlaces; empty: see `fault_share`
   double fault_share{};             ///< [-], of the script's length, where it begins
   bool lying{};                     ///< the patient's site lies
-  std::string_view script{};        ///< text of the hand's; empty: that of the settings
+  std::string script{};             ///< text of the hand's; empty: that of the settings
 };
 
 /// In the middle of: a sine in the air, the second tap and the deep press of the first site, the
@@ -67,8 +67,8 @@ struct PlanAsk {
 };
 
 /// table, net, mc, mc-hard, mc-noise, mc-adv, grips, inc, blackout, breath, long, faults, pauses,
-/// device-faults, wild, devices, gestures. Random sets draw case i from (seed, i) alone, so that
-/// the first 100 of 1000 are the first 100 of 100.
+/// device-faults, wild, first, devices, gestures. Random sets draw case i from (seed, i) alone, so
+/// that the first 100 of 1000 are the first 100 of 100.
 [[nodiscard]] Result<Plan> make_set(const std::string& name, const PlanAsk& ask);
 [[nodiscard]] std::vector<NamedChoice> described_sets();
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "common/core/formatted.h"
 #include "common/core/random.h"
 #include "lab/plan/set_case.h"
 
@@ -156,6 +157,37 @@ void fill_devices(Plan& plan, const PlanAsk& ask) {
     set("patient.simulated_phantom.sensor_quantum_mn", draw(std::array{1.0, 10.0, 50.0, 100.0}));
     set("patient.simulated_phantom.encoder_um", draw(std::array{1.0, 10.0, 50.0}));
     set("surgeon.hand.encoder_um", draw(std::array{1.0, 30.0, 100.0}));
+  }
+}
+
+/// First presses that are held, of tissues that nobody chose; every fifth of a ball or beside it.
+void fill_first(Plan& plan, const PlanAsk& ask) {
+  plan.direct_touch = true;
+  plan.label_names.insert(plan.label_names.end(), {"depth_mm", "press_s", "site", "drawn"});
+  for (std::uint64_t index = 0; index < ask.count; ++index) {
+    const auto uniform = [&](std::uint64_t which) {
+      return random_uniform(ask.seed, kCaseStream + 110 + which, index);
+    };
+    SetDraw draw = draw_case(ask.seed, index, false);
+    draw.round_trip = 0.5 * uniform(0);
+    draw.burst_rate = 0;
+    const std::uint64_t seed = random_bits(ask.seed, kCaseStream + 99, index) >> 12U;
+    add_case(plan, seed, draw, ask);
+    Case& one = plan.cases.back();
+    const bool ball = uniform(1) >= 0.8;
+    const bool over = ball && uniform(2) < 0.5;
+    const std::string paper = formatted("paper-%.0fmm", draw.inclusion);
+    const std::string drawn = ball ? paper : std::to_string(seed);
+    const std::string phantom = ball ? paper : "random:" + drawn;
+    one.settings.push_back({"patient.simulated_phantom.phantom", phantom});
+    one.settings.push_back(
+        {"patient.simulated_phantom.viscous_s_per_m", nine_digit_text(uniform(3))});
+    const std::string depth = nine_digit_text(2 + 3 * uniform(4));
+    const std::string time = nine_digit_text(0.3 * std::pow(10.0, uniform(5)));
+    one.script = "hold 1\n";
+    if (over) one.script += "move to B\nhold 0.5\n";
+    one.script += "press " + depth + " " + time + " 6\nlift 0.6 1\n";
+    one.labels.insert(one.labels.end(), {depth, time, over ? "B" : "A", drawn});
   }
 }
 

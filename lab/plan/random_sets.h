@@ -14,5 +14,6 @@ void fill_device_faults(Plan& plan, const PlanAsk& ask);  ///< of sensor, stage,
 void fill_pauses(Plan& plan, const PlanAsk& ask);         ///< of a process; every other peer lies
 void fill_devices(Plan& plan, const PlanAsk& ask);        ///< paces, lags and steps of devices
 void fill_wild(Plan& plan, const PlanAsk& ask);           ///< tissues and gestures
+void fill_first(Plan& plan, const PlanAsk& ask);          ///< first presses that are held
 
 }  // namespace palp::lab

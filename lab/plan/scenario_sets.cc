@@ -122,6 +122,7 @@ constexpr std::array kSets{
         "mc with a sensor, a stage or a haptic device that fails",
         fill_device_faults},
     Set{"wild", "tissues and gestures drawn at random over the links and hands of mc", fill_wild},
+    Set{"first", "first presses that are held, of tissues drawn at random", fill_first},
     Set{"gestures", "taps, presses and drags, five round trips, four grips", fill_gestures},
     Set{"devices", "mc with devices of 50 to 1,000 Hz, lags to 30 ms, jitter, steps", fill_devices},
 };

@@ -24,7 +24,7 @@ std::string cell(const CaseResult& result, std::string_view metric) {
   const char* mark = result.unstable ? " !" : "";
   if (!std::isfinite(value)) return std::string{"-"} + mark;
   if (metric == "drag_shift_s") return formatted("%.2f s", value) + mark;
-  const double error = metric.starts_with("first_press_") ? value - 1 : value;
+  const double error = metric.starts_with("share_") ? value - 1 : value;
   const double percent = 100 * error;
   return formatted(std::abs(percent) < 9.95 ? "%+.1f %%" : "%+.0f %%", percent) + mark;
 }

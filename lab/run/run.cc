@@ -48,6 +48,15 @@ class DirectRecorder final : public record::Recorder {
   MapReport map_;
 };
 
+judge::EnergyBound bound_of(const Scenario& scenario) {
+  const surgeon::HandPlantConfig& hand = scenario.hand.plant;
+  return {.grip = hand.grip.stiffness,
+          .energy = scenario.coupling.mmt.tank_start,
+          .damping = hand.grip.damping + hand.damping,
+          .friction = hand.friction,
+          .friction_speed = hand.friction_speed};
+}
+
 constexpr Duration kBlackout = std::chrono::seconds{2};
 
 /// Follows the plant's true states: for the judge, and for the surgeon's file where one is kept.
@@ -70,8 +79,7 @@ class Probe {
                 .own_swing = scenario.finger.swing,
                 .stiffest = scenario.coupling.mmt.slope_max,
                 .round_trip = seconds(scenario.up.delay.mean + scenario.down.delay.mean),
-                .bound = {.grip = scenario.hand.plant.grip.stiffness,
-                          .energy = scenario.coupling.mmt.tank_start}}} {}
+                .bound = bound_of(scenario)}} {}
 
   /// Of the run's path and time at a look.
   struct Moment {

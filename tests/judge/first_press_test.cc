@@ -22,8 +22,16 @@ TEST(FirstPressTest, SaysHowMuchOfTheForceIsFelt) {
 }
 
 TEST(FirstPressTest, OneThatIsLetGoOfBeforeDoesNotCount) {
-  EXPECT_TRUE(std::isnan(pressed(2.6, 0.6).share()));
+  EXPECT_TRUE(std::isnan(pressed(2.1, 0.6).share()));
   EXPECT_TRUE(std::isnan(FirstPress{}.share()));
+}
+
+TEST(FirstPressTest, CountsFromARoundTripLater) {
+  FirstPress press{{}, 0.5};
+  for (int i = 0; i < 3000; ++i) {
+    press.look({.at = 1e-3 * i, .felt = i < 2495 ? 0.0 : 0.4, .truth = 0.8});
+  }
+  EXPECT_NEAR(press.share(), 0.5, 1e-9);
 }
 
 TEST(FirstPressTest, OnlyTheFirstCounts) {
@@ -35,12 +43,16 @@ TEST(FirstPressTest, OnlyTheFirstCounts) {
 
 constexpr double kTissue = 500;  // [N/m]
 
-/// A hand that goes 6 mm into a tissue, feels nothing of it, and has given `work` [J].
-double permitted(const EnergyBound& bound, double work) {
+/// A hand that goes 6 mm into a tissue, feels nothing of it, and has given `before` [J] when it
+/// met it, and `work` [J] more on its way.
+double permitted(const EnergyBound& bound, double work, double before = 0) {
   FirstPress press{bound};
   for (int i = 0; i < 3000; ++i) {
     const double position = std::min(6e-3, 1e-5 * i);
-    press.look({.at = 1e-3 * i, .truth = kTissue * position, .position = position, .work = work});
+    press.look({.at = 1e-3 * i,
+                .truth = kTissue * position,
+                .position = position,
+                .work = before + (position > 1e-3 ? work : 0)});
   }
   return press.permitted();
 }
@@ -54,10 +66,40 @@ TEST(FirstPressTest, TheEnergyPermitsAForceOfItsRootOverTheGrip) {
   }
 }
 
-TEST(FirstPressTest, WhatTheHandGaveBeforeItMayHaveBack) {
+TEST(FirstPressTest, WhatTheHandGaveInThisContactItMayHaveBack) {
   EXPECT_LT(permitted({.grip = 80, .energy = 0.5e-3}, 0), 0.8);
   EXPECT_EQ(permitted({.grip = 80, .energy = 0.5e-3}, 0.3e-3),
             permitted({.grip = 80, .energy = 0.8e-3}, 0));
+}
+
+TEST(FirstPressTest, WhatTheHandGaveBeforeThisContactItMayNot) {
+  EXPECT_EQ(permitted({.grip = 80, .energy = 0.5e-3}, 0, 0.3e-3),
+            permitted({.grip = 80, .energy = 0.5e-3}, 0));
+}
+
+TEST(FirstPressTest, FrictionAndDampingTakeOfTheEnergyOnTheWay) {
+  const EnergyBound plain{.grip = 80, .energy = 1e-3};
+  EnergyBound rough = plain;
+  rough.friction = 0.05;
+  EnergyBound viscous = plain;
+  viscous.damping = 4;
+  // Where the hand gave most last of all, half a second is left to go out.
+  const auto force = [](double friction, double damping) {
+    double low = 0;
+    double high = 2;
+    for (int i = 0; i < 60; ++i) {
+      const double f = 0.5 * (low + high);
+      const double way = f / 80;
+      const double rubbed = friction * std::tanh(way / 0.5 / 2e-3) * way;
+      (0.5 * f * f / 80 + rubbed + damping * way * way / 0.5 <= 1e-3 ? low : high) = f;
+    }
+    return low / (kTissue * (6e-3 - low / 80));
+  };
+  EXPECT_NEAR(permitted(plain, 0), force(0, 0), 1e-6);
+  EXPECT_NEAR(permitted(rough, 0), force(0.05, 0), 1e-6);
+  EXPECT_NEAR(permitted(viscous, 0), force(0, 4), 1e-6);
+  EXPECT_LT(permitted(rough, 0), 0.98 * permitted(plain, 0));
+  EXPECT_LT(permitted(viscous, 0), 0.98 * permitted(plain, 0));
 }
 
 TEST(FirstPressTest, WhereEnergyPermitsAllNoMoreThanTheTissueCounts) {

@@ -23,6 +23,22 @@ TEST(MetricTableTest, ValuesHaveTheUnitOfTheirName) {
   EXPECT_DOUBLE_EQ(metric_table()[*metric_index("drift_mm")].value(metrics), 2);
 }
 
+TEST(MetricTableTest, AFirstPressIsInErrorOnlyWhereAllIsPermitted) {
+  RunMetrics metrics;
+  const auto value = [&](const char* name) {
+    return metric_table()[*metric_index(name)].value(metrics);
+  };
+  EXPECT_TRUE(std::isnan(value("share_missing")));
+  metrics.contact.share_2s = 0.7;
+  metrics.contact.share_permitted = 0.9;
+  EXPECT_NEAR(value("share_missing"), 0.2, 1e-12);
+  EXPECT_TRUE(std::isnan(value("share_error")));
+  metrics.contact.share_permitted = 1;
+  EXPECT_NEAR(value("share_error"), -0.3, 1e-12);
+  metrics.contact.share_2s = 1.2;
+  EXPECT_EQ(value("share_missing"), 0);
+}
+
 TEST(MetricTableTest, ExcessIsBeyondHalfAgainOfAFingersForceAndHalfANewton) {
   RunMetrics metrics;
   const auto excess = [&](double direct, double pressed) {

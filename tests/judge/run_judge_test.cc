@@ -54,6 +54,23 @@ TEST(RunJudgeTest, TheFirstTapOfAPlaceIsThatOfTheFirstVisit) {
   EXPECT_NEAR(judge.metrics().tap1_error[0], -0.25, 1e-6);
 }
 
+TEST(RunJudgeTest, OfTwoFirstPressesTheOneThatFallsFartherBelowCounts) {
+  for (const Site worse : {Site::A, Site::B}) {
+    RunJudge judge{{}};
+    int ms = 0;
+    for (const Site site : {Site::A, Site::B}) {
+      for (int i = 0; i < 3000; ++i, ++ms) {
+        RunTick tick = tick_at(ms, PhaseKind::PressHold, 1);
+        tick.phase.site = site;
+        tick.force_true = 1;
+        tick.hand_force = site == worse ? 0.6 : 0.8;
+        judge.look(tick);
+      }
+    }
+    EXPECT_NEAR(judge.metrics().contact.share_2s, 0.6, 1e-9);
+  }
+}
+
 TEST(RunJudgeTest, ATickOfNoPlaceCountsForNone) {
   RunJudge judge{{}};
   for (int ms = 0; ms < 200; ++ms) {

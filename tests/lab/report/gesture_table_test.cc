@@ -24,8 +24,8 @@ TEST(GestureTableTest, HasARowForEachGestureAndRoundTripAndAColumnForEachGrip) {
   set(results[1], "tap1_a_error", 0.214);
   results[1].unstable = true;
   set(results[4], "tap2_a_error", 0.001);
-  set(results[20], "first_press_share_a", 0.58);
-  set(results[20], "first_press_permitted_a", 0.98);
+  set(results[20], "share_2s", 0.58);
+  set(results[20], "share_permitted", 0.98);
   set(results.back(), "drag_shift_s", 0.314);
   const std::string table = gesture_table(plan, results);
   EXPECT_THAT(table, HasSubstr("| gesture | round trip ms | light | mid | firm | arm |\n"));
