@@ -94,6 +94,8 @@ struct ContactMetrics {
   double share_2s{kUndefined};
   /// [-], most that it could be by the energy that the hand may be given; see FirstPress.
   double share_permitted{kUndefined};
+  double energy_contact{};     ///< [J], most that the hand got in one contact; see ContactEnergy
+  double energy_air_to_air{};  ///< [J], most that it got from air to air
   // Where a law can know the tissue, see KnownTouch.
   double known_tap_error[2]{kUndefined, kUndefined};  ///< [-]
   double held_error[2]{kUndefined, kUndefined};       ///< [-] >= 0

@@ -116,6 +116,10 @@ void RunJudge::look(const RunTick& tick) {
   }
   look_at_learning(tick, Site::A);
   look_at_learning(tick, Site::B);
+  energy_.look({.at = tick.at,
+                .felt = tick.hand_force,
+                .truth = tick.force_true,
+                .work = tick.energy_operator});
   energy_operator_min_ = tick.energy_operator_min;
   energy_net_min_ = tick.energy_net_min;
   ++ticks_;
@@ -238,9 +242,9 @@ void RunJudge::look_at_forces(const RunTick& tick) {
   const bool in_air = tick.counted && tick.phase.kind == PhaseKind::FreeAir &&
                       tick.phase.elapsed >= tick.phase.duration - kFreeAirTail;
   if (!in_air) return;
-  air_square_ += tick.hand_force * tick.hand_force;
-  air_peak_ = std::max(air_peak_, std::abs(tick.hand_force));
-  ++air_count_;
+  air_.square += tick.hand_force * tick.hand_force;
+  air_.peak = std::max(air_.peak, std::abs(tick.hand_force));
+  ++air_.count;
 }
 
 RunMetrics RunJudge::metrics() const {
@@ -272,12 +276,14 @@ void RunJudge::sum_up() {
   metrics_.static_error[0] = a.felt / a.truth - 1;
   metrics_.static_error[1] = b.felt / b.truth - 1;
   metrics_.static_ratio_error = b.felt / a.felt / (b.truth / a.truth) - 1;
-  if (air_count_ > 0) {
-    metrics_.drag_rms = std::sqrt(air_square_ / air_count_);
-    metrics_.drag_peak = air_peak_;
+  if (air_.count > 0) {
+    metrics_.drag_rms = std::sqrt(air_.square / air_.count);
+    metrics_.drag_peak = air_.peak;
   }
   metrics_.energy_operator = std::max(0.0, -energy_operator_min_);
   metrics_.energy_net = std::max(0.0, -energy_net_min_);
+  metrics_.contact.energy_contact = energy_.in_contact();
+  metrics_.contact.energy_air_to_air = energy_.air_to_air();
   metrics_.force_rms = std::sqrt(tap_square_ / tap_count_);
   for (std::size_t site = 0; site < known_.size(); ++site) {
     metrics_.contact.known_tap_error[site] = known_[site].tap_error();

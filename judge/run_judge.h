@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 
+#include "judge/contact_energy.h"
 #include "judge/drag_bump.h"
 #include "judge/first_press.h"
 #include "judge/known_touch.h"
@@ -85,6 +86,12 @@ class RunJudge {
     double felt{};   ///< [N]
     double truth{};  ///< [N]
   };
+  /// What was felt of free air.
+  struct Air {
+    double square{};  ///< [N^2]
+    double count{};   ///< [ticks]
+    double peak{};    ///< [N]
+  };
   static constexpr std::size_t kStepTicks = 10;
 
   void look_at_phase(const RunTick& tick);
@@ -110,14 +117,13 @@ class RunJudge {
   double at_cap_{};      ///< [s]
   double tap_square_{};  ///< [N^2]
   double tap_count_{};   ///< [ticks]
-  double air_square_{};  ///< [N^2]
-  double air_count_{};   ///< [ticks]
-  double air_peak_{};    ///< [N]
+  Air air_;
   std::array<Forces, kStepTicks> before_;
   std::array<Learning, 2> learning_;
   std::array<FirstPress, 2> first_press_;
   std::array<KnownTouch, 2> known_;
   DragBump drag_;
+  ContactEnergy energy_;
   double energy_operator_min_{};  ///< [J], of the newest tick
   double energy_net_min_{};       ///< [J]
 };

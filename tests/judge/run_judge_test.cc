@@ -71,6 +71,24 @@ TEST(RunJudgeTest, OfTwoFirstPressesTheOneThatFallsFartherBelowCounts) {
   }
 }
 
+TEST(RunJudgeTest, EnergyIsCountedByContactAndFromAirToAir) {
+  RunJudge judge{{}};
+  double work = 0;
+  for (int ms = 0; ms < 400; ++ms) {
+    RunTick tick = tick_at(ms, PhaseKind::Tap, 1);
+    const bool pressed = ms % 200 >= 100;
+    tick.force_true = pressed ? 1 : 0;
+    if (pressed) work -= 1e-5;
+    tick.energy_operator = work;
+    judge.look(tick);
+  }
+  RunTick away = tick_at(430, PhaseKind::Tap, 1);
+  away.energy_operator = work;
+  judge.look(away);
+  EXPECT_NEAR(judge.metrics().contact.energy_contact, 1e-3, 1e-9);
+  EXPECT_NEAR(judge.metrics().contact.energy_air_to_air, 2e-3, 1e-9);
+}
+
 TEST(RunJudgeTest, ATickOfNoPlaceCountsForNone) {
   RunJudge judge{{}};
   for (int ms = 0; ms < 200; ++ms) {
