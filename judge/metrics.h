@@ -84,9 +84,11 @@ struct WholeRunMetrics {
 
 /// Of any gesture, at both ends.
 struct ContactMetrics {
-  double hand_swing{};  ///< [m], of a limit cycle; see SwingFinder
-  double tip_swing{};   ///< [m], likewise
-  double force_max{};   ///< [N], of the tip
+  bool unstable_hand{};  ///< it swings, ran away, or was pushed at the device's limit
+  bool unstable_tip{};   ///< it swings
+  double hand_swing{};   ///< [m], of a limit cycle; see SwingFinder
+  double tip_swing{};    ///< [m], likewise
+  double force_max{};    ///< [N], of the tip
   /// [N], most that the same hand would press with a finger; whoever made the ticks knows.
   double force_direct{kUndefined};
   /// [-], felt over true force 2 s and a round trip after the first contact of a site, where the

@@ -46,9 +46,10 @@ Secants secants(const PhaseAccount::HoldMeans& shallow, const PhaseAccount::Hold
   return {(deep.felt - shallow.felt) / span, (deep.truth - shallow.truth) / span};
 }
 
-void call_unstable(RunMetrics& metrics, bool is, const char* reason) {
+/// `end`: of the hand or of the tip.
+void call_unstable(RunMetrics& metrics, bool is, bool& end, const char* reason) {
   if (!is) return;
-  metrics.unstable = true;
+  metrics.unstable = end = true;
   metrics.unstable_reason = reason;
 }
 
@@ -256,18 +257,7 @@ RunMetrics RunJudge::metrics() const {
 
 void RunJudge::sum_up() {
   if (ticks_ == 0) return;
-  call_unstable(metrics_, tip_swings_, "the tip swings by 1 mm or more under a hand that holds");
-  call_unstable(metrics_, swings_, "the hand swings by 1 mm or more in a hold");
-  metrics_.contact.hand_swing = hand_swing_.largest();
-  metrics_.contact.tip_swing = tip_swing_.largest();
-  // A light hand that taps on something stiff bounces there with its own finger too.
-  call_unstable(metrics_,
-                metrics_.contact.hand_swing >= config_.own_swing + kUnstableCycle,
-                "the hand swings by itself");
-  call_unstable(metrics_, metrics_.contact.tip_swing >= kUnstableCycle, "the tip swings by itself");
-  call_unstable(metrics_, ran_away_, "the hand ran away");
-  call_unstable(
-      metrics_, at_cap_ >= kUnstableCapTime, "the force stayed at the device's limit for 0.2 s");
+  sum_up_stability();
   metrics_.tap_error[0] = pooled_[0].error().value_or(kUndefined);
   metrics_.tap_error[1] = pooled_[1].error().value_or(kUndefined);
   judge_ratio(pooled_[0], pooled_[1], metrics_);
@@ -299,6 +289,24 @@ void RunJudge::sum_up() {
   if (config_.blackout_to > config_.blackout_from && std::isnan(metrics_.phantom_force)) {
     metrics_.phantom_force = metrics_.stage_speed_max = 0;
   }
+}
+
+void RunJudge::sum_up_stability() {
+  bool& hand = metrics_.contact.unstable_hand;
+  bool& tip = metrics_.contact.unstable_tip;
+  call_unstable(
+      metrics_, tip_swings_, tip, "the tip swings by 1 mm or more under a hand that holds");
+  call_unstable(metrics_, swings_, hand, "the hand swings by 1 mm or more in a hold");
+  metrics_.contact.hand_swing = hand_swing_.largest();
+  metrics_.contact.tip_swing = tip_swing_.largest();
+  // A light hand that taps on something stiff bounces there with its own finger too.
+  const bool cycles = metrics_.contact.hand_swing >= config_.own_swing + kUnstableCycle;
+  call_unstable(metrics_, cycles, hand, "the hand swings by itself");
+  const bool tip_cycles = metrics_.contact.tip_swing >= kUnstableCycle;
+  call_unstable(metrics_, tip_cycles, tip, "the tip swings by itself");
+  call_unstable(metrics_, ran_away_, hand, "the hand ran away");
+  const bool at_limit = at_cap_ >= kUnstableCapTime;
+  call_unstable(metrics_, at_limit, hand, "the force stayed at the device's limit for 0.2 s");
 }
 
 /// Of the site whose share falls farthest below what is permitted; where nobody knows, all is.

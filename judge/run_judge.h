@@ -102,6 +102,7 @@ class RunJudge {
   void end_phase();
   void sum_up();
   void sum_up_first_presses();
+  void sum_up_stability();
 
   MetricsConfig config_;
   RunMetrics metrics_;  ///< as far as it needs no end

@@ -89,7 +89,9 @@ Spread spread_of(const std::vector<CaseResult>& results, std::size_t metric) {
     return rank < values.size() ? values[rank] : judge::kUndefined;
   };
   spread.p50 = at(0.5);
+  spread.p90 = at(0.9);
   spread.p95 = at(0.95);
+  spread.p99 = at(0.99);
   return spread;
 }
 

@@ -44,7 +44,9 @@ using CaseSink = std::function<void(const CaseResult& result)>;
 /// Of the absolute values: element min(n - 1, floor(p n)) of n sorted ones, undefined ones last.
 struct Spread {
   double p50{judge::kUndefined};  ///< [as the metric]
+  double p90{judge::kUndefined};  ///< [as the metric]
   double p95{judge::kUndefined};  ///< [as the metric]
+  double p99{judge::kUndefined};  ///< [as the metric]
   double max{judge::kUndefined};  ///< [as the metric], of the defined ones
   std::uint64_t undefined{};
 };

@@ -70,6 +70,13 @@ std::uint64_t unstable_count(const std::vector<CaseResult>& results) {
       std::count_if(results.begin(), results.end(), [](const auto& r) { return r.unstable; }));
 }
 
+/// In how many of the cases a metric of 0 and 1 is 1.
+std::uint64_t count_of(const std::vector<CaseResult>& results, std::string_view metric) {
+  const std::size_t index = *judge::metric_index(metric);
+  return static_cast<std::uint64_t>(std::count_if(
+      results.begin(), results.end(), [&](const auto& r) { return r.values[index] == 1; }));
+}
+
 std::string metric_rows(const std::vector<CaseResult>& results) {
   std::array<char, 240> line{};
   std::string text;
@@ -79,10 +86,12 @@ std::string metric_rows(const std::vector<CaseResult>& results) {
     if (spread.undefined == results.size()) continue;
     std::snprintf(line.data(),
                   line.size(),
-                  "%-26s %10.4f %10.4f %10.4f %9llu\n",
+                  "%-26s %10.4f %10.4f %10.4f %10.4f %10.4f %9llu\n",
                   std::string{table[metric].name}.c_str(),
                   spread.p50,
+                  spread.p90,
                   spread.p95,
+                  spread.p99,
                   spread.max,
                   static_cast<unsigned long long>(spread.undefined));
     text += line.data();
@@ -114,6 +123,8 @@ std::string batch_report(const Plan& plan,
   json["tissue"] = plan.tissue.empty() ? Json(nullptr) : Json(plan.tissue);
   json["digest"] = hexadecimal(digest_of(results));
   json["unstable"] = unstable_count(results);
+  json["unstable_hand"] = count_of(results, "unstable_hand");
+  json["unstable_tip"] = count_of(results, "unstable_tip");
   Json outcomes = Json::object();
   std::map<std::string, std::uint64_t> ends;
   for (const CaseResult& result : results) ++ends[result.outcome];
@@ -126,7 +137,11 @@ std::string batch_report(const Plan& plan,
     const Spread spread = spread_of(results, metric);
     if (spread.undefined == results.size()) continue;
     const std::string name{table[metric].name};
-    metrics[name] = {{"p50", spread.p50}, {"p95", spread.p95}, {"max", spread.max}};
+    metrics[name] = {{"p50", spread.p50},
+                     {"p90", spread.p90},
+                     {"p95", spread.p95},
+                     {"p99", spread.p99},
+                     {"max", spread.max}};
     if (spread.undefined > 0) undefined[name] = spread.undefined;
   }
   json["undefined"] = undefined;
@@ -155,7 +170,7 @@ std::string batch_summary(const Plan& plan,
   std::snprintf(line.data(),
                 line.size(),
                 "set %s, %zu cases, seed %llu, coupling %s, tissue %s: %llu unstable\n"
-                "%-26s %10s %10s %10s %9s\n",
+                "%-26s %10s %10s %10s %10s %10s %9s\n",
                 plan.name.c_str(),
                 results.size(),
                 static_cast<unsigned long long>(plan.seed),
@@ -164,7 +179,9 @@ std::string batch_summary(const Plan& plan,
                 static_cast<unsigned long long>(unstable_count(results)),
                 "absolute value",
                 "median",
+                "p90",
                 "p95",
+                "p99",
                 "max",
                 "undefined");
   text += line.data();

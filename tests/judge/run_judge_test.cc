@@ -71,6 +71,23 @@ TEST(RunJudgeTest, OfTwoFirstPressesTheOneThatFallsFartherBelowCounts) {
   }
 }
 
+TEST(RunJudgeTest, WhatIsUnstableIsToldOfTheHandAndOfTheTip) {
+  for (const bool hand : {false, true}) {
+    RunJudge judge{{}};
+    for (int ms = 0; ms < 1000; ++ms) {
+      RunTick tick = tick_at(ms, PhaseKind::Tap, 1);
+      const double swing = 1e-3 * std::sin(0.06 * ms);  // about 10 Hz
+      tick.tip = 1e-3 + (hand ? 0 : swing);
+      tick.hand = 1e-3 + (hand ? swing : 0);
+      judge.look(tick);
+    }
+    const RunMetrics metrics = judge.metrics();
+    EXPECT_TRUE(metrics.unstable);
+    EXPECT_EQ(metrics.contact.unstable_hand, hand);
+    EXPECT_EQ(metrics.contact.unstable_tip, !hand);
+  }
+}
+
 TEST(RunJudgeTest, EnergyIsCountedByContactAndFromAirToAir) {
   RunJudge judge{{}};
   double work = 0;

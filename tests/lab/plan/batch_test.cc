@@ -347,9 +347,12 @@ TEST(SpreadTest, CountsUndefinedValuesAsTheWorst) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     results[i].values.assign(judge::metric_table().size(), static_cast<double>(i));
   }
+  EXPECT_EQ(spread_of(results, 0).p90, 18);
   EXPECT_EQ(spread_of(results, 0).p95, 19);
+  EXPECT_EQ(spread_of(results, 0).p99, 19);
   results[0].values[0] = judge::kUndefined;
   EXPECT_TRUE(std::isnan(spread_of(results, 0).p95));
+  EXPECT_EQ(spread_of(results, 0).p90, 19);
   EXPECT_EQ(spread_of(results, 0).p50, 11);
   EXPECT_EQ(spread_of(results, 0).undefined, 1U);
 }
