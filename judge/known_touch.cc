@@ -1,6 +1,7 @@
 #include "judge/known_touch.h"
 
 #include <cmath>
+#include <utility>
 
 namespace palp::judge {
 
@@ -29,11 +30,23 @@ void KnownTouch::tap(const TapMetrics& tap) {
   tap_truth_ += stiffness.spread() * *stiffness.truth();
 }
 
-void KnownTouch::hold(double from, double felt, double truth) noexcept {
-  if (std::isinf(touched_by(from - config_.round_trip - kHoldAfter))) return;
-  if (!(truth >= kHeldLeast) || !(felt < kSaturated * config_.force_continuous)) return;
-  held_off_ += std::abs(felt - truth);
-  held_truth_ += truth;
+void KnownTouch::feel(const PermittedPress::Look& hand) {
+  const bool presses = hand.truth >= kContact;
+  if (presses && !std::exchange(pressed_, presses)) press_.begin(hand);
+  pressed_ = presses;
+  if (presses) press_.look(hand);
+}
+
+void KnownTouch::hold(const Hold& hold) noexcept {
+  constexpr double kAll = 1 - 1e-9;
+  if (std::isinf(touched_by(hold.from - config_.round_trip - kHoldAfter))) return;
+  const bool saturated = !(hold.felt < kSaturated * config_.force_continuous);
+  if (!(hold.truth >= kHeldLeast) || saturated) return;
+  // No curve that is nowhere steeper than may be shown reaches this force.
+  if (hold.truth > config_.stiffest * hold.position) return;
+  if (press_.permitted(hold.until) < kAll) return;
+  held_off_ += std::abs(hold.felt - hold.truth);
+  held_truth_ += hold.truth;
 }
 
 double KnownTouch::tap_error() const noexcept {

@@ -15,6 +15,12 @@ double excess_force(const M& m) {
   return std::isnan(allowed) ? allowed : std::max(0.0, m.contact.force_max - allowed);
 }
 
+/// [N], beyond what a finger would press.
+double tip_force_excess(const M& m) {
+  const double excess = m.contact.force_max - m.contact.force_direct;
+  return std::isnan(excess) ? excess : std::max(0.0, excess);
+}
+
 double missing_share(const M& m) {
   const double missing = m.contact.share_permitted - m.contact.share_2s;
   return std::isnan(missing) ? missing : std::max(0.0, missing);
@@ -178,6 +184,22 @@ constexpr std::array kTable{
            [](const M& m) { return m.contact.force_direct; }},
     Metric{
         "contact_force_excess_n", "force of the tip beyond what is allowed [N]", 1, excess_force},
+    Metric{"tip_force_ratio",
+           "largest force at the tissue to that of the same hand's finger [-]",
+           1,
+           [](const M& m) { return m.contact.force_max / m.contact.force_direct; }},
+    Metric{"tip_force_excess_n",
+           "force of the tip beyond that of the same hand's finger [N]",
+           1,
+           tip_force_excess},
+    Metric{"guard_excess_n",
+           "force of the tip beyond the gate's limit [N]",
+           1,
+           [](const M& m) { return m.contact.guard_excess; }},
+    Metric{"guard_excess_s",
+           "longest time of the tip beyond the gate's limit [s]",
+           1,
+           [](const M& m) { return m.contact.guard_excess_time; }},
     Metric{"unstable_hand",
            "the hand was unstable [-]",
            1,

@@ -51,7 +51,8 @@ struct MetricsConfig {
   double own_swing{};  ///< [m], of the same hand at the tissue with its own finger
   double stiffest{std::numeric_limits<double>::infinity()};  ///< [N/m], most that may be shown
   double round_trip{};                                       ///< [s], mean, of the path
-  EnergyBound bound;  ///< of the law, and the hand that it is held to
+  double tip_force_limit{3};  ///< [N], above it the patient's gate retreats
+  EnergyBound bound;          ///< of the law, and the hand that it is held to
   /// Of the blackout and 2 s after it, in seconds of the recorded ticks; equal: there was none.
   double blackout_from{};  ///< [s]
   double blackout_to{};    ///< [s]
@@ -96,6 +97,8 @@ struct ContactMetrics {
   double share_2s{kUndefined};
   /// [-], most that it could be by the energy that the hand may be given; see FirstPress.
   double share_permitted{kUndefined};
+  double guard_excess{};       ///< [N], most beyond the gate's limit of the tip's force
+  double guard_excess_time{};  ///< [s], longest on end; see TipGuard
   double energy_contact{};     ///< [J], most that the hand got in one contact; see ContactEnergy
   double energy_air_to_air{};  ///< [J], most that it got from air to air
   // Where a law can know the tissue, see KnownTouch.

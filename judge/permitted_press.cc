@@ -20,13 +20,18 @@ void PermittedPress::look(const Look& now) {
 }
 
 /// Straight lines between what is kept.
-double PermittedPress::truth_at(double position) const noexcept {
+double PermittedPress::truth_kept(double position) const noexcept {
   const auto after = std::ranges::upper_bound(depths_, position, {}, &Depth::position);
   if (after == depths_.begin()) return depths_.front().truth;
   if (after == depths_.end()) return depths_.back().truth;
   const auto before = std::prev(after);
   const double share = (position - before->position) / (after->position - before->position);
   return before->truth + share * (after->truth - before->truth);
+}
+
+double PermittedPress::truth_at(double position) const noexcept {
+  const double relaxed = std::min(1.0, most_.truth / truth_kept(most_.position));
+  return relaxed * truth_kept(position);
 }
 
 double PermittedPress::taken(double force, double way, double span) const noexcept {

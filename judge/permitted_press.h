@@ -49,7 +49,9 @@ class PermittedPress {
     double position{};  ///< [m], deeper than ever before
     double truth{};     ///< [N], there
   };
+  /// [N], of the tissue at `position` [m], as far as it had relaxed where the hand had given most.
   [[nodiscard]] double truth_at(double position) const noexcept;
+  [[nodiscard]] double truth_kept(double position) const noexcept;  ///< [N], as it was met
   /// [J], that it takes to push the hand out by `way` [m] in `span` [s] to the force [N].
   [[nodiscard]] double taken(double force, double way, double span) const noexcept;
 

@@ -171,7 +171,11 @@ void RunJudge::end_phase() {
   }
   if (tag.kind == PhaseKind::PressHold && tag.site != Site::Other) {
     const PhaseAccount::HoldMeans means = phase_.hold();
-    known_[site].hold(phase_.held_from(), means.felt, means.truth);
+    known_[site].hold({.from = phase_.held_from(),
+                       .until = phase_.ended_at(),
+                       .position = means.position,
+                       .felt = means.felt,
+                       .truth = means.truth});
   }
   if (tag.kind == PhaseKind::LiftHold && tag.site == Site::B) metrics_.drift = phase_.drift();
 }
@@ -199,11 +203,13 @@ void RunJudge::look_at_learning(const RunTick& tick, Site site) {
   Learning& learning = learning_[static_cast<std::size_t>(site)];
   const bool here = tick.phase.site == site && tick.phase.kind != PhaseKind::FreeAir;
   if (here && tick.counted) {
-    first_press_[static_cast<std::size_t>(site)].look({.at = tick.at,
-                                                       .felt = tick.hand_force,
-                                                       .truth = tick.force_true,
-                                                       .position = tick.hand,
-                                                       .work = tick.energy_operator});
+    const PermittedPress::Look hand{.at = tick.at,
+                                    .felt = tick.hand_force,
+                                    .truth = tick.force_true,
+                                    .position = tick.hand,
+                                    .work = tick.energy_operator};
+    first_press_[static_cast<std::size_t>(site)].look(hand);
+    known_[static_cast<std::size_t>(site)].feel(hand);
     known_[static_cast<std::size_t>(site)].look(tick.at, tick.tip, tick.contact_force);
   }
   if (!here || !tick.counted || !std::isnan(learning.took)) return;
@@ -230,6 +236,7 @@ void RunJudge::look_at_blackout(const RunTick& tick) {
 void RunJudge::look_at_forces(const RunTick& tick) {
   metrics_.force_peak = std::max(metrics_.force_peak, std::abs(tick.hand_force));
   metrics_.contact.force_max = std::max(metrics_.contact.force_max, tick.contact_force);
+  guard_.look(tick.at, tick.contact_force);
   Forces& slot = before_[ticks_ % kStepTicks];
   // Across a break of the session there is no step.
   if (ticks_ >= kStepTicks && tick.at - slot.at < (kStepTicks + 0.5) * config_.period) {
@@ -272,6 +279,8 @@ void RunJudge::sum_up() {
   }
   metrics_.energy_operator = std::max(0.0, -energy_operator_min_);
   metrics_.energy_net = std::max(0.0, -energy_net_min_);
+  metrics_.contact.guard_excess = guard_.excess();
+  metrics_.contact.guard_excess_time = guard_.longest();
   metrics_.contact.energy_contact = energy_.in_contact();
   metrics_.contact.energy_air_to_air = energy_.air_to_air();
   metrics_.force_rms = std::sqrt(tap_square_ / tap_count_);

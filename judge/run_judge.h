@@ -10,6 +10,7 @@
 #include "judge/metrics.h"
 #include "judge/reversal.h"
 #include "judge/swing_finder.h"
+#include "judge/tip_guard.h"
 
 namespace palp::judge {
 
@@ -32,7 +33,8 @@ class PhaseAccount {
   [[nodiscard]] HoldMeans hold() const noexcept;
   [[nodiscard]] double held_from() const noexcept {
     return began_at_ + 0.6 * tag_.duration;
-  }  ///< [s]
+  }                                                                     ///< [s]
+  [[nodiscard]] double ended_at() const noexcept { return ended_at_; }  ///< [s], so far
   /// Mean distance of tip and hand in the last 20 % [m].
   [[nodiscard]] double drift() const noexcept { return apart_ / apart_count_; }
   /// Of x_m to and fro in the second half [m], less that of a surface that breathes: a soft hand
@@ -65,7 +67,8 @@ class RunJudge {
       : config_{config},
         first_press_{FirstPress{config.bound, config.round_trip},
                      FirstPress{config.bound, config.round_trip}},
-        known_{KnownTouch{config}, KnownTouch{config}} {}
+        known_{KnownTouch{config}, KnownTouch{config}},
+        guard_{config.tip_force_limit} {}
 
   /// In order of time.
   void look(const RunTick& tick);
@@ -125,6 +128,7 @@ class RunJudge {
   std::array<KnownTouch, 2> known_;
   DragBump drag_;
   ContactEnergy energy_;
+  TipGuard guard_;
   double energy_operator_min_{};  ///< [J], of the newest tick
   double energy_net_min_{};       ///< [J]
 };

@@ -79,6 +79,7 @@ class Probe {
                 .own_swing = scenario.finger.swing,
                 .stiffest = scenario.coupling.mmt.slope_max,
                 .round_trip = seconds(scenario.up.delay.mean + scenario.down.delay.mean),
+                .tip_force_limit = scenario.patient.gate.force_limit,
                 .bound = bound_of(scenario)}} {}
 
   /// Of the run's path and time at a look.

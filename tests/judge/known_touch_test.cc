@@ -35,6 +35,11 @@ KnownTouch touched() {
   return touch;
 }
 
+/// From `from` [s] on: forces felt and true [N], the hand 4 mm deep.
+KnownTouch::Hold held(double from, double felt, double truth) {
+  return {.from = from, .until = from + 1, .position = 4e-3, .felt = felt, .truth = truth};
+}
+
 TEST(KnownTouchTest, ATapIsJudgedOnceNewsOfTheFirstContactCanBeThere) {
   KnownTouch touch = touched();
   touch.tap(tap(1.8, 10, 200));
@@ -54,9 +59,42 @@ TEST(KnownTouchTest, WhatNoLawMayShowIsNotJudged) {
   KnownTouch touch = touched();
   touch.tap(tap(2, 1500, 2500));
   EXPECT_TRUE(std::isnan(touch.tap_error()));
-  touch.hold(6, 1.35, 5);
-  touch.hold(6, 0.001, 0.02);
+  touch.hold(held(6, 1.35, 5));
+  touch.hold(held(6, 0.001, 0.02));
   EXPECT_TRUE(std::isnan(touch.held_error()));
+}
+
+TEST(KnownTouchTest, AHoldOfTissueTooSteepToBeShownIsNotJudged) {
+  KnownTouch touch = touched();
+  KnownTouch::Hold steep = held(6, 0.5, 1);
+  steep.position = 0.6e-3;
+  touch.hold(steep);
+  EXPECT_TRUE(std::isnan(touch.held_error()));
+  steep.position = 0.7e-3;
+  touch.hold(steep);
+  EXPECT_NEAR(touch.held_error(), 0.5, 1e-9);
+}
+
+TEST(KnownTouchTest, AHoldIsJudgedWhereTheEnergyPermitsItInItsOwnContact) {
+  MetricsConfig config = far_away();
+  config.bound = {.grip = 300, .energy = 0.3e-3};
+  KnownTouch touch{config};
+  touch.look(1, 4e-3, 0.06);
+  // In one second to a true force [N], with nothing felt; then in the air.
+  const auto press = [&](double from, double truth) {
+    for (int i = 0; i < 1000; ++i) {
+      const double share = 1e-3 * i;
+      touch.feel({.at = from + share, .truth = truth * share, .position = 4e-3 * share});
+    }
+    touch.hold(held(from, 0.5 * truth, truth));
+    touch.feel({.at = from + 1});
+  };
+  press(5, 1.3);
+  EXPECT_TRUE(std::isnan(touch.held_error()));
+  press(8, 0.6);
+  EXPECT_NEAR(touch.held_error(), 0.5, 1e-9);
+  press(11, 1.3);
+  EXPECT_NEAR(touch.held_error(), 0.5, 1e-9);
 }
 
 TEST(KnownTouchTest, ATapDeeperThanAnythingTouchedBeforeIsNotJudged) {
@@ -90,16 +128,16 @@ TEST(KnownTouchTest, ATapThatOnlyJustReachesTheWindowHasNoSlope) {
 
 TEST(KnownTouchTest, HoldsThatAreTooSoftDoNotMakeUpForThoseThatAreTooHard) {
   KnownTouch touch = touched();
-  touch.hold(3.4, 0.1, 0.5);  // too early
-  touch.hold(4, 0.4, 0.5);
-  touch.hold(9, 0.6, 0.5);
+  touch.hold(held(3.4, 0.1, 0.5));  // too early
+  touch.hold(held(4, 0.4, 0.5));
+  touch.hold(held(9, 0.6, 0.5));
   EXPECT_NEAR(touch.held_error(), 0.2, 1e-9);
 }
 
 TEST(KnownTouchTest, ASiteThatWasNeverTouchedIsNotJudged) {
   KnownTouch touch{far_away()};
   touch.tap(tap(5, 220, 200));
-  touch.hold(9, 0.6, 0.5);
+  touch.hold(held(9, 0.6, 0.5));
   EXPECT_TRUE(std::isnan(touch.tap_error()));
   EXPECT_TRUE(std::isnan(touch.held_error()));
 }

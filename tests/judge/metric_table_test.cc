@@ -39,6 +39,21 @@ TEST(MetricTableTest, AFirstPressIsInErrorOnlyWhereAllIsPermitted) {
   EXPECT_EQ(value("share_missing"), 0);
 }
 
+TEST(MetricTableTest, TheTipIsHeldAgainstTheSameHandsFinger) {
+  RunMetrics metrics;
+  const auto value = [&](const char* name) {
+    return metric_table()[*metric_index(name)].value(metrics);
+  };
+  metrics.contact.force_max = 1.5;
+  EXPECT_TRUE(std::isnan(value("tip_force_ratio")));
+  EXPECT_TRUE(std::isnan(value("tip_force_excess_n")));
+  metrics.contact.force_direct = 1;
+  EXPECT_NEAR(value("tip_force_ratio"), 1.5, 1e-12);
+  EXPECT_NEAR(value("tip_force_excess_n"), 0.5, 1e-12);
+  metrics.contact.force_direct = 2;
+  EXPECT_EQ(value("tip_force_excess_n"), 0);
+}
+
 TEST(MetricTableTest, ExcessIsBeyondHalfAgainOfAFingersForceAndHalfANewton) {
   RunMetrics metrics;
   const auto excess = [&](double direct, double pressed) {
