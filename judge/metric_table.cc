@@ -99,6 +99,10 @@ constexpr std::array kTable{
     Metric{"share_missing", "of what the energy permits, not felt [%]", 100, missing_share},
     Metric{
         "share_error", "error of a first press where the energy permits all [%]", 100, share_error},
+    Metric{"announced",
+           "incomplete forces that the surgeon was told of [%]",
+           100,
+           [](const M& m) { return m.contact.announced; }},
     Metric{"known_tap_a_error",
            "error of the stiffness felt, taps at A once it is known [%]",
            100,

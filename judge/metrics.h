@@ -39,6 +39,7 @@ struct RunTick {
   double tip{};                  ///< [m], x_s
   double tip_velocity{};         ///< [m/s], of the stage
   Place tip_place;               ///< of the stage
+  bool told_short{};             ///< the surgeon's site says that the force is incomplete
   double energy_operator{};      ///< [J], E_op: work of the hand on the device since the start
   double energy_operator_min{};  ///< [J], least E_op so far, at plant steps
   double energy_net_min{};       ///< [J], least (E_op - E_tissue) so far
@@ -97,10 +98,11 @@ struct ContactMetrics {
   double share_2s{kUndefined};
   /// [-], most that it could be by the energy that the hand may be given; see FirstPress.
   double share_permitted{kUndefined};
-  double guard_excess{};       ///< [N], most beyond the gate's limit of the tip's force
-  double guard_excess_time{};  ///< [s], longest on end; see TipGuard
-  double energy_contact{};     ///< [J], most that the hand got in one contact; see ContactEnergy
-  double energy_air_to_air{};  ///< [J], most that it got from air to air
+  double guard_excess{};         ///< [N], most beyond the gate's limit of the tip's force
+  double guard_excess_time{};    ///< [s], longest on end; see TipGuard
+  double energy_contact{};       ///< [J], most that the hand got in one contact; see ContactEnergy
+  double energy_air_to_air{};    ///< [J], most that it got from air to air
+  double announced{kUndefined};  ///< [-], of incomplete forces; see Announcement
   // Where a law can know the tissue, see KnownTouch.
   double known_tap_error[2]{kUndefined, kUndefined};  ///< [-]
   double held_error[2]{kUndefined, kUndefined};       ///< [-] >= 0

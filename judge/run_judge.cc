@@ -117,6 +117,11 @@ void RunJudge::look(const RunTick& tick) {
   }
   look_at_learning(tick, Site::A);
   look_at_learning(tick, Site::B);
+  announcement_.look({.at = tick.at,
+                      .felt = tick.hand_force,
+                      .truth = tick.counted ? tick.force_true : 0,
+                      .velocity = tick.hand_velocity,
+                      .told = tick.told_short});
   energy_.look({.at = tick.at,
                 .felt = tick.hand_force,
                 .truth = tick.force_true,
@@ -279,6 +284,7 @@ void RunJudge::sum_up() {
   }
   metrics_.energy_operator = std::max(0.0, -energy_operator_min_);
   metrics_.energy_net = std::max(0.0, -energy_net_min_);
+  metrics_.contact.announced = announcement_.share();
   metrics_.contact.guard_excess = guard_.excess();
   metrics_.contact.guard_excess_time = guard_.longest();
   metrics_.contact.energy_contact = energy_.in_contact();

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 
+#include "judge/announcement.h"
 #include "judge/contact_energy.h"
 #include "judge/drag_bump.h"
 #include "judge/first_press.h"
@@ -68,7 +69,8 @@ class RunJudge {
         first_press_{FirstPress{config.bound, config.round_trip},
                      FirstPress{config.bound, config.round_trip}},
         known_{KnownTouch{config}, KnownTouch{config}},
-        guard_{config.tip_force_limit} {}
+        guard_{config.tip_force_limit},
+        announcement_{config.round_trip} {}
 
   /// In order of time.
   void look(const RunTick& tick);
@@ -129,6 +131,7 @@ class RunJudge {
   DragBump drag_;
   ContactEnergy energy_;
   TipGuard guard_;
+  Announcement announcement_;
   double energy_operator_min_{};  ///< [J], of the newest tick
   double energy_net_min_{};       ///< [J]
 };

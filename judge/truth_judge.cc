@@ -22,7 +22,7 @@ PhaseTag tag_of(const PlantTruth& truth) {
 
 }  // namespace
 
-std::optional<RunTick> TruthJudge::look(const PlantTruth& truth) {
+std::optional<RunTick> TruthJudge::look(const PlantTruth& truth, bool told_short) {
   if (truth.guarded) {
     step_max_ = std::max(step_max_, force_step(truth.hand_force));
   } else {
@@ -55,6 +55,7 @@ std::optional<RunTick> TruthJudge::look(const PlantTruth& truth) {
                      .tip = truth.tip,
                      .tip_velocity = truth.tip_velocity,
                      .tip_place = truth.tip_place,
+                     .told_short = told_short,
                      .energy_operator = truth.hand_work,
                      .energy_operator_min = work_min_,
                      .energy_net_min = net_min_};

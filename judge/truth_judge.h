@@ -17,9 +17,10 @@ class TruthJudge {
   /// `config`: without a blackout, which is found.
   explicit TruthJudge(const MetricsConfig& config) : run_{config} {}
 
-  /// Of every tick since the run began, also those of no script. @returns the tick as it was
+  /// Of every tick since the run began, also those of no script. `told_short`: the surgeon's site
+  /// says that the force is incomplete. @returns the tick as it was
   /// judged; nothing: no script was performed in it.
-  std::optional<RunTick> look(const PlantTruth& truth);
+  std::optional<RunTick> look(const PlantTruth& truth, bool told_short = false);
 
   [[nodiscard]] RunMetrics metrics() const;
 

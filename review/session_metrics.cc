@@ -273,6 +273,8 @@ JudgedSession judge_session(const SessionPair& session,
   keep(strokes.finish());
   made.phases = truth || logged->phases();
   made.metrics = truth ? truth->metrics() : logged->metrics();
+  // A session's ticks do not say what the site told.
+  made.metrics.contact.announced = judge::kUndefined;
   return made;
 }
 

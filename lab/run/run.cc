@@ -139,7 +139,7 @@ class Probe {
         .contact_force = tissue.contact_force,
         .tissue_energy = tissue.tissue_energy};
     paused_ = site.paused() || peer.paused();
-    if (const auto tick = judge_.look(truth)) ticks_.push_back(*tick);
+    if (const auto tick = judge_.look(truth, status.force_incomplete)) ticks_.push_back(*tick);
     if (file_ != nullptr) file_->write(truth);
   }
   [[nodiscard]] const judge::TruthJudge& judge() const { return judge_; }
