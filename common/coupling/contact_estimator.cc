@@ -367,6 +367,7 @@ void ContactEstimator::step(double position, double force, std::int64_t periods)
     here_.deepest_in_air = std::max(here_.deepest_in_air, sensed_.raw_tip);
   if (contact) {
     here_.contact = true;
+    here_.touched += config_.period;
     here_.deepest = std::max(here_.deepest, sensed_.tip.value());
   }
   filter_shapes(halfway);

@@ -87,6 +87,8 @@ class ContactEstimator {
   /// What was learned at a place.
   struct Known {
     Place place;
+    std::uint32_t visit{};      ///< the last; 0: none
+    double touched{};           ///< [s], in contact
     Terms c{};                  ///< [N]
     double surface{};           ///< [m]
     KnotStiffness stiffness{};  ///< [N/m]
@@ -96,11 +98,13 @@ class ContactEstimator {
   static constexpr std::size_t kPlaces = 32;
   struct Places {
     Place here;
-    std::array<Known, kPlaces> known{};  ///< the oldest gives way
-    std::size_t count{};                 ///< that were ever written
+    std::array<Known, kPlaces> known{};
+    std::uint32_t visits{};
   };
   void remember() noexcept;
   [[nodiscard]] const Known* known_at(const Place& place) const noexcept;
+  [[nodiscard]] const Known& last_known() const noexcept;
+  [[nodiscard]] Known& slot_for(const Place& place) noexcept;
 
   /// What is sensed, in a frame that moves with the surface and, `raw`, in one that does not.
   struct Sensed {
@@ -141,6 +145,7 @@ class ContactEstimator {
   /// What was felt at this place.
   struct Here {
     bool contact{};
+    double touched{};           ///< [s], in contact
     double deepest{};           ///< [m], tip in contact
     double deepest_in_air{-1};  ///< [m], tip that felt nothing, between contacts
     Terms expected{};           ///< [N], before anything was felt

@@ -1,23 +1,46 @@
 /// What the contact estimator knows of places where it was before.
 
 #include <algorithm>
+#include <utility>
 
 #include "common/coupling/contact_estimator.h"
 
 namespace palp::coupling {
+namespace {
 
-/// The newest of a place counts.
+constexpr double kStay = 0.3;  // [s] of contact: a place that a drag only passed is forgotten first
+
+}  // namespace
+
 const ContactEstimator::Known* ContactEstimator::known_at(const Place& place) const noexcept {
-  const std::size_t count = std::min(places_.count, kPlaces);
-  for (std::size_t back = 1; back <= count; ++back) {
-    const Known& known = places_.known[(places_.count - back) % kPlaces];
-    if (distance(known.place, place) <= kSamePlace) return &known;
+  const Known* newest = nullptr;
+  for (const Known& known : places_.known) {
+    const bool same = known.visit > 0 && distance(known.place, place) <= kSamePlace;
+    if (same && (newest == nullptr || known.visit > newest->visit)) newest = &known;
   }
-  return nullptr;
+  return newest;
+}
+
+const ContactEstimator::Known& ContactEstimator::last_known() const noexcept {
+  return *std::ranges::max_element(places_.known, {}, &Known::visit);
+}
+
+/// Where the next place is written: over itself, else where nothing is, else over what a drag only
+/// passed, else over the oldest.
+ContactEstimator::Known& ContactEstimator::slot_for(const Place& place) noexcept {
+  const auto age = [&place](const Known& known) {
+    const bool same = known.visit > 0 && distance(known.place, place) <= kSamePlace;
+    const int rank = same ? 0 : known.visit == 0 ? 1 : known.touched < kStay ? 2 : 3;
+    return std::pair{rank, known.visit};
+  };
+  return *std::ranges::min_element(places_.known, {}, age);
 }
 
 void ContactEstimator::remember() noexcept {
+  const Known* before = known_at(places_.here);
   Known known{.place = places_.here,
+              .visit = ++places_.visits,
+              .touched = here_.touched + (before != nullptr ? before->touched : 0),
               .c = found_[best_],
               .surface = model_.surface,
               .stiffness = spline_.stiffness(),
@@ -29,19 +52,20 @@ void ContactEstimator::remember() noexcept {
     std::copy(model_.c.begin(), model_.c.end(), known.c.begin());
   }
   known.c.back() = 0;
-  places_.known[places_.count++ % kPlaces] = known;
+  slot_for(places_.here) = known;
 }
 
 void ContactEstimator::new_place(const Place& place) noexcept {
-  if (placed_ && (here_.contact || places_.count == 0)) remember();
+  if (placed_ && (here_.contact || places_.visits == 0)) remember();
   places_.here = place;
   swing_.new_place();
   here_.contact = false;
+  here_.touched = 0;
   here_.deepest = -1;
   here_.deepest_in_air = -1;
-  if (!placed_) return;
   const Known* there = known_at(place);
-  const Known& expected = there != nullptr ? *there : places_.known[(places_.count - 1) % kPlaces];
+  if (!placed_ && there == nullptr) return;
+  const Known& expected = there != nullptr ? *there : last_known();
   expected_ = here_.expected = expected.c;
   place_grid(expected.surface);
   spline_.expect(expected.stiffness, expected.spline_share);

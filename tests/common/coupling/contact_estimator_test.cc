@@ -346,5 +346,65 @@ TEST(ContactEstimatorTest, KnowsAPlaceAgainThatItTouchedBefore) {
   EXPECT_NEAR(contact_model(estimator.model()).force(3e-3), at_b, 0.02 * at_b);
 }
 
+/// A tip that taps on tissues as stiff as it is told.
+class Palpation {
+ public:
+  void tap(double stiffer) {
+    for (int tick = 0; tick < 3000; ++tick) {
+      step(tick < 500 ? -1e-3 : 2e-3 - 2e-3 * std::cos(0.01 * tick), stiffer);
+    }
+    for (int tick = 0; tick < 300; ++tick) step(-5e-3, stiffer);
+  }
+  void stay(double position, int ticks, double stiffer) {
+    for (int tick = 0; tick < ticks; ++tick) step(position, stiffer);
+  }
+  /// In contact, 40 mm along the surface, from one stiffness to another.
+  void drag(double speed, double from, double to) {
+    constexpr int kSteps = 40;
+    for (int i = 1; i <= kSteps; ++i) {
+      estimator.new_place({kSiteB.x, 1.01e-3 * i});
+      stay(2e-3, static_cast<int>(1.01 / speed), from + (to - from) * i / kSteps);
+    }
+  }
+  [[nodiscard]] double force() const { return contact_model(estimator.model()).force(3e-3); }
+
+  ContactEstimator estimator{[] {
+    ContactEstimatorConfig config;
+    config.sensor.step = 0;
+    return config;
+  }()};
+
+ private:
+  void step(double position, double stiffer) {
+    estimator.step(position, stiffer * hertz(position));
+  }
+};
+
+TEST(ContactEstimatorTest, ADragDoesNotMakeItForgetWhereItStayed) {
+  for (const double speed : {20e-3, 5e-3}) {
+    Palpation palpation;
+    palpation.tap(1);
+    const double at_a = palpation.force();
+    palpation.estimator.new_place(kSiteB);
+    palpation.tap(2.5);
+    palpation.stay(2e-3, 500, 2.5);
+    palpation.drag(speed, 2.5, 2.5);
+    palpation.stay(-5e-3, 300, 2.5);
+    palpation.estimator.new_place(kSiteA);
+    EXPECT_NEAR(palpation.force(), at_a, 0.02 * at_a) << speed;
+  }
+}
+
+TEST(ContactEstimatorTest, KnowsAPlaceAgainFromOneThatProvedToBeElsewhere) {
+  Palpation palpation;
+  palpation.tap(1);
+  const double at_a = palpation.force();
+  palpation.estimator.new_place(kSiteB);
+  palpation.tap(2.5);
+  palpation.stay(4e-3, 300, 0);  // deep below the surface as believed, and nothing felt
+  palpation.estimator.new_place(kSiteA);
+  EXPECT_NEAR(palpation.force(), at_a, 0.02 * at_a);
+}
+
 }  // namespace
 }  // namespace palp::coupling
