@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kHatMin = 1e-3;  // [-], less of a node is nothing
 /// [-], of the mean stiffness: how far a tissue is expected to be off its smooth shapes.
-constexpr double kKnotSpread = 1.5;
+constexpr double kKnotSpread = 0.7;
 /// [-], likewise: by how much that changes from knot to knot. Deeper than anything was touched it
 /// stays as it was last.
-constexpr double kKnotChange = 0.5;
+constexpr double kKnotChange = 0.2;
 constexpr double kStiffnessLeast = 10;  // [N/m], mean
 constexpr double kDepthLeast = 1e-3;    // [m], over which a mean is one
 constexpr double kDepthNone = 1e-9;     // [m], where the slope at the surface is taken
