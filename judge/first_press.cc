@@ -18,18 +18,23 @@ void FirstPress::look(const Look& now) {
   press_.look(now);
   const double since = now.at - began_at_;
   if (since < settled_after_) return;
-  felt_ += now.felt;
-  truth_ += now.truth;
+  held_.felt += now.felt;
+  held_.truth += now.truth;
+  held_.position += now.position;
+  ++looks_;
   over_ = settled_ = since >= settled_after_ + kWindow;
 }
 
 double FirstPress::share() const noexcept {
-  return settled_ ? felt_ / truth_ : std::numeric_limits<double>::quiet_NaN();
+  return settled_ ? held_.felt / held_.truth : std::numeric_limits<double>::quiet_NaN();
 }
 
 double FirstPress::permitted() const noexcept {
-  return settled_ ? press_.permitted(began_at_ + settled_after_)
-                  : std::numeric_limits<double>::quiet_NaN();
+  if (!settled_) return std::numeric_limits<double>::quiet_NaN();
+  return press_.permitted({.at = began_at_ + settled_after_,
+                           .felt = held_.felt / looks_,
+                           .truth = held_.truth / looks_,
+                           .position = held_.position / looks_});
 }
 
 }  // namespace palp::judge

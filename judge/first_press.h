@@ -32,8 +32,8 @@ class FirstPress {
   bool begun_{};
   bool over_{};
   double began_at_{};  ///< [s]
-  double felt_{};      ///< [N], summed over the window
-  double truth_{};     ///< [N], likewise
+  Look held_;          ///< summed over the window
+  double looks_{};     ///< [-], of the window
   bool settled_{};     ///< the window is full
 };
 

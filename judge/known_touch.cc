@@ -44,7 +44,9 @@ void KnownTouch::hold(const Hold& hold) noexcept {
   if (!(hold.truth >= kHeldLeast) || saturated) return;
   // No curve that is nowhere steeper than may be shown reaches this force.
   if (hold.truth > config_.stiffest * hold.position) return;
-  if (press_.permitted(hold.until) < kAll) return;
+  const PermittedPress::Look held{
+      .at = hold.until, .felt = hold.felt, .truth = hold.truth, .position = hold.position};
+  if (press_.permitted(held) < kAll) return;
   held_off_ += std::abs(hold.felt - hold.truth);
   held_truth_ += hold.truth;
 }

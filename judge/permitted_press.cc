@@ -29,32 +29,32 @@ double PermittedPress::truth_kept(double position) const noexcept {
   return before->truth + share * (after->truth - before->truth);
 }
 
-double PermittedPress::truth_at(double position) const noexcept {
-  const double relaxed = std::min(1.0, most_.truth / truth_kept(most_.position));
-  return relaxed * truth_kept(position);
-}
-
 double PermittedPress::taken(double force, double way, double span) const noexcept {
   const double stored = 0.5 * (force * force - most_.felt * most_.felt) / bound_.grip;
   const double friction = bound_.friction * std::tanh(way / span / bound_.friction_speed);
   return stored + friction * way + bound_.damping * way * way / span;
 }
 
-double PermittedPress::permitted(double until) const noexcept {
+double PermittedPress::permitted(const Look& held) const noexcept {
   constexpr int kHalvings = 40;
   if (depths_.empty() || !(bound_.grip > 0) || !(bound_.energy >= 0)) {
     return std::numeric_limits<double>::quiet_NaN();
   }
   const double budget = bound_.energy + most_.work - work_before_;  // [J]
-  const double span = std::max(kOutLeast, until - most_.at);        // [s]
-  const auto way = [this](double force) { return (force - most_.felt) / bound_.grip; };
+  const double span = std::max(kOutLeast, held.at - most_.at);      // [s]
+  const auto there = [&](double force) {
+    return held.position - (force - held.felt) / bound_.grip;
+  };
   double low = std::max(0.0, most_.felt);  // [N]
   double high = std::max(low, most_.truth);
   for (int i = 0; i < kHalvings; ++i) {
     const double force = 0.5 * (low + high);
-    (taken(force, way(force), span) <= budget ? low : high) = force;
+    const double way = std::max(0.0, most_.position - there(force));
+    (taken(force, way, span) <= budget ? low : high) = force;
   }
-  return std::min(1.0, low / truth_at(most_.position - way(low)));
+  // As far as the tissue has relaxed.
+  const double relaxed = std::min(1.0, held.truth / truth_kept(held.position));
+  return std::min(1.0, low / (relaxed * truth_kept(there(low))));
 }
 
 }  // namespace palp::judge

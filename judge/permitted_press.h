@@ -36,22 +36,20 @@ class PermittedPress {
   /// In order of time, in contact.
   void look(const Look& now);
 
-  /// [-], most of the true force that may be felt at `until` [s]: the hand is pushed out from where
-  /// it had given most, at an even speed and by nothing but the force, until force and tissue agree
-  /// or the energy is used up: that of the bound, and what the hand gave in this contact. That
-  /// takes (F^2 - F0^2)/2k, F0 being the force there, and what friction and damping take on the
-  /// way. What a force must still hold to let go of is not reckoned with. NaN without a contact or
-  /// a bound.
-  [[nodiscard]] double permitted(double until) const noexcept;
+  /// [-], most of the true force that may be felt by a hand that holds as in `held`: it is pushed
+  /// out from where it had given most to where it rests, at an even speed and by nothing but the
+  /// force, until force and tissue agree or the energy is used up: that of the bound, and what the
+  /// hand gave in this contact. That takes (F^2 - F0^2)/2k, F0 being the force where it had given
+  /// most, and what friction and damping take on the way. What a force must still hold to let go of
+  /// is not reckoned with. NaN without a contact or a bound.
+  [[nodiscard]] double permitted(const Look& held) const noexcept;
 
  private:
   struct Depth {
     double position{};  ///< [m], deeper than ever before
     double truth{};     ///< [N], there
   };
-  /// [N], of the tissue at `position` [m], as far as it had relaxed where the hand had given most.
-  [[nodiscard]] double truth_at(double position) const noexcept;
-  [[nodiscard]] double truth_kept(double position) const noexcept;  ///< [N], as it was met
+  [[nodiscard]] double truth_kept(double position) const noexcept;  ///< [N], at [m], as it was met
   /// [J], that it takes to push the hand out by `way` [m] in `span` [s] to the force [N].
   [[nodiscard]] double taken(double force, double way, double span) const noexcept;
 

@@ -91,7 +91,7 @@ TEST(KnownTouchTest, AHoldIsJudgedWhereTheEnergyPermitsItInItsOwnContact) {
   };
   press(5, 1.3);
   EXPECT_TRUE(std::isnan(touch.held_error()));
-  press(8, 0.6);
+  press(8, 0.45);
   EXPECT_NEAR(touch.held_error(), 0.5, 1e-9);
   press(11, 1.3);
   EXPECT_NEAR(touch.held_error(), 0.5, 1e-9);
