@@ -48,7 +48,7 @@ MmtSurgeon::MmtSurgeon(const MmtConfig& config, const HandFacts& hand) noexcept
     : config_{config},
       device_{hand, config.velocity_cut_off},
       velocity_{device_.velocity_cut_off(), config.period},
-      tank_{config.tank_start} {}
+      tank_{config.tank} {}
 
 /// The axis may have moved under the hand, so there is no work in this tick. The tank is kept.
 void MmtSurgeon::begin_epoch(double position) noexcept {
@@ -214,12 +214,8 @@ void MmtSurgeon::brake(double missing, double speed, double rise_max) noexcept {
       std::min({std::max(0.0, missing), config_.brake * std::max(0.0, speed), brake_ + rise_max});
 }
 
-/// How much the tank lacks, 0 to 1. A surface that breathes takes and gives its strokes' energy
-/// through the tank, so there it is to be full.
-double MmtSurgeon::debt() const noexcept {
-  const double level = swing_.rate > 0 ? config_.tank_max : config_.tank_start;
-  return std::clamp(1 - tank_ / level, 0.0, 1.0);
-}
+/// How much the tank lacks, 0 to 1.
+double MmtSurgeon::debt() const noexcept { return std::clamp(1 - tank_ / config_.tank, 0.0, 1.0); }
 
 /// In the air and on the way out of the tissue the hand pays the tank back: on the way in, where
 /// stiffness is judged, damping would be felt as softness.
@@ -242,7 +238,7 @@ double MmtSurgeon::damp(double force, double depth, double speed) const noexcept
 SurgeonOutput MmtSurgeon::let_go(const SurgeonInput& in, double work) noexcept {
   const double paid = std::clamp(-work, 0.0, stored_);
   stored_ -= paid;
-  tank_ = std::min(config_.tank_max, tank_ + work + paid);
+  tank_ = std::min(config_.tank, tank_ + work + paid);
   if (in.force_applied == 0) drop_model();
   // A hand that was let out under a force held too long has taken of this already.
   const double left = std::max(0.0, stored_ + tank_);
@@ -267,7 +263,7 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexc
   const double depth_before = depth_;
   const double moved = energy_now();
   const double force_before = force_now();
-  tank_ = std::min(config_.tank_max, tank_ + work - (moved - stored_));
+  tank_ = std::min(config_.tank, tank_ + work - (moved - stored_));
   device_.look(in.position, force_before > 0, tank_, seconds(lapse.passed()));
 
   approach_candidate(in.position, depth_before, lapse);

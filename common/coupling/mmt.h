@@ -22,8 +22,9 @@ namespace palp::coupling {
 
 /// One list, as message Mmt of the configuration has it.
 struct MmtConfig {
-  double tank_start{1e-3};  ///< [J], and the guarantee: the most the hand can ever gain
-  double tank_max{3e-3};    ///< [J]
+  /// [J], full at first, and the guarantee: the most that the hand can get from any moment on at
+  /// which nothing is shown.
+  double tank{1e-3};
   double slew{4};           ///< [N/s], of the force while a new model comes in
   double slew_short{12};    ///< [N/s], the same below `round_trip_short`
   double slew_small{9};     ///< [N/s], the same where little force is missing
@@ -35,7 +36,7 @@ struct MmtConfig {
   Duration round_trip_short{std::chrono::milliseconds{8}};
   /// [N/m], steepest that the shown force lets go while the tank is short. The steeper, the less a
   /// held force has to store, and the less quietly a hand holds.
-  double release_max{1000};
+  double release_max{1500};
   double release_play{60e-6};   ///< [m], that a holding hand trembles and its encoder counts
   double blend{0.05};           ///< [s], time constant of changes of the model
   double believed{0.6};         ///< [N], so much may a peer take back as it learns
@@ -67,9 +68,10 @@ struct MmtConfig {
   ContactEstimatorConfig estimator;
 };
 
-/// Renders the newest believable model. Its books, at every tick: tank + stored energy <= tank at
-/// the start + work of the hand, with the force that was really applied; and the stored energy
-/// never exceeds what the tank can pay. Nothing in them depends on the network. Thread: rt.
+/// Renders the newest believable model. Its books, at every tick: tank + stored energy <= what they
+/// were at any earlier one + work of the hand since then, with the force that was really applied;
+/// the stored energy never exceeds what the tank can pay, and the tank never holds more than at
+/// first. Nothing in them depends on the network. Thread: rt.
 class MmtSurgeon {
  public:
   explicit MmtSurgeon(const MmtConfig& config, const HandFacts& hand = {}) noexcept;

@@ -11,8 +11,7 @@ namespace {
 
 coupling::MmtConfig make_mmt(const proto::config::Mmt& message) {
   coupling::MmtConfig config;
-  config.tank_start = message.tank_mj() * 1e-3;
-  config.tank_max = 3 * config.tank_start;
+  config.tank = message.tank_mj() * 1e-3;
   config.contact_damping = message.contact_damping_n_s_per_m();
   config.air_damping = message.air_damping_n_s_per_m();
   config.repay_contact = message.repay_contact_n_s_per_m();

@@ -51,7 +51,7 @@ class DirectRecorder final : public record::Recorder {
 judge::EnergyBound bound_of(const Scenario& scenario) {
   const surgeon::HandPlantConfig& hand = scenario.hand.plant;
   return {.grip = hand.grip.stiffness,
-          .energy = scenario.coupling.mmt.tank_start,
+          .energy = scenario.coupling.mmt.tank,
           .damping = hand.grip.damping + hand.damping,
           .friction = hand.friction,
           .friction_speed = hand.friction_speed};

@@ -197,7 +197,7 @@ TEST(ForceGateTest, AForceThatFadesGivesASnatchedHandNoMoreThanTheLawCanPay) {
   for (int i = 0; i < 500; ++i) move(-0.5, SiteState::Clutched);  // out with the pedal up
   EXPECT_EQ(gate.force(), 0);
   EXPECT_EQ(law.stored(), 0);
-  EXPECT_GE(work, -config.tank_start);
+  EXPECT_GE(work, -config.tank);
 }
 
 RC_GTEST_PROP(ForceGateTest, NoChangeOfStateMovesTheForceByMoreThanHalfANewtonInTenTicks, ()) {

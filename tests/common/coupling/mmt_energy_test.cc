@@ -40,7 +40,7 @@ TEST(MmtEnergyTest, AHandNeverGetsMoreThanTheTankHeldWhateverItIsTold) {
   const MmtConfig config;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const auto outcome = hand_loop::press_against_lies(MmtSurgeon{config}, seed);
-    EXPECT_LE(outcome.taken, config.tank_start + kSlack) << "seed " << seed;
+    EXPECT_LE(outcome.taken, config.tank + kSlack) << "seed " << seed;
   }
 }
 
@@ -49,7 +49,7 @@ TEST(MmtEnergyTest, WithoutTheGuardTheSameHandGetsManyTimesThat) {
   int broken = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const auto outcome = hand_loop::press_against_lies(UnguardedSurgeon{}, seed);
-    if (outcome.taken > 5 * config.tank_start) ++broken;
+    if (outcome.taken > 5 * config.tank) ++broken;
   }
   EXPECT_EQ(broken, 10);
 }
@@ -74,8 +74,38 @@ TEST(MmtEnergyTest, ItsBooksNeverHoldMoreThanTheTankAtFirstAndTheWorkDone) {
     in.force_applied = force;
     in.arrived = arrived;
     force = law.step(in, std::chrono::milliseconds{1}).force;
-    ASSERT_LE(law.tank() + law.stored(), config.tank_start + work + 1e-12) << "tick " << tick;
-    ASSERT_GE(work, -config.tank_start - kSlack) << "tick " << tick;
+    ASSERT_LE(law.tank() + law.stored(), config.tank + work + 1e-12) << "tick " << tick;
+    ASSERT_GE(work, -config.tank - kSlack) << "tick " << tick;
+  }
+}
+
+TEST(MmtEnergyTest, FromAirToAirTheHandGetsNoMoreThanTheTankHoweverMuchItDidBefore) {
+  const MmtConfig config;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    MmtSurgeon law{config};
+    law.begin_epoch(0);
+    hand_loop::Liar liar{seed};
+    double position = 0;
+    double force = 0;
+    double work = 0;
+    double most = 0;  // of the work, where nothing was shown
+    for (std::uint64_t tick = 0; tick < 30'000; ++tick) {
+      const double t = 1e-3 * static_cast<double>(tick);
+      // It works in the air, then presses.
+      const double next = -4e-3 * std::cos(2 * t) + 2e-3 * std::sin(41 * t);
+      work += force * (next - position);
+      position = next;
+      if (law.stored() == 0) most = std::max(most, work);
+      const std::array arrived{liar.tell(tick)};
+      SurgeonInput in;
+      in.state = SiteState::Engaged;
+      in.position = position;
+      in.force_applied = force;
+      in.arrived = arrived;
+      force = law.step(in, std::chrono::milliseconds{1}).force;
+      ASSERT_GE(work, most - config.tank - kSlack) << "seed " << seed << ", tick " << tick;
+    }
+    EXPECT_GT(most, 3 * config.tank) << "there was something to save up";
   }
 }
 
@@ -117,9 +147,9 @@ TEST(MmtSurgeonTest, ASurfaceFoundWhilePressingIsLetInAsFarAsTheTankPays) {
   const ModelPayload hard{.version = 1, .c = {0, 0.3}, .depth_max = 4e-3};
   const ContactModel whole = contact_model(soft);
   const MmtConfig config;
-  ASSERT_LT(whole.energy(4e-3), config.tank_start);
+  ASSERT_LT(whole.energy(4e-3), config.tank);
   EXPECT_NEAR(discover(soft).force, whole.force(4e-3), 1e-6) << "all of it";
-  EXPECT_NEAR(discover(hard).stored, config.tank_start, 1e-9) << "as much as was there";
+  EXPECT_NEAR(discover(hard).stored, config.tank, 1e-9) << "as much as was there";
   EXPECT_LE(discover(soft).rate_max, config.slew_small + 1e-6);
   EXPECT_LE(discover(hard).rate_max, config.slew_small + 1e-6);
 }
@@ -129,9 +159,8 @@ TEST(MmtSurgeonTest, AHeldForceNeedsLessEnergyThanTheSpringBehindIt) {
   const ContactModel whole = contact_model(hard);
   const MmtConfig config;
   const double force = whole.force(4e-3);
-  ASSERT_GT(whole.energy(4e-3), 1.2 * config.tank_start) << "the spring is too dear";
-  ASSERT_LT(0.5 * force * force / config.release_max + force * config.release_play,
-            config.tank_start)
+  ASSERT_GT(whole.energy(4e-3), 1.2 * config.tank) << "the spring is too dear";
+  ASSERT_LT(0.5 * force * force / config.release_max + force * config.release_play, config.tank)
       << "its force is not";
   EXPECT_NEAR(discover(hard).force, force, 1e-6);
   EXPECT_NEAR(discover(hard).missing, 0, 1e-6);
@@ -292,7 +321,7 @@ TEST(MmtSurgeonTest, AForceThatIsToldAwayFallsSlowly) {
         EXPECT_LE(before - force, 1e-3 * config.fall + 1e-9) << tick;
         most = std::max(most, before - force);
       }
-      ASSERT_LE(law.tank() + law.stored(), config.tank_start + work + 1e-12) << tick;
+      ASSERT_LE(law.tank() + law.stored(), config.tank + work + 1e-12) << tick;
     }
     EXPECT_GT(most, 0.8e-3 * config.fall) << "there is something to hold back";
     EXPECT_LT(force, 0.01) << "it does go";
@@ -360,7 +389,7 @@ TEST(MmtSurgeonTest, AnEmptyTankIsPaidBackOnTheWayOutAndInTheAirAndNotOnTheWayIn
   lenient.repay_air = 0;
   SurprisedHand hand{config};
   SurprisedHand other{lenient};
-  ASSERT_LT(hand.tank(), 0.01 * config.tank_start);
+  ASSERT_LT(hand.tank(), 0.01 * config.tank);
   EXPECT_EQ(hand.move(20e-3, 20), other.move(20e-3, 20)) << "on the way in";
   // On the way out what is paid back goes at once into force that was missing.
   (void)hand.move(-20e-3, 50);

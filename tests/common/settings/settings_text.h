@@ -42,7 +42,7 @@ inline void add(FieldList& list, const coupling::CouplingConfig& config) {
       .add("coupling.tdpa.slew", config.tdpa.slew)
       .add("coupling.tdpa.reserve", config.tdpa.reserve)
       .add("coupling.tdpa.spring", config.tdpa.spring)
-      .add("coupling.mmt.tank_start", config.mmt.tank_start)
+      .add("coupling.mmt.tank", config.mmt.tank)
       .add("coupling.mmt.contact_damping", config.mmt.contact_damping)
       .add("coupling.mmt.air_damping", config.mmt.air_damping)
       .add("coupling.mmt.repay_contact", config.mmt.repay_contact)

@@ -119,7 +119,7 @@ TEST(RunTest, APatientSiteThatLiesGetsTheHandNoMoreThanTheTankHeldAtFirst) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     lying.seed = seed;
     const RunResult result = simulate(lying);
-    EXPECT_LE(result.metrics.energy_operator, lying.coupling.mmt.tank_start + kSlack) << seed;
+    EXPECT_LE(result.metrics.energy_operator, lying.coupling.mmt.tank + kSlack) << seed;
     EXPECT_GT(result.metrics.force_peak, 0.3) << "or nothing was shown";
   }
 }
@@ -143,7 +143,7 @@ void expect_unharmed(const Scenario& scenario) {
   const RunResult result = simulate(scenario);
   EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Completed);
   EXPECT_FALSE(result.metrics.unstable) << result.metrics.unstable_reason;
-  EXPECT_LE(result.metrics.energy_operator, scenario.coupling.mmt.tank_start + kSlack);
+  EXPECT_LE(result.metrics.energy_operator, scenario.coupling.mmt.tank + kSlack);
   EXPECT_LE(result.metrics.whole.force_step, kStepMax);
   EXPECT_LE(result.metrics.force_step_10ms, kStepMax);
   EXPECT_LE(result.metrics.tap_error[1], 0.05) << "it was felt all the same";
@@ -180,7 +180,7 @@ TEST(RunTest, AProcessThatStandsStillKicksNobodyWhenItGoesOn) {
       EXPECT_EQ(result.outcome, surgeon::ScriptOutcome::Completed);
       EXPECT_LE(result.metrics.whole.force_kick, 0.1);
       EXPECT_LE(result.metrics.whole.force_drop, 0.2);
-      EXPECT_LE(result.metrics.whole.energy_given, pausing.coupling.mmt.tank_start + kHeldSlack);
+      EXPECT_LE(result.metrics.whole.energy_given, pausing.coupling.mmt.tank + kHeldSlack);
       EXPECT_LE(result.metrics.contact.force_max, 3.3);
     }
   }
@@ -257,7 +257,7 @@ TEST(RunTest, ADeviceThatFailsInATapStopsTheSitesAndHarmsNobody) {
     // On the way in, in contact: the second tap is from 7.5 s to 8.5 s.
     failing.fault.at_script_time = std::chrono::milliseconds{7850};
     const RunResult result = simulate(failing);
-    EXPECT_LE(result.metrics.energy_operator, failing.coupling.mmt.tank_start + kSlack);
+    EXPECT_LE(result.metrics.energy_operator, failing.coupling.mmt.tank + kSlack);
     EXPECT_LE(result.metrics.contact.force_max, 3.3);
     // What is wrong by a newton is no device that fails, as far as a site can tell.
     if (kind == FaultKind::SensorOffset) continue;
