@@ -10,6 +10,7 @@ constexpr double kEnergyTolerance = 1e-15;  // [J]
 constexpr double kForceTolerance = 1e-12;   // [N]
 constexpr int kHalvings = 30;
 constexpr Duration kStale = std::chrono::milliseconds{20};  // older speed is no speed
+constexpr double kTrusted = 0.5;  // [-], of the force that a model foresees
 constexpr double kDragged = 0.1;  // [N], of a tip that is in the tissue as it goes along
 
 constexpr bool may_render(SiteState state) noexcept {
@@ -300,6 +301,7 @@ void MmtPatient::begin_epoch(double position) noexcept {
   hand_velocity_ = 0;
   hand_force_ = 0;
   yielded_ = 0;
+  doubted_ = 0;
   lead_velocity_.reset(0);
 }
 
@@ -315,7 +317,7 @@ double MmtPatient::target(const PatientInput& in, const Lapse& lapse) noexcept {
   if (in.now - heard_at_ > kStale) hand_velocity_ = 0;
   const double lead = std::min(config_.lead_max, stage_lead_ + 0.5 * seconds(in.round_trip));
   return hand_ + lead * lead_velocity_.step(finite_or(hand_velocity_, 0), lapse.periods) -
-         std::max(unfelt(), yielded_);
+         std::max(wait(in, seconds(lapse.period)), yielded_);
 }
 
 /// [N], most that the tip may press: little harder than the hand was given last.
@@ -353,6 +355,17 @@ double MmtPatient::unfelt() const noexcept {
   const double most = since_drag_ < config_.drag_memory ? allowed_in_drag() : allowed();
   if (!(model.force(depth) > most)) return 0;
   return depth - model.depth(most);
+}
+
+/// A tip that waits does not find out that the tissue is gone or softer: where it feels less than
+/// half of what the model says, it goes on as slowly as it gives way. @returns as unfelt() [m].
+double MmtPatient::wait(const PatientInput& in, double span) noexcept {
+  const double waits = unfelt();
+  const ModelPayload& found = estimator_.model();
+  const double there = contact_model(found).force(in.position - found.surface - found.swing);
+  const double less = kTrusted * there - finite_or(in.contact_force, 0);
+  doubted_ = std::clamp(doubted_ + config_.yield * less * span, 0.0, waits);
+  return waits - doubted_;
 }
 
 PatientOutput MmtPatient::step(const PatientInput& in, const Lapse& lapse) noexcept {

@@ -56,8 +56,8 @@ struct MmtConfig {
   double lead_cut_off{15};      ///< [Hz], of the velocity it runs ahead with
   /// [N], so much harder than the hand is told may the tip press, and `unfelt_share` of what it is
   /// told.
-  double unfelt{0.8};
-  double unfelt_share{0.3};        ///< [-]
+  double unfelt{0.35};
+  double unfelt_share{0.1};        ///< [-]
   double unfelt_drag{0.02};        ///< [N], the same of a tip that is dragged
   double unfelt_drag_share{0.05};  ///< [-]
   double drag_memory{0.3};         ///< [s], for so long after it came to another place
@@ -141,6 +141,7 @@ class MmtPatient {
   [[nodiscard]] double allowed() const noexcept;
   [[nodiscard]] double allowed_in_drag() const noexcept;
   [[nodiscard]] double unfelt() const noexcept;
+  [[nodiscard]] double wait(const PatientInput& in, double span) noexcept;
   void give_way(double force, double span) noexcept;
   void notice_drag(const PatientInput& in, double span) noexcept;
 
@@ -152,6 +153,7 @@ class MmtPatient {
   double hand_velocity_{};  ///< [m/s], newest
   double hand_force_{};     ///< [N], newest
   double yielded_{};        ///< [m]
+  double doubted_{};        ///< [m], of a wait
   double since_drag_;       ///< [s]
   TimePoint heard_at_{};
   LowPass lead_velocity_;  ///< [m/s]
