@@ -316,8 +316,10 @@ double MmtPatient::target(const PatientInput& in, const Lapse& lapse) noexcept {
   }
   if (in.now - heard_at_ > kStale) hand_velocity_ = 0;
   const double lead = std::min(config_.lead_max, stage_lead_ + 0.5 * seconds(in.round_trip));
-  return hand_ + lead * lead_velocity_.step(finite_or(hand_velocity_, 0), lapse.periods) -
-         std::max(wait(in, seconds(lapse.period)), yielded_);
+  const double led =
+      hand_ + lead * lead_velocity_.step(finite_or(hand_velocity_, 0), lapse.periods);
+  const double waiting = led - wait(in, seconds(lapse.period));
+  return std::min(led - yielded_, std::max(waiting, in.position - config_.back));
 }
 
 /// [N], most that the tip may press: little harder than the hand was given last.

@@ -57,7 +57,10 @@ struct MmtConfig {
   /// [N], so much harder than the hand is told may the tip press, and `unfelt_share` of what it is
   /// told.
   double unfelt{0.35};
-  double unfelt_share{0.1};        ///< [-]
+  double unfelt_share{0.1};  ///< [-]
+  /// [m], most that a tip which waits goes back at once: a model that is too soft asks for far
+  /// more.
+  double back{0.2e-3};
   double unfelt_drag{0.02};        ///< [N], the same of a tip that is dragged
   double unfelt_drag_share{0.05};  ///< [-]
   double drag_memory{0.3};         ///< [s], for so long after it came to another place

@@ -146,5 +146,30 @@ TEST(MmtPatientTest, TheTipGivesWayToASurfaceThatRisesAgainstItAndDoesNotSwing) 
   EXPECT_NEAR(tip.tip(), 1e-3, 20e-6) << "when the surface is back, so is the tip";
 }
 
+/// A stage that does not move, and 0.6 N: to press 0.35 N the model would have it 1 mm farther out.
+TEST(MmtPatientTest, AModelThatIsTooSoftDoesNotThrowTheTipBack) {
+  const MmtConfig config;
+  MmtPatient law{config};
+  law.begin_epoch(-3e-3);
+  double least = 1;
+  for (std::int64_t tick = 0; tick < 3000; ++tick) {
+    const double arrives = std::min(0.5e-3, -3e-3 + 2e-6 * static_cast<double>(tick));
+    Incoming heard;
+    heard.fresh = true;
+    heard.sample = {arrives + 3.5e-3, 0, 0, std::monostate{}};
+    const std::array heard_of{heard};
+    PatientInput in;
+    in.now = TimePoint{std::chrono::milliseconds{tick}};
+    in.state = SiteState::Engaged;
+    in.position = arrives;
+    in.contact_force = std::clamp(6e-3 * static_cast<double>(tick - 2000), 0.0, 0.6);
+    in.arrived = heard_of;
+    const double target = law.step(in, std::chrono::milliseconds{1}).target_position;
+    if (tick > 2200) least = std::min(least, target - arrives);
+  }
+  EXPECT_GE(least, -config.back - 1e-9);
+  EXPECT_LT(least, 0) << "it did wait";
+}
+
 }  // namespace
 }  // namespace palp::coupling
