@@ -1,6 +1,7 @@
 #include "judge/known_touch.h"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace palp::judge {
@@ -12,7 +13,7 @@ void KnownTouch::look(double at, double tip, double contact_force) {
 
 /// [m], how deep the tip had been by `at` [s]; -infinity: it had touched nothing.
 double KnownTouch::touched_by(double at) const noexcept {
-  double deepest = -INFINITY;
+  double deepest = -std::numeric_limits<double>::infinity();
   for (const Depth& depth : depths_) {
     if (depth.at <= at) deepest = depth.tip;
   }

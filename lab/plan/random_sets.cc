@@ -186,7 +186,7 @@ void fill_first(Plan& plan, const PlanAsk& ask) {
     const std::string time = nine_digit_text(0.3 * std::pow(10.0, uniform(5)));
     one.script = "hold 1\n";
     if (over) one.script += "move to B\nhold 0.5\n";
-    one.script += "press " + depth + " " + time + " 6\nlift 0.6 1\n";
+    one.script += formatted("press %s %s 6\nlift 0.6 1\n", depth.c_str(), time.c_str());
     one.labels.insert(one.labels.end(), {depth, time, over ? "B" : "A", drawn});
   }
 }
