@@ -135,6 +135,7 @@ TEST(MmtPatientTest, TheTipGivesWayToASurfaceThatRisesAgainstItAndDoesNotSwing) 
   tip.follow(1e-3, 1, 1000);
   const double felt = stiff(1e-3);
   for (int step = 1; step <= 20; ++step) tip.follow(1e-3, 1, 50, 0.1e-3 * step);
+  EXPECT_LT(tip.force_most(), 2) << "the model takes it for a soft tissue far above";
   ASSERT_GT(stiff(3e-3), 3);
   tip.follow(1e-3, 1, 2000, 2e-3);
   const MmtConfig config;
@@ -144,6 +145,15 @@ TEST(MmtPatientTest, TheTipGivesWayToASurfaceThatRisesAgainstItAndDoesNotSwing) 
   EXPECT_NEAR(tip.tip(), rest, 20e-6);
   tip.follow(1e-3, 1, 2000);
   EXPECT_NEAR(tip.tip(), 1e-3, 20e-6) << "when the surface is back, so is the tip";
+}
+
+TEST(MmtPatientTest, ATipThatWaitsFindsOutThatTheTissueIsGone) {
+  Tip tip;
+  tip.follow(-3e-3, 0, 1000);
+  tip.follow(1e-3, 1, 1000);
+  tip.follow(-3e-3, 0, 500);
+  tip.follow(4e-3, 0, 2500, -2.5e-3);
+  EXPECT_GT(stiff(tip.tip() - 2.5e-3), 0.2) << "2.5 mm deeper";
 }
 
 /// A stage that does not move, and 0.6 N: to press 0.35 N the model would have it 1 mm farther out.
