@@ -39,7 +39,6 @@ void KnownTouch::feel(const PermittedPress::Look& hand) {
 }
 
 void KnownTouch::hold(const Hold& hold) noexcept {
-  constexpr double kAll = 1 - 1e-9;
   if (std::isinf(touched_by(hold.from - config_.round_trip - kHoldAfter))) return;
   const bool saturated = !(hold.felt < kSaturated * config_.force_continuous);
   if (!(hold.truth >= kHeldLeast) || saturated) return;
@@ -47,7 +46,7 @@ void KnownTouch::hold(const Hold& hold) noexcept {
   if (hold.truth > config_.stiffest * hold.position) return;
   const PermittedPress::Look held{
       .at = hold.until, .felt = hold.felt, .truth = hold.truth, .position = hold.position};
-  if (press_.permitted(held) < kAll) return;
+  if (press_.permitted(held) < PermittedPress::kAll) return;
   held_off_ += std::abs(hold.felt - hold.truth);
   held_truth_ += hold.truth;
 }

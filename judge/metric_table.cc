@@ -27,8 +27,8 @@ double missing_share(const M& m) {
 }
 
 double share_error(const M& m) {
-  constexpr double kAll = 1 - 1e-9;
-  return m.contact.share_permitted >= kAll ? m.contact.share_2s - 1 : kUndefined;
+  const bool all = m.contact.share_permitted >= PermittedPress::kAll;
+  return all ? m.contact.share_2s - 1 : kUndefined;
 }
 
 constexpr std::array kTable{

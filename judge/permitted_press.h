@@ -19,6 +19,7 @@ struct EnergyBound {
 class PermittedPress {
  public:
   static constexpr double kDepthStep = 0.05e-3;  ///< [m], of what is kept of the tissue
+  static constexpr double kAll = 1 - 1e-9;       ///< [-], permitted: the whole force
   static constexpr double kOutLeast = 0.5;       ///< [s], that the hand takes to go out
 
   explicit PermittedPress(const EnergyBound& bound = {}) : bound_{bound} {}

@@ -94,6 +94,10 @@ class ContactEstimator {
     KnotStiffness stiffness{};  ///< [N/m]
     double spline_share{};      ///< [-]
     double deepest{};           ///< [m], tip in contact
+
+    [[nodiscard]] bool is_at(const Place& other) const noexcept {
+      return visit > 0 && distance(place, other) <= kSamePlace;
+    }
   };
   static constexpr std::size_t kPlaces = 32;
   struct Places {

@@ -15,8 +15,8 @@ constexpr double kStay = 0.3;  // [s] of contact: a place that a drag only passe
 const ContactEstimator::Known* ContactEstimator::known_at(const Place& place) const noexcept {
   const Known* newest = nullptr;
   for (const Known& known : places_.known) {
-    const bool same = known.visit > 0 && distance(known.place, place) <= kSamePlace;
-    if (same && (newest == nullptr || known.visit > newest->visit)) newest = &known;
+    const bool newer = newest == nullptr || known.visit > newest->visit;
+    if (newer && known.is_at(place)) newest = &known;
   }
   return newest;
 }
@@ -29,8 +29,7 @@ const ContactEstimator::Known& ContactEstimator::last_known() const noexcept {
 /// passed, else over the oldest.
 ContactEstimator::Known& ContactEstimator::slot_for(const Place& place) noexcept {
   const auto age = [&place](const Known& known) {
-    const bool same = known.visit > 0 && distance(known.place, place) <= kSamePlace;
-    const int rank = same ? 0 : known.visit == 0 ? 1 : known.touched < kStay ? 2 : 3;
+    const int rank = known.is_at(place) ? 0 : known.visit == 0 ? 1 : known.touched < kStay ? 2 : 3;
     return std::pair{rank, known.visit};
   };
   return *std::ranges::min_element(places_.known, {}, age);

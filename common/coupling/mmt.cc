@@ -363,6 +363,10 @@ double MmtPatient::unfelt() const noexcept {
 /// half of what the model says, it goes on as slowly as it gives way. @returns as unfelt() [m].
 double MmtPatient::wait(const PatientInput& in, double span) noexcept {
   const double waits = unfelt();
+  if (!(waits > 0)) {
+    doubted_ = 0;
+    return 0;
+  }
   const ModelPayload& found = estimator_.model();
   const double there = contact_model(found).force(in.position - found.surface - found.swing);
   const double less = kTrusted * there - finite_or(in.contact_force, 0);

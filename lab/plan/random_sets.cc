@@ -21,6 +21,10 @@ double pick(const std::array<double, N>& values, double uniform) {
   return values[std::min(N - 1, static_cast<std::size_t>(uniform * N))];
 }
 
+std::uint64_t case_seed(std::uint64_t seed, std::uint64_t index) {
+  return random_bits(seed, kCaseStream + 99, index) >> 12U;
+}
+
 /// Case `index` of the random sets.
 SetDraw draw_case(std::uint64_t seed, std::uint64_t index, bool hard) {
   const auto uniform = [&](std::uint64_t which) {
@@ -86,7 +90,7 @@ void fill_with(std::span<const FaultKind> kinds, Plan& plan, const PlanAsk& ask)
 
 void fill_random(Plan& plan, const PlanAsk& ask, bool hard) {
   for (std::uint64_t index = 0; index < ask.count; ++index) {
-    const std::uint64_t seed = random_bits(ask.seed, kCaseStream + 99, index) >> 12U;
+    const std::uint64_t seed = case_seed(ask.seed, index);
     add_case(plan, seed, draw_case(ask.seed, index, hard), ask);
   }
 }
@@ -171,7 +175,7 @@ void fill_first(Plan& plan, const PlanAsk& ask) {
     SetDraw draw = draw_case(ask.seed, index, false);
     draw.round_trip = 0.5 * uniform(0);
     draw.burst_rate = 0;
-    const std::uint64_t seed = random_bits(ask.seed, kCaseStream + 99, index) >> 12U;
+    const std::uint64_t seed = case_seed(ask.seed, index);
     add_case(plan, seed, draw, ask);
     Case& one = plan.cases.back();
     const bool ball = uniform(1) >= 0.8;

@@ -47,11 +47,13 @@ class Hand {
 /// [J], of the loop.
 double loop(double in, double out) { return 0.5 * (out - in) * Hand::kDepth * Hand::kDepth; }
 
-TEST(ContactEnergyTest, ASpringThatLosesNothingGivesNothing) {
-  Hand hand;
-  hand.press(500, 500);
-  EXPECT_NEAR(hand.energy().in_contact(), 0, 1e-9);
-  EXPECT_NEAR(hand.energy().air_to_air(), 0, 1e-9);
+TEST(ContactEnergyTest, ASpringThatIsNoStifferOnTheWayOutGivesNothing) {
+  for (const double out : {500.0, 300.0}) {
+    Hand hand;
+    hand.press(500, out);
+    EXPECT_NEAR(hand.energy().in_contact(), 0, 1e-9) << out;
+    EXPECT_NEAR(hand.energy().air_to_air(), 0, 1e-9) << out;
+  }
 }
 
 TEST(ContactEnergyTest, ASpringThatIsStifferOnTheWayOutGivesTheLoopsArea) {
@@ -59,13 +61,6 @@ TEST(ContactEnergyTest, ASpringThatIsStifferOnTheWayOutGivesTheLoopsArea) {
   hand.press(300, 500);
   EXPECT_NEAR(hand.energy().in_contact(), loop(300, 500), 1e-8);
   EXPECT_NEAR(hand.energy().air_to_air(), loop(300, 500), 1e-8);
-}
-
-TEST(ContactEnergyTest, OneThatIsSofterTakes) {
-  Hand hand;
-  hand.press(500, 300);
-  EXPECT_NEAR(hand.energy().in_contact(), 0, 1e-9);
-  EXPECT_NEAR(hand.energy().air_to_air(), 0, 1e-9);
 }
 
 TEST(ContactEnergyTest, ContactsAddUpOnlyFromAirToAir) {
