@@ -19,6 +19,7 @@ constexpr double kLeft = 0.2e-3;     // [m], outwards: the tip was moved out
 constexpr double kOutside = 0.5e-3;  // [m], of the learned surface: more than its error
 constexpr double kInside = 1e-3;     // [m], the same to the other side, and some force
 constexpr double kRetractedWithin = 50e-6;  // [m]
+constexpr double kRetreatGrowth = 3;        // of the retreat's speed, at most
 constexpr double kTooDeep = 2e-3;           // [m], more than a servo overshoots
 
 }  // namespace
@@ -26,7 +27,7 @@ constexpr double kTooDeep = 2e-3;           // [m], more than a servo overshoots
 void MotionGate::begin(double tip, const Place& place) noexcept {
   command_ = tip;
   velocity_ = 0;
-  co_filter_.reset(tip);
+  foresight_.begin(tip);
   doubt_.reset();
   plane_.begin(place);
 }
@@ -36,8 +37,8 @@ void MotionGate::hold() noexcept {
   plane_.hold();
 }
 
-void MotionGate::feel(double tip, double contact_force) noexcept {
-  co_filter_.step(tip);
+void MotionGate::feel(double tip, double contact_force, std::optional<double> age) noexcept {
+  foresight_.feel(tip, contact_force, age);
   felt_ += kSmoothing * (contact_force - felt_);
   if (surface_of_this_place_ && !doubt_) return;
   const double least =
@@ -58,7 +59,7 @@ void MotionGate::learn_surface(double tip) noexcept {
   doubt_ = Doubt{.surface = surface_, .place = surface_place_, .tip = tip};
   // Contact began where Hertz' law of the expected tissue gives no force.
   const double force = std::max(felt_, config_.contact_force / 2) / config_.contact_stiffness;
-  surface_ = co_filter_.value() - std::cbrt(force * force);
+  surface_ = foresight_.felt_tip() - std::cbrt(force * force);
   surface_place_ = plane_.command();
   surface_of_this_place_ = true;
 }
@@ -129,6 +130,16 @@ void MotionGate::follow(double target, double dt) noexcept {
   command_ = within_limits(next.command);
 }
 
+/// A target that is too deep is taken back to the tip and behind it: only so a stage brakes at
+/// once.
+void MotionGate::brake(double tip, double dt) noexcept {
+  const double deepest = std::max(foresight_.bound(tip), config_.travel_min);
+  if (command_ <= deepest) return;
+  command_ =
+      std::max(deepest, std::min(command_, tip) - kRetreatGrowth * config_.retreat_speed * dt);
+  velocity_ = 0;
+}
+
 /// Never inwards.
 void MotionGate::move_out(double tip, double target, double speed, double dt) noexcept {
   const double from = std::min(command_, tip);
@@ -178,7 +189,7 @@ MotionAnswer MotionGate::pass(const MotionRequest& request, const Lapse& lapse) 
     answer.halt = true;
   } else if (request.contact_force > config_.force_limit) {
     const double excess = request.contact_force - config_.force_limit;
-    const double speed = config_.retreat_speed * std::min(3.0, 1 + 4 * excess);
+    const double speed = config_.retreat_speed * std::min(kRetreatGrowth, 1 + 4 * excess);
     move_out(request.tip, config_.travel_min, speed, span);
     ceiling_.hit(command_);
     condition = NoteCode::ForceRetreat;
@@ -193,8 +204,10 @@ MotionAnswer MotionGate::pass(const MotionRequest& request, const Lapse& lapse) 
     }
   } else if (request.state != SiteState::Engaged) {
     hold();
+    brake(request.tip, span);
   } else if (!finite) {
     hold();
+    brake(request.tip, span);
     condition = NoteCode::NotFinite;
     note_once(answer, condition, 0);
   } else {
@@ -211,6 +224,7 @@ MotionAnswer MotionGate::pass(const MotionRequest& request, const Lapse& lapse) 
     follow_place(request, span, answer);
     leave_place(request.tip);
     follow(target, span);
+    brake(request.tip, span);
   }
   if (condition == NoteCode::None) noted_ = NoteCode::None;
   if (answer.place_refused == NoteCode::None) place_noted_ = NoteCode::None;

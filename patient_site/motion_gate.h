@@ -3,13 +3,13 @@
 #include <optional>
 
 #include "common/core/device_facts.h"
-#include "common/core/filters.h"
 #include "common/core/lapse.h"
 #include "common/core/place.h"
 #include "common/core/site_state.h"
 #include "common/core/time.h"
 #include "common/record/notes.h"
 #include "patient_site/force_ceiling.h"
+#include "patient_site/force_foresight.h"
 #include "patient_site/plane_motion.h"
 
 namespace palp::patient {
@@ -69,18 +69,19 @@ struct MotionAnswer {
 class MotionGate {
  public:
   explicit MotionGate(const MotionGateConfig& config,
-                      const ForceSensorFacts& sensor = {},
+                      const PatientDevices& devices = {},
                       double period = 1e-3) noexcept  ///< [s], of the calls of feel()
       : config_{config},
         ceiling_{{.limit = config.force_limit}},
-        co_filter_{sensor.pole, period},
+        foresight_{devices, period, {.limit = config.force_limit}},
         plane_{config.plane},
         noise_square_{config.contact_force * config.contact_force / 4} {}
 
   /// The tip stands here and nothing was commanded yet.
   void begin(double tip, const Place& place) noexcept;
-  /// Once a tick, before pass(), with both as their devices gave them.
-  void feel(double tip, double contact_force) noexcept;
+  /// Once a tick, before pass(), with both as their devices gave them. `age` [s] of the force where
+  /// it is a new reading, else nullopt.
+  void feel(double tip, double contact_force, std::optional<double> age = 0.0) noexcept;
   /// Catch up slowly from here: after a gap, at an engagement.
   void resynchronise() noexcept { resynchronising_ = true; }
   [[nodiscard]] MotionAnswer pass(const MotionRequest& request, const Lapse& lapse) noexcept;
@@ -104,6 +105,7 @@ class MotionGate {
   void follow(double target, double dt) noexcept;
   void move_out(double tip, double target, double speed, double dt) noexcept;
   void hold() noexcept;
+  void brake(double tip, double dt) noexcept;
   [[nodiscard]] double speed_limit(double target) const noexcept;
   [[nodiscard]] double deepest() const noexcept;
   [[nodiscard]] double within_limits(double position) const noexcept;
@@ -115,7 +117,7 @@ class MotionGate {
 
   MotionGateConfig config_;
   ForceCeiling ceiling_;
-  LowPass co_filter_;  ///< [m], of the tip: the sensor's pole, as the force has it
+  ForceForesight foresight_;
   double command_{};   ///< [m]
   double velocity_{};  ///< [m/s], of the command
   PlaneMotion plane_;

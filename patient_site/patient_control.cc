@@ -45,7 +45,7 @@ PatientControl::PatientControl(const PatientConfig& config,
     : config_{config},
       devices_{devices},
       parts_{parts},
-      gate_{within_devices(config.gate, devices), devices.sensor, seconds(config.period)},
+      gate_{within_devices(config.gate, devices), devices, seconds(config.period)},
       watch_{allowing_for(config.watch, devices.sensor)},
       account_{{config.period, config.link_status_every}, parts.recorder} {}
 
@@ -183,7 +183,10 @@ PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
   device_fault_ = NoteCode::None;
   take_stage(in.stage);
   take_force(in.force);
-  gate_.feel(now_.position, now_.contact_force);
+  const bool felt = in.force && std::isfinite(in.force->force);
+  gate_.feel(now_.position,
+             now_.contact_force,
+             felt ? std::optional{seconds(now_.at - force_sampled_at_)} : std::nullopt);
   watch_devices(lapse);
   begun_ = true;
 

@@ -15,7 +15,7 @@ constexpr Duration kTick = std::chrono::milliseconds{1};
 
 /// Its sensor has no pole to speak of: the tip is felt where it is.
 MotionGate gate_at(double tip, const MotionGateConfig& config = {}) {
-  MotionGate gate{config, ForceSensorFacts{.pole = 1e5}};
+  MotionGate gate{config, {.stage = {}, .sensor = {.pole = 1e5, .lag = 0}}};
   gate.begin(tip, {});
   return gate;
 }
@@ -34,7 +34,7 @@ TEST(MotionGateTest, FeelsTheTipBehindTheSensorsPoleAsItDoesTheForce) {
   // The tip steps in and the force, already behind the pole, is felt at once: the surface is sought
   // where the filtered tip was.
   const auto surface_with = [](double pole) {
-    MotionGate gate{{}, ForceSensorFacts{.pole = pole}};
+    MotionGate gate{{}, {.stage = {}, .sensor = {.pole = pole}}};
     gate.begin(0, {});
     for (int i = 0; i < 8; ++i) gate.feel(2e-3, 0.2);
     return gate.surface().value();
@@ -162,7 +162,10 @@ TEST(MotionGateTest, WhereNoSurfaceIsKnownItIsAsSlowInwardsAsNearOne) {
 TEST(MotionGateTest, GoesNoDeeperThanItsDepth) {
   MotionGate gate = gate_at(0);
   touch(gate, 0, 0.1);
-  for (int i = 0; i < 1000; ++i) (void)gate.pass(engaged(20e-3, gate.command()), kTick);
+  for (int i = 0; i < 1000; ++i) {
+    gate.feel(gate.command(), 0.1);
+    (void)gate.pass(engaged(20e-3, gate.command()), kTick);
+  }
   EXPECT_NEAR(gate.command(), *gate.surface() + 8e-3, 1e-9);
 }
 

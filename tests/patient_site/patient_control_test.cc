@@ -1,5 +1,6 @@
 #include "patient_site/patient_control.h"
 
+#include <algorithm>
 #include <array>
 
 #include <gtest/gtest.h>
@@ -81,6 +82,29 @@ TEST(PatientControlTest, NeverRunsFasterThanTheStageSaysItCan) {
     }
     EXPECT_NEAR(fastest, speed, 1e-9);
   }
+}
+
+/// Taken for a new one, it would let the tip go on for 1 mm.
+TEST(PatientControlTest, BrakesInTimeByReadingsThatAreOld) {
+  PatientDevices facts;
+  facts.sensor.pole = 1e5;
+  facts.sensor.lag = 0;
+  Bench bench{facts};
+  bench.force_age = 20ms;
+  for (int i = 0; i < 10; ++i) bench.engaged_tick(0);
+  ASSERT_EQ(bench.control.status().state, SiteState::Engaged);
+  std::array<double, 20> late{};  // [N]
+  double highest = 0;
+  for (std::size_t i = 0; i < 1000; ++i) {
+    bench.in.stage.position = bench.control.status().command;
+    const double force = 1500 * std::max(0.0, bench.in.stage.position);
+    bench.force = late[i % late.size()];
+    late[i % late.size()] = force;
+    bench.engaged_tick(8e-3);
+    highest = std::max(highest, force);
+  }
+  EXPECT_LE(highest, 3);
+  EXPECT_GE(highest, 2.5);
 }
 
 TEST(PatientControlTest, ASensorOfLargeStepsMayRestOnOneForLongerAndFeelsContactLater) {
