@@ -16,28 +16,31 @@ using std::numbers::pi;
 constexpr double kSlowest = 2 * pi * 0.10;  // [rad/s]
 constexpr double kFastest = 2 * pi * 0.60;  // [rad/s]
 // A short arc fits many paces: an adult at rest breathes 12 to 20 times a minute.
-constexpr double kUsual = 2 * pi * 0.26;     // [rad/s]
-constexpr double kUnusual = 1;               // [-], cost of an octave
-constexpr double kSeenFor = 4;               // [s], since the first sight, to believe a breath
-constexpr double kStillSeenFor = 2;          // [s], to believe that there is none
-constexpr double kSamplesMin = 30;           // to say anything
-constexpr double kAmplitudeMin = 0.2e-3;     // [m]
-constexpr double kStillBelow = 0.35e-3;      // [m]
-constexpr double kStillBelowSoon = 0.2e-3;   // [m], before a breath can be believed
-constexpr double kAmplitudeMax = 4e-3;       // [m]
-constexpr double kExplainedMin = 0.6;        // [-], to begin believing
-constexpr double kClearly = 0.5;             // [-], of what a tissue at rest leaves, to begin
-constexpr double kExplainedLeast = 0.3;      // [-], to go on
-constexpr double kPresenceTime = 0.3;        // [s]
-constexpr double kContact = 0.03;            // [N]
-constexpr double kAfterContact = 0.05;       // [s]
-constexpr double kSampleEvery = 0.08;        // [s]
-constexpr double kSampleSoonest = 0.025;     // [s], where the tip moves
-constexpr double kSampleDistance = 0.15e-3;  // [m]
+constexpr double kUsual = 2 * pi * 0.26;       // [rad/s]
+constexpr double kUnusual = 8;                 // [-], cost of an octave
+constexpr double kSeenFor = 4;                 // [s], since the first sight, to believe a breath
+constexpr double kStillSeenFor = 2;            // [s], to believe that there is none
+constexpr double kSamplesMin = 30;             // to say anything
+constexpr double kAmplitudeMin = 0.2e-3;       // [m]
+constexpr double kStillBelow = 0.35e-3;        // [m]
+constexpr double kStillBelowSoon = 0.2e-3;     // [m], before a breath can be believed
+constexpr double kAmplitudeMax = 4e-3;         // [m]
+constexpr double kExplainedMin = 0.6;          // [-], to begin believing
+constexpr double kClearly = 0.5;               // [-], of what a tissue at rest leaves, to begin
+constexpr double kExplainedLeast = 0.3;        // [-], to go on
+constexpr double kPresenceTime = 0.3;          // [s]
+constexpr double kContact = 0.03;              // [N]
+constexpr double kAfterContact = 0.05;         // [s]
+constexpr double kSampleEvery = 0.08;          // [s]
+constexpr double kSampleSoonest = 0.025;       // [s], where the tip moves
+constexpr double kSampleDistance = 0.15e-3;    // [m]
+constexpr std::uint32_t kNowhere = 1U << 31U;  // added to the number of a place: no such place
+constexpr std::ptrdiff_t kFew = 10;            // samples at a place that say nothing
 constexpr int kSamplesATick = 10;
 constexpr int kSamplesATickStill = 4;  // once the surface is known to stand still
 constexpr std::uint32_t kRounds = 12;  // through all samples, after the newest of them
-constexpr double kNoise = 8e-3;        // [N], of a sample, with what no such tissue explains
+constexpr double kNoise = 8e-3;        // [N], of a sample, with what no such tissue explains,
+constexpr double kNoiseShare = 0.05;   // [-], and of the force
 constexpr double kDamped = 0.02;       // [-], of Marquardt
 constexpr double kFloor = 1e-9;        // [N^2], so that no unknown is without an equation
 constexpr double kStepMax = 0.5;       // [mm], of one improvement
@@ -45,7 +48,7 @@ constexpr double kStepMax = 0.5;       // [mm], of one improvement
 constexpr std::array<double, BreathingEstimator::kShapes> kShapeExpected{0.06, 0, 0};     // [N]
 constexpr std::array<double, BreathingEstimator::kShapes> kShapeSpread{0.1, 0.05, 0.02};  // [N]
 constexpr double kRelaxingSpread = 0.1;                                                   // [-]
-constexpr double kSwingSpread = 1.5;                                                      // [mm]
+constexpr double kSwingSpread = 0.8;                                                      // [mm]
 constexpr std::size_t kSurface = BreathingEstimator::kShapes;
 constexpr std::size_t kRelaxes = kSurface + 1;
 constexpr std::size_t kCosine = kRelaxes + BreathingEstimator::kTimes;
@@ -78,7 +81,7 @@ double Swing::after(double span) const noexcept {
 BreathingEstimator::BreathingEstimator(double period) noexcept : period_{period} {
   for (std::size_t i = 0; i < guesses_.size(); ++i) {
     Guess& guess = guesses_[i];
-    guess.here.shape = guess.before.shape = kShapeExpected;
+    for (Tissue& tissue : guess.tissues) tissue.shape = kShapeExpected;
     guess.rate = i == 0 ? 0 : rate_of(static_cast<double>(i) - 0.5);
   }
 }
@@ -90,12 +93,21 @@ void BreathingEstimator::step() noexcept {
   fit_some();
 }
 
-/// The oldest place of three is forgotten; of the last its tissue is taken as it was found.
+/// Each place keeps its tissue, so that a breath found at one is not lost at the next. A place
+/// where the tip hardly stayed, as in a drag, says nothing of a breath.
 void BreathingEstimator::new_place() noexcept {
   if (!touched_) return;
+  const auto here = [this](const Sample& sample) { return sample.place == place_; };
+  const auto end = samples_.begin() + static_cast<std::ptrdiff_t>(count_);
+  if (std::count_if(samples_.begin(), end, here) < kFew) {
+    for (Sample& sample : samples_) {
+      if (here(sample)) sample.place = place_ + kNowhere;
+    }
+  }
+  for (Guess& guess : guesses_) guess.tissues[slot(place_ + 1)] = guess.tissues[slot(place_)];
   ++place_;
   touched_ = false;
-  for (Guess& guess : guesses_) guess.before = guess.here;
+  contact_at_ = -1;
   at_guess_ = at_sample_ = 0;
   equations_ = {};
 }
@@ -112,8 +124,9 @@ void BreathingEstimator::see(double position, double force) noexcept {
       const double tau = time_ - guess.origin;
       const double swing =
           guess.cosine * std::cos(guess.rate * tau) + guess.sine * std::sin(guess.rate * tau);
-      const double depth = std::pow(force / std::max(0.01, guess.here.shape[0]), 2.0 / 3);
-      guess.here.surface = position - swing - kModelDepthScale * std::min(depth, 2.0);
+      Tissue& tissue = guess.tissues[slot(place_)];
+      const double depth = std::pow(force / std::max(0.01, tissue.shape[0]), 2.0 / 3);
+      tissue.surface = position - swing - kModelDepthScale * std::min(depth, 2.0);
     }
   } else if (count_ > 0) {
     const Sample& last = samples_[(next_ + kSamples - 1) % kSamples];
@@ -142,13 +155,13 @@ void BreathingEstimator::fit_some() noexcept {
       return;
     }
     const Sample& sample = samples_[at_sample_++];
-    if (sample.place + 1 >= place_) add(guesses_[at_guess_], sample);
+    if (place_ - sample.place < kPlaces) add(guesses_[at_guess_], sample);
   }
 }
 
 void BreathingEstimator::add(const Guess& guess, const Sample& sample) noexcept {
   const bool here = sample.place == place_;
-  const Tissue& tissue = here ? guess.here : guess.before;
+  const Tissue& tissue = guess.tissues[slot(sample.place)];
   const double tau = sample.at - guess.origin;
   const double c = std::cos(guess.rate * tau);
   const double s = std::sin(guess.rate * tau);
@@ -156,8 +169,11 @@ void BreathingEstimator::add(const Guess& guess, const Sample& sample) noexcept 
   const double depth = (sample.position - tissue.surface - swing) / kModelDepthScale;
   equations_.count += 1;
   equations_.time += sample.at;
+  const double off = kNoiseShare * sample.force / kNoise;
+  const double weight = 1 / (1 + off * off);
   if (depth <= 0) {
     equations_.square += sample.force * sample.force;
+    equations_.weighted += weight * sample.force * sample.force;
     return;
   }
   const Shaped shape = shaped(depth);
@@ -170,6 +186,7 @@ void BreathingEstimator::add(const Guess& guess, const Sample& sample) noexcept 
   for (std::size_t k = 0; k < kTimes; ++k) force -= tissue.relaxing[k] * sample.past[k];
   const double left = sample.force - force;
   equations_.square += left * left;
+  equations_.weighted += weight * left * left;
   std::array<double, kUnknowns> row{};
   if (here) {
     for (std::size_t j = 0; j < kShapes; ++j) row[j] = shape.value[j];
@@ -180,8 +197,9 @@ void BreathingEstimator::add(const Guess& guess, const Sample& sample) noexcept 
   row[kSine] = -slope * s;
   row[kRate] = -slope * tau * (guess.sine * c - guess.cosine * s) / kModelDepthScale;
   for (std::size_t i = 0; i < kUnknowns; ++i) {
-    equations_.system.right[i] += row[i] * left;
-    for (std::size_t j = 0; j <= i; ++j) equations_.system.matrix[i][j] += row[i] * row[j];
+    const double weighted = weight * row[i];
+    equations_.system.right[i] += weighted * left;
+    for (std::size_t j = 0; j <= i; ++j) equations_.system.matrix[i][j] += weighted * row[j];
   }
 }
 
@@ -209,9 +227,10 @@ void BreathingEstimator::count_from(double origin, Guess& guess) noexcept {
 void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
   Equations& e = equations_;
   if (e.count < 1) return;
+  Tissue& here = guess.tissues[slot(place_)];
   constexpr double kVariance = kNoise * kNoise;
   guess.square = e.square / e.count;
-  guess.cost = e.square / kVariance;
+  guess.cost = e.weighted / kVariance;
   const bool swings = pace > 0;
   const auto expect = [&](std::size_t unknown, double value, double expected, double spread) {
     const double off = (value - expected) / spread;
@@ -220,10 +239,10 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
     e.system.right[unknown] -= kVariance * off / spread;
   };
   for (std::size_t j = 0; j < kShapes; ++j) {
-    expect(j, guess.here.shape[j], kShapeExpected[j], kShapeSpread[j]);
+    expect(j, here.shape[j], kShapeExpected[j], kShapeSpread[j]);
   }
   for (std::size_t k = 0; k < kTimes; ++k) {
-    expect(kRelaxes + k, guess.here.relaxing[k], 0, kRelaxingSpread);
+    expect(kRelaxes + k, here.relaxing[k], 0, kRelaxingSpread);
   }
   const double middle = rate_of(static_cast<double>(pace) - 0.5);
   if (swings) {
@@ -237,9 +256,7 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
   std::array<bool, kUnknowns> open{};
   for (std::size_t i = 0; i < (swings ? kUnknowns : kCosine); ++i) {
     const bool share = i >= kRelaxes && i < kCosine;
-    const double now = i < kShapes ? guess.here.shape[i]
-                       : share     ? guess.here.relaxing[i - kRelaxes]
-                                   : 1;
+    const double now = i < kShapes ? here.shape[i] : share ? here.relaxing[i - kRelaxes] : 1;
     open[i] = now > 0 || e.system.right[i] > 0;
   }
   const std::array<double, kUnknowns> by = solved(open);
@@ -248,12 +265,11 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
       std::max({std::abs(by[kSurface]), std::abs(by[kCosine]), std::abs(by[kSine])});
   const double share = most > kStepMax ? kStepMax / most : 1;
   for (std::size_t j = 0; j < kShapes; ++j) {
-    guess.here.shape[j] = std::max(0.0, guess.here.shape[j] + share * by[j]);
+    here.shape[j] = std::max(0.0, here.shape[j] + share * by[j]);
   }
-  guess.here.surface += share * by[kSurface] * kModelDepthScale;
+  here.surface += share * by[kSurface] * kModelDepthScale;
   for (std::size_t k = 0; k < kTimes; ++k) {
-    guess.here.relaxing[k] =
-        std::clamp(guess.here.relaxing[k] + share * by[kRelaxes + k], 0.0, 1.0);
+    here.relaxing[k] = std::clamp(here.relaxing[k] + share * by[kRelaxes + k], 0.0, 1.0);
   }
   if (!swings) return;
   guess.cosine += share * by[kCosine] * kModelDepthScale;
@@ -292,11 +308,13 @@ bool BreathingEstimator::settled() const noexcept {
   return still_ || (first_seen_ >= 0 && time_ - first_seen_ >= kSeenFor);
 }
 
-double BreathingEstimator::surface() const noexcept { return guesses_[best_].here.surface; }
+double BreathingEstimator::surface() const noexcept {
+  return guesses_[best_].tissues[slot(place_)].surface;
+}
 
 /// Of a tissue that has let go of nothing yet the force is larger by what relaxes.
 std::array<double, BreathingEstimator::kShapes> BreathingEstimator::shapes() const noexcept {
-  std::array<double, kShapes> slow = guesses_[best_].here.shape;
+  std::array<double, kShapes> slow = guesses_[best_].tissues[slot(place_)].shape;
   double gain = 1;
   for (const double share : relaxing()) gain += share;
   for (double& shape : slow) shape /= gain;
@@ -304,7 +322,7 @@ std::array<double, BreathingEstimator::kShapes> BreathingEstimator::shapes() con
 }
 
 const BreathingEstimator::Shares& BreathingEstimator::relaxing() const noexcept {
-  return guesses_[best_].here.relaxing;
+  return guesses_[best_].tissues[slot(place_)].relaxing;
 }
 
 Swing BreathingEstimator::swing() const noexcept {

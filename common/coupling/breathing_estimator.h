@@ -60,6 +60,7 @@ class BreathingEstimator {
 
  private:
   static constexpr std::size_t kSamples = 384;
+  static constexpr std::uint32_t kPlaces = 8;  ///< whose samples count
   /// And surface, what relaxes, cosine, sine, rate.
   static constexpr std::size_t kUnknowns = kShapes + kTimes + 4;
 
@@ -77,22 +78,23 @@ class BreathingEstimator {
   };
   /// What is supposed at one pace; the first supposes a surface at rest.
   struct Guess {
-    Tissue here;
-    Tissue before;    ///< at the last place, as it was found there
-    double cosine{};  ///< [m]
-    double sine{};    ///< [m]
-    double rate{};    ///< [rad/s]
-    double origin{};  ///< [s], of the phase
-    double square{};  ///< [N^2], of what is left, mean
-    double cost{};    ///< [-]
+    std::array<Tissue, kPlaces> tissues;  ///< of the last places, by slot(); as they were found
+    double cosine{};                      ///< [m]
+    double sine{};                        ///< [m]
+    double rate{};                        ///< [rad/s]
+    double origin{};                      ///< [s], of the phase
+    double square{};                      ///< [N^2], of what is left, mean
+    double cost{};                        ///< [-]
   };
   struct Equations {
     SmallSystem<kUnknowns> system;  ///< [N^2], by unknowns
     double square{};                ///< [N^2]
+    double weighted{};              ///< [N^2], the same by what each sample is worth
     double time{};                  ///< [s], sum
     double count{};                 ///< [-]
   };
 
+  [[nodiscard]] static std::size_t slot(std::uint32_t place) noexcept { return place % kPlaces; }
   void fit_some() noexcept;
   void add(const Guess& guess, const Sample& sample) noexcept;
   [[nodiscard]] std::array<double, kUnknowns> solved(
