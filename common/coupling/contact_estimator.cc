@@ -37,6 +37,7 @@ ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcep
       gain_{LowPass{config.sensor.pole, config.period}.gain()},
       onset_{config.detection_force, config.sensor, config.period},
       sensed_{.tip = {config.sensor.pole, config.period}},
+      held_{config.period},
       swing_{config.period} {
   expected_[1] = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
   here_.expected = expected_;
@@ -348,19 +349,13 @@ void ContactEstimator::begin_contact() noexcept {
   publish(prior);
 }
 
-void ContactEstimator::step(double position, double force, std::int64_t periods) noexcept {
-  if (periods > 1 && sensed_.started) follow(position, force, periods - 1);
-  const double halfway = sense(position, force);
-  watch_surface();
+void ContactEstimator::look(double halfway, double force) noexcept {
   const double threshold = onset_.force(noise_.deviation());
   const bool contact = sensed_.force_mean >= threshold && noise_.known();
   if (placed_ && !contact && sensed_.tip.value() > centre_ + kMisplaced) placed_ = false;
   doubt(threshold);
   if (!placed_) {
-    if (!contact) {
-      noise_.listen(force);  // before the first contact every reading is noise
-      return;
-    }
+    if (!contact) return noise_.listen(force);  // before the first contact every reading is noise
     begin_contact();
   }
   if (!contact && here_.contact)
@@ -375,6 +370,15 @@ void ContactEstimator::step(double position, double force, std::int64_t periods)
   relax();
   collect(force);
   if (model_.version > 0) model_.residual = force - predicted();
+  held_.step(model_, sensed_.raw_tip, force - noise_.bias(held_.force(), config_.sensor.step));
+}
+
+void ContactEstimator::step(double position, double force, std::int64_t periods) noexcept {
+  if (periods > 1 && sensed_.started) follow(position, force, periods - 1);
+  const double halfway = sense(position, force);
+  watch_surface();
+  look(halfway, force);
+  told_ = held_.corrected(model_);
 }
 
 }  // namespace palp::coupling

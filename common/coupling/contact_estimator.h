@@ -10,6 +10,7 @@
 #include "common/core/time.h"
 #include "common/coupling/breathing_estimator.h"
 #include "common/coupling/contact_onset.h"
+#include "common/coupling/held_force.h"
 #include "common/coupling/sensor_noise.h"
 #include "common/coupling/spline_estimator.h"
 #include "common/message/port_sample.h"
@@ -44,7 +45,7 @@ class ContactEstimator {
   /// becomes what is expected.
   void new_place(const Place& place) noexcept;
 
-  [[nodiscard]] const ModelPayload& model() const noexcept { return model_; }
+  [[nodiscard]] const ModelPayload& model() const noexcept { return told_; }
 
  private:
   static constexpr std::size_t kCandidates = 64;
@@ -62,6 +63,7 @@ class ContactEstimator {
   /// @returns the way the tip went in this period, half of it on average, the surface at rest [m].
   [[nodiscard]] double sense(double position, double force) noexcept;
   void follow(double position, double force, std::int64_t periods) noexcept;
+  void look(double halfway, double force) noexcept;
   void doubt(double threshold) noexcept;
   void begin_contact() noexcept;
   void place_grid(double centre) noexcept;
@@ -181,6 +183,8 @@ class ContactEstimator {
   Terms expected_{};           ///< [N]
   double surface_expected_{};  ///< [m]
   ModelPayload model_;
+  HeldForce held_;
+  ModelPayload told_;  ///< as it is known at a tip that rests
   BreathingEstimator swing_;
   Here here_;
   Places places_;

@@ -58,6 +58,7 @@ void ContactEstimator::new_place(const Place& place) noexcept {
   if (placed_ && (here_.contact || places_.visits == 0)) remember();
   places_.here = place;
   swing_.new_place();
+  held_.forget();
   here_.contact = false;
   here_.touched = 0;
   here_.deepest = -1;
@@ -73,6 +74,7 @@ void ContactEstimator::new_place(const Place& place) noexcept {
   Solution again;
   again.c = expected.c;
   publish(again);
+  told_ = model_;
 }
 
 }  // namespace palp::coupling

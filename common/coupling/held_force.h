@@ -1,0 +1,35 @@
+#pragma once
+
+#include "common/coupling/contact_model.h"
+#include "common/message/port_sample.h"
+
+namespace palp::coupling {
+
+/// What a model leaves at a tip that rests: a tissue relaxes, comes up or is of no known shape, and
+/// the fit, which remembers seconds, learns it late. Where the tip stands the measured force is
+/// known, so all of the model is told stronger or weaker, until a hand there is given that force.
+/// As the tip goes on, that is forgotten. Thread: rt. A value.
+class HeldForce {
+ public:
+  explicit HeldForce(double period) noexcept : period_{period} {}  ///< [s], of step()
+
+  /// Once a tick: the tip at `position` [m], half of its way in this tick on average, meets `force`
+  /// [N], both through the same filter.
+  void step(const ModelPayload& model, double position, double force) noexcept;
+  /// As it is told.
+  [[nodiscard]] ModelPayload corrected(ModelPayload model) const noexcept;
+  /// [N], of a tip there, as it is told.
+  [[nodiscard]] double force() const noexcept { return (1 + share_) * model_force_; }
+  /// Another place.
+  void forget() noexcept { share_ = 0; }
+
+ private:
+  double period_;          ///< [s]
+  double position_{};      ///< [m], at the tick before
+  double speed_{};         ///< [m/s], of the tip, lately
+  RelaxingContact given_;  ///< what a hand at the tip would be given
+  double model_force_{};   ///< [N], of the model at the tip
+  double share_{};         ///< [-], that the model is told stronger
+};
+
+}  // namespace palp::coupling
