@@ -1,11 +1,13 @@
 #include "review/replay.h"
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
 #include <gtest/gtest.h>
 
 #include "common/config/document.h"
+#include "common/record/notes.h"
 #include "common/record/session_reader.h"
 #include "common/record/session_writer.h"
 #include "lab/plan/scenario_file.h"
@@ -147,6 +149,17 @@ TEST(ReplayTest, DevicesThatFailDoSoAgain) {
     EXPECT_EQ(again.surgeon.difference, "");
     EXPECT_EQ(again.patient.difference, "");
   }
+}
+
+TEST(ReplayTest, WhatTheSurgeonIsToldOfItsForceIsToldAgain) {
+  Scenario scenario = rough("mmt", FaultKind::None);
+  scenario.tissue.breathing_amplitude = 1.5e-3;
+  scenario.tissue.breathing_frequency = 0.3;
+  const Files files = session_of(scenario);
+  const auto notes = all<Note>(files.surgeon.bytes());
+  const auto code = static_cast<std::uint16_t>(record::NoteCode::TipFeelsMore);
+  ASSERT_NE(std::ranges::find(notes, code, &Note::code), notes.end());
+  EXPECT_EQ(replay(files).surgeon.difference, "");
 }
 
 TEST(ReplayTest, EstimatesComeAgainToo) {
