@@ -203,6 +203,7 @@ void SurgeonControl::judge_force(const coupling::SurgeonOutput& wanted,
                   .tip = {.given = now_.force,
                           .measured = coupling::force_scale(parts_.law) * now_.contact_force,
                           .position = now_.position,
+                          .tip = now_.tip,
                           .round_trip = seconds(now_.link.round_trip)}},
                  {peer.stage.value_or(StageFacts{}), peer.sensor.value_or(ForceSensorFacts{})},
                  lapse);

@@ -31,6 +31,7 @@ void TipComparison::look(const Look& now, const PatientDevices& devices, double 
   now_.given += now.given * passed;
   now_.measured += now.measured * passed;
   now_.position += now.position * passed;
+  now_.tip += now.tip * passed;
   now_.span += passed;
   // A hair: the sum of ten periods may fall short of ten.
   if (now_.span < kBin * (1 - 1e-6)) return;
@@ -38,11 +39,14 @@ void TipComparison::look(const Look& now, const PatientDevices& devices, double 
   const double way = count_ == 0 ? 0 : position - position_;
   given_[count_++ % kBins] = {now_.given / now_.span, way};
   position_ = position;
-  compare(now_.measured / now_.span, now.round_trip, devices);
+  const double span = now_.span;
+  compare({now_.given / span, now_.measured / span, position, now_.tip / span, span},
+          now.round_trip,
+          devices);
   now_ = {};
 }
 
-void TipComparison::compare(double measured,
+void TipComparison::compare(const Sums& mean,
                             double round_trip,
                             const PatientDevices& devices) noexcept {
   const double ago = round_trip + devices.stage.lag + devices.sensor.lag;
@@ -54,8 +58,10 @@ void TipComparison::compare(double measured,
   rested_ = rests ? rested_ + kBin : 0;
   if (rested_ <= kRestTime) return;
   const double share = -std::expm1(-kBin / kMemory);
-  measured_ += share * (measured - measured_);
-  more_ += share * (measured - then.force - more_);
+  const bool as_deep = mean.position >= mean.tip;
+  const double given = as_deep ? std::min(then.force, mean.given) : then.force;
+  measured_ += share * (mean.measured - measured_);
+  more_ += share * (mean.measured - given - more_);
   judge(limit_of(measured_, devices.sensor));
 }
 

@@ -9,7 +9,8 @@ namespace palp::surgeon {
 
 /// Does the tip measure more than the hand was given? A law does not know that its model is wrong;
 /// the peer's sensor does. The measured force is held against the one that the hand got a round
-/// trip and the devices' lags ago, as means over 10 ms. Only a hand that rested then says
+/// trip and the devices' lags ago, as means over 10 ms; with the newest one too where the hand is
+/// as deep as the tip, since there the tissue gives no less. Only a hand that rested then says
 /// something: one that moves presses what relaxes and damps. What exceeds a limit is summed up: so
 /// much is said soon, little is said later, and noise is not said. Thread: rt. A value.
 class TipComparison {
@@ -18,6 +19,7 @@ class TipComparison {
     double given{};       ///< [N], to the hand
     double measured{};    ///< [N], newest, of the tip: what the law means to give of it
     double position{};    ///< [m], of the hand
+    double tip{};         ///< [m], newest
     double round_trip{};  ///< [s]
   };
 
@@ -39,11 +41,12 @@ class TipComparison {
     double given{};     ///< [N]
     double measured{};  ///< [N]
     double position{};  ///< [m]
+    double tip{};       ///< [m]
     double span{};      ///< [s]
   };
   static constexpr std::size_t kBins = 256;
 
-  void compare(double measured, double round_trip, const PatientDevices& devices) noexcept;
+  void compare(const Sums& mean, double round_trip, const PatientDevices& devices) noexcept;
   void judge(double limit) noexcept;
 
   std::array<Bin, kBins> given_{};  ///< a ring

@@ -55,7 +55,7 @@ TEST(SessionMetricsTest, AScriptOfAFileIsTheOneThatWasPlayed) {
   const std::string file = palp::test::own_path("played.txt");
   const auto write = [&](const char* text) { std::ofstream{file} << text; };
   write("move -2 0.5\ntaps 3 4 1 0.5\nlift 1 0.5\n");
-  lab::Scenario scenario = test::lab_scenario(12s, {"surgeon.hand.master=script:" + file});
+  lab::Scenario scenario = test::lab_scenario(16s, {"surgeon.hand.master=script:" + file});
   const test::LabFiles files = test::lab_files(scenario);
   const auto looked = [&] {
     auto surgeon = load_site(files.surgeon.bytes(), "s", link::Role::Surgeon).value();
@@ -74,12 +74,13 @@ TEST(SessionMetricsTest, AScriptOfAFileIsTheOneThatWasPlayed) {
 /// A light hand over a long path gets less than the tissue has, and is told so.
 TEST(SessionMetricsTest, WhatTheSurgeonWasToldOfIsJudgedAsInTheLab) {
   const std::string file = palp::test::own_path("held.txt");
-  std::ofstream{file} << "hold 1\npress 4 1 4\nlift 1 1\n";
+  std::ofstream{file} << "hold 1\nmove to B\nhold 0.5\npress 4 1 5\nlift 1 1\n";
   const lab::Scenario scenario = test::lab_scenario(12s,
                                                     {"surgeon.hand.master=script:" + file,
                                                      "surgeon.hand.grip=light",
                                                      "up.delay_ms=100",
-                                                     "down.delay_ms=100"});
+                                                     "down.delay_ms=100"},
+                                                    "standard");
   const Judged one = judged(scenario, false);
   ASSERT_TRUE(one.session.by_truth);
   EXPECT_EQ(one.lab.contact.announced, 1) << "something was short";

@@ -56,7 +56,8 @@ std::vector<std::string> with(std::vector<std::string> settings, const std::stri
   return settings;
 }
 
-constexpr const char* kPress = "hold 1\nmove -2 0.5\npress 1 2 6\nlift 1 1\n";
+/// A phantom of a file lies below B.
+constexpr const char* kPress = "hold 1\nmove to B\nhold 0.5\npress 1 2 6\nlift 1 1\n";
 
 TEST(ShortForceTest, ATissueStifferThanMayBeShownIsCalledSo) {
   const std::string table = test::own_path("stone.csv");
