@@ -6,23 +6,23 @@
 namespace palp::surgeon {
 namespace {
 
-constexpr double kBin = 10e-3;       // [s]
-constexpr double kMemory = 50e-3;    // [s], of means
-constexpr double kLeast = 0.045;     // [N], with a sensor of kStep
-constexpr double kShare = 0.045;     // [-], of the measured force
-constexpr double kStep = 0.05;       // [N]
-constexpr double kSum = 3e-3;        // [N s], beyond the limit
-constexpr double kSumMost = 4e-3;    // [N s]
-constexpr double kStill = 0.8;       // [-], of the limit: below it is over
-constexpr double kStillTime = 0.1;   // [s]
-constexpr double kRestSpeed = 8e-3;  // [m/s]
-constexpr double kRestTime = 50e-3;  // [s], until what a motion pressed more is gone
+constexpr double kBin = 10e-3;         // [s]
+constexpr double kMemory = 50e-3;      // [s], of means
+constexpr double kNoiseLeast = 0.045;  // [N], with a sensor of kStep
+constexpr double kNoiseShare = 0.045;  // [-], of the measured force
+constexpr double kStep = 0.05;         // [N]
+constexpr double kSum = 3e-3;          // [N s], beyond the limit
+constexpr double kSumMost = 4e-3;      // [N s]
+constexpr double kOver = 0.8;          // [-], of the limit: below it is over
+constexpr double kOverTime = 0.1;      // [s]
+constexpr double kRestSpeed = 8e-3;    // [m/s]
+constexpr double kRestTime = 50e-3;    // [s], until what a motion pressed more is gone
 
 /// [N], from which a difference is no matter of the sensor: the mean of a force that stands still
 /// is off by half a step at most.
 double limit_of(double measured, const ForceSensorFacts& sensor) noexcept {
   const double coarse = 0.5 * std::max(0.0, sensor.step - kStep);
-  return std::max(kLeast, kShare * measured) + coarse;
+  return std::max(kNoiseLeast, kNoiseShare * measured) + coarse;
 }
 
 }  // namespace
@@ -72,8 +72,8 @@ void TipComparison::judge(double limit) noexcept {
     below_ = 0;
     return;
   }
-  below_ = more_ < kStill * limit ? below_ + kBin : 0;
-  if (below_ < kStillTime) return;
+  below_ = more_ < kOver * limit ? below_ + kBin : 0;
+  if (below_ < kOverTime) return;
   says_ = false;
   sum_ = 0;
 }

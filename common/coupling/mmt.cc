@@ -85,9 +85,8 @@ double MmtSurgeon::told_force(double position) const noexcept {
 
 /// [N], at rest, what the told tissue has more than is shown of it at most.
 double MmtSurgeon::too_stiff(double position) const noexcept {
-  if (!candidate_) return 0;
-  const double depth = position - candidate_->surface - swing_.after(swing_age_);
-  return std::max(0.0, told_.force(depth) - device_.share() * candidate_->force(depth));
+  const double depth = position - told_.surface - swing_.after(swing_age_);
+  return told_.force(depth) - device_.share() * candidate_.value_or(told_).force(depth);
 }
 
 void MmtSurgeon::hear(const SurgeonInput& in) noexcept {
@@ -293,7 +292,7 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexc
           {in.position, in.velocity, force, std::monostate{}},
           shown_force_,
           std::max(0.0, shown_.force(depth_at(in.position)) - shown_force_),
-          too_stiff(in.position)};
+          std::max(0.0, too_stiff(in.position))};
 }
 
 MmtPatient::MmtPatient(const MmtConfig& config, const PatientDevices& devices) noexcept
