@@ -160,7 +160,6 @@ TEST(ReplayTest, WhatTheSurgeonIsToldOfItsForceIsToldAgain) {
   scenario.script =
       surgeon::parse_script("hold 1\npress 3 1 8\nlift 1 1\n", scenario.hand.plant.grip.stiffness)
           .value();
-  scenario.depths = false;
   const Files files = session_of(scenario);
   const auto notes = all<Note>(files.surgeon.bytes());
   const auto code = static_cast<std::uint16_t>(record::NoteCode::TipFeelsMore);
