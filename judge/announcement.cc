@@ -6,17 +6,20 @@
 
 namespace palp::judge {
 
-bool Announcement::is_short(const Look& now) noexcept {
+bool Announcement::rests(const Look& now) noexcept {
   const bool touches = now.truth > kContact;
   if (touches && !std::exchange(touches_, touches)) touched_at_ = now.at;
   touches_ = touches;
   if (!touches || !(std::abs(now.velocity) < kRest)) return false;
-  if (now.at < touched_at_ + round_trip_) return false;
-  return now.truth - now.felt > std::max(kLeast, kShare * now.truth);
+  return now.at >= touched_at_ + round_trip_;
 }
 
 void Announcement::look(const Look& now) noexcept {
-  const bool before = std::exchange(short_, is_short(now));
+  const bool rested = rests(now);
+  const bool is_short = rested && now.truth - now.felt > std::max(kLeast, kShare * now.truth);
+  if (rested) ++rested_;
+  if (rested && now.told && !is_short) ++in_vain_;
+  const bool before = std::exchange(short_, is_short);
   if (!short_) return;
   if (!before) {
     short_from_ = now.at;

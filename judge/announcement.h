@@ -7,7 +7,8 @@ namespace palp::judge {
 /// Which share of the forces that stayed incomplete the surgeon was told of in time. A force is
 /// incomplete that is felt below the true one by more than kLeast and kShare for kLasts on end,
 /// while the hand rests in the tissue, from a round trip after the first contact there. It is
-/// announced if it was told of at any tick up to kLasts after it began. Thread: any one.
+/// announced if it was told of at any tick up to kLasts after it began. And how much of the time at
+/// rest in the tissue something was told though the force was whole. Thread: any one.
 class Announcement {
  public:
   static constexpr double kContact = 0.05;  ///< [N], true force: in the tissue
@@ -30,9 +31,12 @@ class Announcement {
   void look(const Look& now) noexcept;
   /// [-]; NaN: no force was incomplete.
   [[nodiscard]] double share() const noexcept { return announced_ / count_; }
+  /// [-]; NaN: the hand never rested in the tissue.
+  [[nodiscard]] double in_vain() const noexcept { return in_vain_ / rested_; }
 
  private:
-  [[nodiscard]] bool is_short(const Look& now) noexcept;
+  /// In the tissue, when news of it can be there.
+  [[nodiscard]] bool rests(const Look& now) noexcept;
 
   double round_trip_;  ///< [s]
   bool touches_{};
@@ -43,6 +47,8 @@ class Announcement {
   double short_from_{};  ///< [s]
   double announced_{};   ///< [-]
   double count_{};       ///< [-]
+  double rested_{};      ///< [ticks]
+  double in_vain_{};     ///< [ticks]
 };
 
 }  // namespace palp::judge

@@ -103,6 +103,7 @@ struct ContactMetrics {
   double energy_contact{};       ///< [J], most that the hand got in one contact; see ContactEnergy
   double energy_air_to_air{};    ///< [J], most that it got from air to air
   double announced{kUndefined};  ///< [-], of incomplete forces; see Announcement
+  double told_in_vain{kUndefined};  ///< [-], of the time at rest in the tissue; see there
   // Where a law can know the tissue, see KnownTouch.
   double known_tap_error[2]{kUndefined, kUndefined};  ///< [-]
   double held_error[2]{kUndefined, kUndefined};       ///< [-] >= 0

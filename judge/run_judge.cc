@@ -285,6 +285,7 @@ void RunJudge::sum_up() {
   metrics_.energy_operator = std::max(0.0, -energy_operator_min_);
   metrics_.energy_net = std::max(0.0, -energy_net_min_);
   metrics_.contact.announced = announcement_.share();
+  metrics_.contact.told_in_vain = announcement_.in_vain();
   metrics_.contact.guard_excess = guard_.excess();
   metrics_.contact.guard_excess_time = guard_.longest();
   metrics_.contact.energy_contact = energy_.in_contact();

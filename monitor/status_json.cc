@@ -42,6 +42,8 @@ std::string status_json(const LiveStatus& status, const Pilot& pilot, std::size_
   json["position_mm"] = in_mm(tick.position);
   json["force_n"] = tick.force;
   json["force_missing_n"] = tick.force_missing;
+  json["force_short"] = text_of(tick.short_note);
+  json["force_short_n"] = tick.short_by;
   json["x_mm"] = in_mm(tick.place.x);
   json["y_mm"] = in_mm(tick.place.y);
   json["link"] = to_string(heard.state);

@@ -13,7 +13,7 @@ bool of_no_tick(const record::SessionEntry& entry) {
   using palp::record::NoteCode;
   const Record& record = entry.record;
   if (const auto* note = std::get_if<Note>(&record)) {
-    return static_cast<NoteCode>(note->code) >= NoteCode::Marked;
+    return !palp::record::is_of_a_tick(static_cast<NoteCode>(note->code));
   }
   return std::holds_alternative<DepthEstimate>(record) ||
          std::holds_alternative<MapEstimate>(record) ||

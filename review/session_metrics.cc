@@ -166,6 +166,7 @@ class LoggedJudge {
     tick.hand_velocity = hand.velocity;
     tick.hand_force = hand.force;
     tick.force_true = truth_of(tissue_, hand.place, tick.hand);
+    tick.told_short = hand.short_note != 0;
     tick.tip = judge::kUndefined;
     if (tip != nullptr) {
       tick.contact_force = tip->force;
@@ -261,20 +262,20 @@ JudgedSession judge_session(const SessionPair& session,
     logged.emplace(session, tissue);
   }
   TickSource source{surgeon};
+  bool told_short = false;  // by the newest tick
   while (const auto item = source.next()) {
     if (const auto* state = std::get_if<PlantTruth>(&*item)) {
-      if (truth) show(truth->look(*state));
+      if (truth) show(truth->look(*state, told_short));
       continue;
     }
     const SiteTick& tick = std::get<SiteTick>(*item);
+    told_short = tick.short_note != 0;
     keep(strokes.look(motion_of(tick)));
     if (logged) show(logged->look(tick));
   }
   keep(strokes.finish());
   made.phases = truth || logged->phases();
   made.metrics = truth ? truth->metrics() : logged->metrics();
-  // A session's ticks do not say what the site told.
-  made.metrics.contact.announced = judge::kUndefined;
   return made;
 }
 

@@ -44,12 +44,32 @@ LinePart found_part(const SurgeonStatus& status) {
   return {.full = depth_line_of(status.depth), .brief = depth_brief_of(status.depth), .rank = 2};
 }
 
+/// `before` and `after` an amount.
+LinePart short_part(const SurgeonStatus& status, const char* before, const char* after) {
+  return {.full = number_text(before, status.short_by, 2, after),
+          .brief = number_text("LESS BY ", status.short_by, 2, " N"),
+          .rank = 6};
+}
+
+/// What helps, where something does.
 LinePart incomplete_part(const SurgeonStatus& status) {
-  if (!status.force_incomplete) return {};
-  return {
-      .full = number_text("LESS THAN THE TISSUE'S BY ", status.force_missing, 2, " N: lift once"),
-      .brief = number_text("LESS BY ", status.force_missing, 2, " N"),
-      .rank = 6};
+  switch (status.shortage) {
+    case record::NoteCode::None:
+      return {};
+    case record::NoteCode::TissueTooStiff:
+      return short_part(
+          status, "LESS THAN THE TISSUE'S BY ", " N: it is stiffer than can be shown");
+    case record::NoteCode::TipFeelsMore:
+      return short_part(status, "THE TIP FEELS ", " N MORE THAN YOU");
+    case record::NoteCode::TipElsewhere: {
+      const double behind = distance(status.place, status.peer_place) * 1e3;
+      return {.full = number_text("YOU FEEL ANOTHER PLACE: the tip is ", behind, 0, " mm behind"),
+              .brief = number_text("TIP ", behind, 0, " mm BEHIND"),
+              .rank = 6};
+    }
+    default:
+      return short_part(status, "LESS THAN THE TISSUE'S BY ", " N: lift once");
+  }
 }
 
 }  // namespace

@@ -9,11 +9,6 @@ namespace {
 
 using record::NoteCode;
 
-// What a surgeon is told of: less than this is not felt, shorter is the model coming in.
-constexpr double kMissingMin = 0.05;    // [N]
-constexpr double kMissingShare = 0.05;  // [-], of the tissue's force
-constexpr double kMissingTime = 0.3;    // [s]
-
 ForceGateConfig within_device(ForceGateConfig gate, const HandFacts& hand) noexcept {
   gate.force_max = std::min(gate.force_max, hand.force_peak);
   gate.force_continuous = std::min(gate.force_continuous, hand.force_continuous);
@@ -181,7 +176,7 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
   now_.gate_acted = answer_.acted;
   now_.position = given.position;
   now_.place = hand_.place;
-  judge_force(wanted.force_missing, lapse);
+  judge_force(wanted, lapse);
   return {.force = answer_.force,
           .hold_in_plane = config_.hold_in_plane && answer_.force >= pressing_force(),
           .to_peer = {{now_.state, now_.epoch, hand_.place, {}},
@@ -197,21 +192,26 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
 }
 
 /// A hand that feels less than the tissue must know it.
-void SurgeonControl::judge_force(double missing, const Lapse& lapse) noexcept {
-  const bool rendered = now_.state == SiteState::Engaged;
-  now_.force_missing = rendered ? missing : 0;
-  const double noticed = std::max(kMissingMin, kMissingShare * (missing + now_.force));
-  const bool incomplete = now_.force_missing > noticed;
-  if (incomplete == now_.force_incomplete) {
-    incomplete_for_ = 0;
-    return;
-  }
-  incomplete_for_ += seconds(lapse.passed());
-  if (rendered && incomplete_for_ < kMissingTime) return;
-  now_.force_incomplete = incomplete;
-  if (rendered) {
-    account_.note(incomplete ? NoteCode::ForceIncomplete : NoteCode::ForceComplete, missing);
-  }
+void SurgeonControl::judge_force(const coupling::SurgeonOutput& wanted,
+                                 const Lapse& lapse) noexcept {
+  now_.force_missing = now_.state == SiteState::Engaged ? wanted.force_missing : 0;
+  const DeviceFacts& peer = now_.peer_devices;
+  shortage_.look({.state = now_.state,
+                  .missing = wanted.force_missing,
+                  .too_stiff = wanted.force_too_stiff,
+                  .apart = distance(now_.place, now_.peer_place),
+                  .tip = {.given = now_.force,
+                          .measured = coupling::force_scale(parts_.law) * now_.contact_force,
+                          .position = now_.position,
+                          .tip = now_.tip,
+                          .round_trip = seconds(now_.link.round_trip)}},
+                 {peer.stage.value_or(StageFacts{}), peer.sensor.value_or(ForceSensorFacts{})},
+                 lapse);
+  const NoteCode before = std::exchange(now_.shortage, shortage_.why());
+  now_.short_by = shortage_.by();
+  if (now_.shortage == before || now_.state != SiteState::Engaged) return;
+  const bool whole = now_.shortage == NoteCode::None;
+  account_.note(whole ? NoteCode::ForceComplete : now_.shortage, now_.short_by);
 }
 
 void SurgeonControl::write_down(const SurgeonInputs& in, const SurgeonOutputs& out) noexcept {
@@ -227,7 +227,9 @@ void SurgeonControl::write_down(const SurgeonInputs& in, const SurgeonOutputs& o
                            .gate_acted = now_.gate_acted,
                            .round_trip = now_.link.round_trip,
                            .sent = out.to_peer.port,
-                           .force_missing = now_.force_missing});
+                           .force_missing = now_.force_missing,
+                           .short_by = now_.short_by,
+                           .short_note = static_cast<std::uint16_t>(now_.shortage)});
   account_.link(in.link);
   note_script(in.script);
   record_readings(in);

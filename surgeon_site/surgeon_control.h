@@ -12,6 +12,7 @@
 #include "common/record/site_account.h"
 #include "surgeon_site/force_at_hand.h"
 #include "surgeon_site/force_gate.h"
+#include "surgeon_site/force_shortage.h"
 #include "surgeon_site/haptic_device.h"
 #include "surgeon_site/supervisor.h"
 #include "surgeon_site/surgeon_status.h"
@@ -90,7 +91,7 @@ class SurgeonControl {
   [[nodiscard]] coupling::SurgeonInput law_input(const link::Arrivals& arrived,
                                                  bool engaged_now) const noexcept;
   [[nodiscard]] double pressing_force() const noexcept;
-  void judge_force(double missing, const Lapse& lapse) noexcept;
+  void judge_force(const coupling::SurgeonOutput& wanted, const Lapse& lapse) noexcept;
   void note_script(const ScriptProgress& script) noexcept;
   void record_readings(const SurgeonInputs& in) noexcept;
 
@@ -105,8 +106,8 @@ class SurgeonControl {
   HandState hand_;     ///< last one with numbers
   ForceAnswer answer_;
   HeardCells cells_;
-  double force_before_{};    ///< [N], applied in the tick before
-  double incomplete_for_{};  ///< [s], that the force is otherwise than the surgeon was told
+  ForceShortage shortage_;
+  double force_before_{};  ///< [N], applied in the tick before
   bool hand_was_finite_{true};
   bool session_began_{};          ///< or ended, in this tick
   std::uint32_t resets_{};        ///< last heard of

@@ -32,8 +32,11 @@ struct SurgeonStatus : record::SiteCounts {
   double force{};          ///< [N], to the hand
   double contact_force{};  ///< [N], as last heard
   bool gate_acted{};
-  double force_missing{};   ///< [N], of the believed tissue's force, what the law cannot give
-  bool force_incomplete{};  ///< so much of it, and for so long, that the surgeon is told
+  double force_missing{};  ///< [N], of the believed tissue's force, what the law cannot give
+  /// Why the hand feels less than the tissue, so much and for so long that the surgeon is told;
+  /// None: it feels all of it.
+  record::NoteCode shortage{};
+  double short_by{};  ///< [N], 0 where nobody can say
   DepthReport depth;
   MapReport map;  ///< as last heard; number 0: none yet
   ScriptProgress script;

@@ -57,6 +57,16 @@ inline void meet(SurgeonCoupling& law, const PatientDevices& devices) noexcept {
     if constexpr (requires { half.meet(devices); }) half.meet(devices);
   });
 }
+/// [-], what the law means to give of the tip's force.
+[[nodiscard]] inline double force_scale(const SurgeonCoupling& law) noexcept {
+  return with_half(law, [](const auto& half) {
+    if constexpr (requires { half.force_scale(); }) {
+      return half.force_scale();
+    } else {
+      return 1.0;
+    }
+  });
+}
 inline void begin_epoch(SurgeonCoupling& law, double position) noexcept {
   with_half(law, [&](auto& half) { half.begin_epoch(position); });
 }

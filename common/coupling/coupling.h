@@ -32,6 +32,8 @@ struct SurgeonOutput {
   double fade_max{std::numeric_limits<double>::infinity()};
   /// [N], of the tissue that the law believes in, the force that it cannot give here and now.
   double force_missing{};
+  /// [N], beside that: what this tissue is stiffer by than the law may show.
+  double force_too_stiff{};
 };
 
 struct PatientInput {

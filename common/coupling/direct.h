@@ -28,6 +28,8 @@ class DirectSurgeon {
   explicit DirectSurgeon(const DirectConfig& config) noexcept;
   void begin_epoch(double position) noexcept;
   SurgeonOutput step(const SurgeonInput& in, const Lapse& lapse) noexcept;
+  /// [-], of the tip's force.
+  [[nodiscard]] double force_scale() const noexcept { return config_.force_scale; }
 
  private:
   DirectConfig config_;

@@ -83,6 +83,12 @@ double MmtSurgeon::told_force(double position) const noexcept {
          candidate_->force(position - candidate_->surface - swing_.after(swing_age_));
 }
 
+/// [N], at rest, what the told tissue has more than is shown of it at most.
+double MmtSurgeon::too_stiff(double position) const noexcept {
+  const double depth = position - told_.surface - swing_.after(swing_age_);
+  return told_.force(depth) - device_.share() * candidate_.value_or(told_).force(depth);
+}
+
 void MmtSurgeon::hear(const SurgeonInput& in) noexcept {
   const Incoming* last = newest(in.arrived);
   if (last == nullptr) return;
@@ -95,7 +101,8 @@ void MmtSurgeon::hear(const SurgeonInput& in) noexcept {
   version_ = model->version;
   if (model->version == 0) return;
   const double told = told_force(in.position);
-  candidate_ = no_steeper(contact_model(*model), config_.slope_max / quick_gain(model->relaxing));
+  told_ = contact_model(*model);
+  candidate_ = no_steeper(told_, config_.slope_max / quick_gain(model->relaxing));
   candidate_relaxing_ = model->relaxing;
   // Another swing than was foreseen is a change of the model, not a motion of the surface.
   const double foreseen = swing_.after(swing_age_);
@@ -284,7 +291,8 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexc
   return {force,
           {in.position, in.velocity, force, std::monostate{}},
           shown_force_,
-          std::max(0.0, shown_.force(depth_at(in.position)) - shown_force_)};
+          std::max(0.0, shown_.force(depth_at(in.position)) - shown_force_),
+          std::max(0.0, too_stiff(in.position))};
 }
 
 MmtPatient::MmtPatient(const MmtConfig& config, const PatientDevices& devices) noexcept

@@ -89,6 +89,7 @@ class MmtSurgeon {
  private:
   void hear(const SurgeonInput& in) noexcept;
   [[nodiscard]] double told_force(double position) const noexcept;
+  [[nodiscard]] double too_stiff(double position) const noexcept;
   [[nodiscard]] double slower() const noexcept;
   void drop_model() noexcept;
   [[nodiscard]] SurgeonOutput let_go(const SurgeonInput& in, double work) noexcept;
@@ -123,6 +124,7 @@ class MmtSurgeon {
   double swing_age_{};                            ///< [s], since then
   double swung_{};                                ///< [m], of the shown surface
   std::optional<ContactModel> candidate_;         ///< none: nothing was learned yet
+  ContactModel told_;                             ///< the same, as steep as it was told
   RelaxingContact::Shares candidate_relaxing_{};  ///< [-]
   Contradiction contradiction_;
   std::uint32_t version_{};

@@ -35,6 +35,9 @@ struct SiteTick {
   Duration round_trip{};   ///< as given to the law
   PortSample sent;         ///< to the peer
   double force_missing{};  ///< [N], surgeon: of what the law believes in, what it cannot give
+  double short_by{};       ///< [N], surgeon: so much less than the tissue's, as it is told
+  /// Surgeon: of the note that says why (record::NoteCode), while it is told; 0: it is not.
+  std::uint16_t short_note{};
 };
 
 /// Each sample that arrived: a replay needs them all.
@@ -149,7 +152,9 @@ inline constexpr auto fields<S> = list({},
                                        field<9, &S::round_trip>("round_trip_ns"),
                                        spread<9, &S::sent>("sent_"),
                                        field<16, &S::place, &Place::y>("y_m"),
-                                       field<18, &S::force_missing>("force_missing_n"));
+                                       field<18, &S::force_missing>("force_missing_n"),
+                                       field<21, &S::short_by>("force_short_n"),
+                                       field<22, &S::short_note>("short_note"));
 
 template <std::same_as<Arrived> S>
 inline constexpr auto fields<S> = list({.log = "ArrivedSample"},

@@ -87,6 +87,9 @@ LogLevel level_of(NoteCode code) noexcept {
     case NoteCode::DragRefused:
     case NoteCode::PlaceBeyondTravel:
     case NoteCode::ForceIncomplete:
+    case NoteCode::TissueTooStiff:
+    case NoteCode::TipFeelsMore:
+    case NoteCode::TipElsewhere:
     case NoteCode::DiskNearlyFull:
       return LogLevel::Warning;
     default:

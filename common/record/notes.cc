@@ -62,6 +62,10 @@ constexpr std::array kTexts{
     Text{NoteCode::StudyInterval, "an interval of the trial may be touched"},
     Text{NoteCode::StudyAnswer, "the trial was answered"},
     Text{NoteCode::DiskNearlyFull, "the disk of the session file is nearly full"},
+    Text{NoteCode::TissueTooStiff,
+         "the force is incomplete: the tissue is stiffer than can be shown"},
+    Text{NoteCode::TipFeelsMore, "the force is incomplete: the tip feels more"},
+    Text{NoteCode::TipElsewhere, "the force may be incomplete: the tip is not where the hand is"},
 };
 
 }  // namespace

@@ -51,7 +51,7 @@ enum class NoteCode : std::uint16_t {
   PlaceBeyondTravel = 46,   ///< detail: likewise
   ForceIncomplete = 47,     ///< the hand feels less than the tissue; detail: missing [N]
   ForceComplete = 48,       ///< again all of it
-  // From here on of no tick: who replays one leaves them out.
+  // From here on of no tick, up to DiskNearlyFull: who replays one leaves them out.
   Marked = 49,  ///< by who sat at the terminal, or a client; detail: number of the mark
   // Asked for by a client of the monitor; detail: its number.
   MarkAsked = 50,
@@ -66,7 +66,17 @@ enum class NoteCode : std::uint16_t {
   StudyAnswer = 58,    ///< as it arrived; detail: the interval chosen, from 1
   // Of the recording itself, written by the record thread.
   DiskNearlyFull = 64,  ///< detail: time left [s] at the rate of late
+  // Again of a tick. As ForceIncomplete, and over with ForceComplete; detail: missing [N], 0 where
+  // nobody can say.
+  TissueTooStiff = 65,
+  TipFeelsMore = 66,
+  TipElsewhere = 67,
 };
+
+/// Whether the control of a site notes it in one of its ticks, and not somebody beside it.
+[[nodiscard]] constexpr bool is_of_a_tick(NoteCode code) noexcept {
+  return code < NoteCode::Marked || code > NoteCode::DiskNearlyFull;
+}
 
 /// The text of a note, for people. Unknown codes give "unknown note".
 [[nodiscard]] std::string_view to_string(NoteCode code) noexcept;

@@ -139,7 +139,8 @@ class Probe {
         .contact_force = tissue.contact_force,
         .tissue_energy = tissue.tissue_energy};
     paused_ = site.paused() || peer.paused();
-    if (const auto tick = judge_.look(truth, status.force_incomplete)) ticks_.push_back(*tick);
+    const bool told_short = status.shortage != record::NoteCode::None;
+    if (const auto tick = judge_.look(truth, told_short)) ticks_.push_back(*tick);
     if (file_ != nullptr) file_->write(truth);
   }
   [[nodiscard]] const judge::TruthJudge& judge() const { return judge_; }

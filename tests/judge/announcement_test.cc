@@ -43,6 +43,15 @@ TEST(AnnouncementTest, AHandThatMovesIsNotHeld) {
   EXPECT_TRUE(std::isnan(announcement.share()));
 }
 
+TEST(AnnouncementTest, WhatIsToldOfAWholeForceIsInVain) {
+  Announcement announcement{0.5};
+  EXPECT_TRUE(std::isnan(announcement.in_vain())) << "the hand never rested";
+  press(announcement, 1, 2.5, 1, 1.5);
+  EXPECT_NEAR(announcement.in_vain(), 0.5, 1e-3) << "from a round trip after contact on";
+  press(announcement, 5, 2.5, 0.5, 0);
+  EXPECT_NEAR(announcement.in_vain(), 0.25, 1e-3) << "the other was short";
+}
+
 TEST(AnnouncementTest, EachShortageCounts) {
   Announcement announcement{0.1};
   press(announcement, 1, 2, 0.5, 0.3);

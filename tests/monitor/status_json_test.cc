@@ -19,6 +19,8 @@ TEST(StatusJsonTest, SaysTheSessionInUnitsOfPeople) {
   status.peer_position = -0.002;
   status.heard.round_trip = std::chrono::milliseconds{75};
   status.reason = static_cast<std::uint16_t>(record::NoteCode::GapHold);
+  status.tick.short_by = 0.25;
+  status.tick.short_note = static_cast<std::uint16_t>(record::NoteCode::TipFeelsMore);
   Pilot pilot;
   ASSERT_TRUE(pilot.take(3, "<script>"));
   const Json json = Json::parse(status_json(status, pilot, 2));
@@ -29,6 +31,8 @@ TEST(StatusJsonTest, SaysTheSessionInUnitsOfPeople) {
   EXPECT_EQ(json["force_n"].number(), 0.75);
   EXPECT_EQ(json["peer_position_mm"].number(), -2);
   EXPECT_EQ(json["round_trip_ms"].number(), 75);
+  EXPECT_EQ(json["force_short"].text(), record::to_string(record::NoteCode::TipFeelsMore));
+  EXPECT_EQ(json["force_short_n"].number(), 0.25);
   EXPECT_EQ(json["pilot"].number(), 3);
   EXPECT_EQ(json["pilot_name"].text(), "<script>") << "text; the page makes no markup of it";
 }

@@ -234,7 +234,7 @@ inline void expect_same_judgement(const lab::Scenario& scenario, Looked& looked)
   for (const judge::Metric& metric : judge::metric_table()) {
     const std::string name{metric.name};
     // What energy permits takes the tissue and the hand themselves; no session file has them.
-    if (name.starts_with("share_") || name == "announced") {
+    if (name.starts_with("share_")) {
       EXPECT_TRUE(name == "share_2s" || metrics[name].is_null()) << name;
       continue;
     }

@@ -1,15 +1,18 @@
 #include "review/replay.h"
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
 #include <gtest/gtest.h>
 
 #include "common/config/document.h"
+#include "common/record/notes.h"
 #include "common/record/session_reader.h"
 #include "common/record/session_writer.h"
 #include "lab/plan/scenario_file.h"
 #include "lab/run/run.h"
+#include "surgeon_site/script_reader.h"
 
 // Goal: a session file holds all that decided a session. Method: whole sessions in virtual time,
 // with jitter, loss, a blackout and devices that fail, are written to files in memory; from a file
@@ -147,6 +150,21 @@ TEST(ReplayTest, DevicesThatFailDoSoAgain) {
     EXPECT_EQ(again.surgeon.difference, "");
     EXPECT_EQ(again.patient.difference, "");
   }
+}
+
+TEST(ReplayTest, WhatTheSurgeonIsToldOfItsForceIsToldAgain) {
+  auto document = load_scenario("standard").value();
+  ASSERT_TRUE(document.set("patient.simulated_phantom.breathing_mm=1.5"));
+  ASSERT_TRUE(document.set("patient.simulated_phantom.breathing_hz=0.3"));
+  Scenario scenario = make_scenario("standard", document).value();
+  scenario.script =
+      surgeon::parse_script("hold 1\npress 3 1 8\nlift 1 1\n", scenario.hand.plant.grip.stiffness)
+          .value();
+  const Files files = session_of(scenario);
+  const auto notes = all<Note>(files.surgeon.bytes());
+  const auto code = static_cast<std::uint16_t>(record::NoteCode::TipFeelsMore);
+  EXPECT_TRUE(std::ranges::any_of(notes, [&](const Note& note) { return note.code == code; }));
+  EXPECT_EQ(replay(files).surgeon.difference, "");
 }
 
 TEST(ReplayTest, EstimatesComeAgainToo) {

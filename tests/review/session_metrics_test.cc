@@ -71,6 +71,23 @@ TEST(SessionMetricsTest, AScriptOfAFileIsTheOneThatWasPlayed) {
   EXPECT_EQ(looked().dump(), before.dump());
 }
 
+/// A light hand over a long path gets less than the tissue has, and is told so.
+TEST(SessionMetricsTest, WhatTheSurgeonWasToldOfIsJudgedAsInTheLab) {
+  const std::string file = palp::test::own_path("held.txt");
+  std::ofstream{file} << "hold 1\nmove to B\nhold 0.5\npress 4 1 5\nlift 1 1\n";
+  const lab::Scenario scenario = test::lab_scenario(12s,
+                                                    {"surgeon.hand.master=script:" + file,
+                                                     "surgeon.hand.grip=light",
+                                                     "up.delay_ms=100",
+                                                     "down.delay_ms=100"},
+                                                    "standard");
+  const Judged one = judged(scenario, false);
+  ASSERT_TRUE(one.session.by_truth);
+  EXPECT_EQ(one.lab.contact.announced, 1) << "something was short";
+  EXPECT_EQ(one.review.contact.announced, one.lab.contact.announced);
+  EXPECT_EQ(one.review.contact.told_in_vain, one.lab.contact.told_in_vain);
+}
+
 TEST(SessionMetricsTest, WithoutSettingsThereAreNoPhases) {
   SessionPair pair;
   const JudgedSession none = judge_session(pair, nullptr);

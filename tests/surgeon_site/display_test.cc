@@ -59,8 +59,8 @@ TEST(DisplayTest, StateForceDepthAndProgressStandIn80ColumnsWhateverElseIsSaid) 
                     HasSubstr("62 %")));
   status.peer_heard = true;
   status.peer_place = {-50e-3, -30e-3};
-  status.force_incomplete = true;
-  status.force_missing = 0.31;
+  status.shortage = record::NoteCode::TissueTooStiff;
+  status.short_by = 0.31;
   status.force = -10.25;
   status.script.done = 1;
   for (const SiteState state : {SiteState::Parked,
@@ -88,10 +88,26 @@ TEST(DisplayTest, StateForceDepthAndProgressStandIn80ColumnsWhateverElseIsSaid) 
 
 TEST(DisplayTest, SaysThatTheHandFeelsLessThanTheTissue) {
   SurgeonStatus status = engaged();
-  status.force_missing = 0.31;
+  status.force_missing = status.short_by = 0.31;
   EXPECT_THAT(status_line(status), Not(HasSubstr("lift"))) << "the model is coming in";
-  status.force_incomplete = true;
+  status.shortage = record::NoteCode::ForceIncomplete;
   EXPECT_THAT(status_line(status), HasSubstr("LESS THAN THE TISSUE'S BY 0.31 N: lift once"));
+}
+
+TEST(DisplayTest, SaysWhyTheHandFeelsLess) {
+  SurgeonStatus status = engaged();
+  status.short_by = 0.31;
+  status.shortage = record::NoteCode::TissueTooStiff;
+  EXPECT_THAT(status_line(status),
+              HasSubstr("LESS THAN THE TISSUE'S BY 0.31 N: it is stiffer than can be shown"));
+  status.shortage = record::NoteCode::TipFeelsMore;
+  EXPECT_THAT(status_line(status), HasSubstr("THE TIP FEELS 0.31 N MORE THAN YOU"));
+  status.shortage = record::NoteCode::TipElsewhere;
+  status.place = {20e-3, 0};
+  status.peer_place = {13e-3, 0};
+  EXPECT_THAT(
+      status_line(status),
+      AllOf(HasSubstr("YOU FEEL ANOTHER PLACE: the tip is 7 mm behind"), Not(HasSubstr("0.31"))));
 }
 
 TEST(DisplayTest, SaysWhereTheStageIsWhereItDoesNotGoAlong) {

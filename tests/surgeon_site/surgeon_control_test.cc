@@ -70,5 +70,79 @@ TEST(SurgeonControlTest, AMapOfAnEarlierSessionIsForgotten) {
   EXPECT_EQ(bench.control.status().map.number, 0U);
 }
 
+/// An engaged hand at rest at 0, and a tip that stands at `tip` [m] and measures 1 N.
+struct PressBench {
+  explicit PressBench(const coupling::DirectConfig& config)
+      : law{coupling::DirectSurgeon{config}} {}
+
+  void hear(double tip, int ticks) {
+    Incoming sample;
+    sample.fresh = true;
+    sample.sample.position = tip;
+    sample.sample.force = 1;
+    for (int i = 0; i < ticks; ++i) {
+      in.now += 1ms;
+      in.hand.sampled_at = in.now;
+      in.arrived.samples = {&sample, 1};
+      (void)control.step(in);
+    }
+    in.arrived.samples = {};
+  }
+  void engage() {
+    in.link.state = LinkState::Live;
+    in.link.session_id = 1;
+    in.arrived.peer_heard = true;
+    in.arrived.peer.state = SiteState::Clutched;
+    hear(0, 2);
+    in.hand.pedal_held = true;
+    hear(0, 1);
+    in.arrived.peer.state = SiteState::Engaged;
+    in.arrived.peer.epoch = 1;
+  }
+
+  coupling::SurgeonCoupling law;
+  test::KeepingRecorder recorder;
+  SurgeonControl control{{}, {}, {law, recorder}};
+  SurgeonInputs in;
+};
+
+/// [N], 1 N but for a spring to a tip that stands 1 mm deeper.
+coupling::DirectConfig with_spring(double spring) {
+  return {.spring = spring, .change = {.slew = 1e9, .at_once = 1e9}};
+}
+
+TEST(SurgeonControlTest, AHandThatIsGivenLessThanTheTipMeasuresIsToldAndItIsWrittenDown) {
+  PressBench bench{with_spring(300)};
+  bench.engage();
+  bench.hear(1e-3, 2000);
+  ASSERT_EQ(bench.control.status().state, SiteState::Engaged);
+  EXPECT_EQ(bench.control.status().shortage, record::NoteCode::TipFeelsMore);
+  EXPECT_NEAR(bench.control.status().short_by, 0.3, 0.01);
+  const SiteTick tick = bench.recorder.all<SiteTick>().back();
+  EXPECT_EQ(tick.short_note, static_cast<std::uint16_t>(record::NoteCode::TipFeelsMore));
+  EXPECT_EQ(tick.short_by, bench.control.status().short_by);
+  bench.hear(0, 1000);
+  EXPECT_EQ(bench.control.status().shortage, record::NoteCode::None);
+  std::vector<record::NoteCode> noted;
+  for (const Note& note : bench.recorder.all<Note>()) {
+    const auto code = static_cast<record::NoteCode>(note.code);
+    if (code == record::NoteCode::TipFeelsMore || code == record::NoteCode::ForceComplete) {
+      noted.push_back(code);
+    }
+  }
+  EXPECT_EQ(noted, (std::vector{record::NoteCode::TipFeelsMore, record::NoteCode::ForceComplete}));
+}
+
+TEST(SurgeonControlTest, AForceThatIsMeantToBeHalfOfTheTipsIsWhole) {
+  coupling::DirectConfig half = with_spring(0);
+  half.force_scale = 0.5;
+  PressBench bench{half};
+  bench.engage();
+  bench.hear(0, 2000);
+  ASSERT_EQ(bench.control.status().state, SiteState::Engaged);
+  EXPECT_NEAR(bench.control.status().force, 0.5, 0.01);
+  EXPECT_EQ(bench.control.status().shortage, record::NoteCode::None);
+}
+
 }  // namespace
 }  // namespace palp::surgeon

@@ -5,7 +5,7 @@ import type { Message } from './schema';
 
 export interface Status {
   state: string; reason: string; refused: string; epoch: number;
-  position_mm: number; force_n: number; force_missing_n: number; x_mm: number; y_mm: number;
+  position_mm: number; force_n: number; force_missing_n: number; force_short: string; force_short_n: number; x_mm: number; y_mm: number;
   link: string; session: string; gap_ms: number; round_trip_ms: number;
   peer_heard: boolean; peer_state: string; peer_sampled: boolean;
   peer_position_mm: number; peer_force_n: number; peer_force_min_n: number; peer_force_max_n: number;

@@ -1,5 +1,5 @@
 // What a state means for whoever looks at it, and what to do next.
-import { OLD_MS, type Model, type TissueMap } from './model';
+import { OLD_MS, type Model, type Status, type TissueMap } from './model';
 import { ballWords } from './plane';
 
 export interface Words { icon: string; word: string; tone: 'live' | 'idle' | 'warn' | 'bad'; text: string }
@@ -19,6 +19,7 @@ export function wordsOf(m: Model, stale: boolean, finger: boolean): Words {
       return { icon: '◐', word: 'Clutched', tone: 'idle', text: clutchedText(m, finger) };
     case 'ENGAGED':
       if (s.peer_state !== 'ENGAGED') return { icon: '◑', word: 'Engaging', tone: 'live', text: 'The patient site is asked to follow.' };
+      if (s.force_short) return { icon: '▲', word: 'Engaged', tone: 'warn', text: shortText(s) };
       return { icon: '●', word: 'Engaged', tone: 'live', text: m.pilots ? 'You feel the tissue. Drag down to press, up to leave it, release to let go.' : 'The surgeon feels the tissue.' };
     case 'HOLD':
       return { icon: '❚❚', word: 'Hold', tone: 'warn', text: `Nothing heard for ${s.gap_ms.toFixed(0)} ms. The stage holds its place: keep still, or let go.` };
@@ -35,6 +36,12 @@ export function mapWords(map: TissueMap): string {
   const doubts = map.doubts.length > 0 ? ` Not trusted: ${map.doubts.join('; ')}.` : '';
   const next = map.next ? ` Next tap: ${map.next.x.toFixed(0)}, ${map.next.y.toFixed(0)} mm.`.replaceAll('-', '\u2212') : ' Enough taps.';
   return `${map.ball ? ballWords(map.ball) : `No inclusion found at ${map.places} places`}.${doubts}${next}`;
+}
+
+/** Why the hand feels less than the tissue, and by how much where somebody can say. */
+function shortText(s: Status): string {
+  const by = s.force_short_n > 0 ? ` (${s.force_short_n.toFixed(2)} N)` : '';
+  return sentence(`${s.force_short}${by}`).trim();
 }
 
 function oldText(m: Model): string {

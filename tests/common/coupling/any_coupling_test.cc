@@ -54,7 +54,17 @@ TEST(AnyCouplingTest, ConfigurationReachesTheLaw) {
   in.state = SiteState::Engaged;
   in.arrived = arrived;
   EXPECT_EQ(step(surgeon, in, kTick).force, 3);
+  EXPECT_EQ(force_scale(surgeon), 2);
   EXPECT_EQ(step(patient, {.arrived = arrived}, kTick).target_position, 0.003);
+}
+
+TEST(AnyCouplingTest, ALawThatSaysNothingOfItMeansToGiveAllOfTheForce) {
+  for (const char* name : {"wave", "tdpa", "mmt"}) {
+    CouplingConfig config;
+    config.name = name;
+    config.direct.force_scale = 2;
+    EXPECT_EQ(force_scale(*make_surgeon_coupling(config)), 1) << name;
+  }
 }
 
 TEST(NewestTest, IsTheLastSampleAndOnlyIfItIsFresh) {

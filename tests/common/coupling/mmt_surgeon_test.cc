@@ -333,16 +333,18 @@ TEST(MmtSurgeonTest, OfATissueTooStiffForTheDeviceItShowsWhatTheDeviceMayShow) {
   incoming.sample.payload = stiff;
   incoming.fresh = true;
   const std::array arrived{incoming};
-  double force = 0;
+  SurgeonOutput out;
   for (int tick = 0; tick < 200; ++tick) {
     SurgeonInput in;
     in.state = SiteState::Engaged;
     in.position = std::min(1e-3, -1e-3 + 20e-6 * tick);
-    in.force_applied = force;
+    in.force_applied = out.force;
     in.arrived = arrived;
-    force = law.step(in, std::chrono::milliseconds{1}).force;
+    out = law.step(in, std::chrono::milliseconds{1});
   }
-  EXPECT_NEAR(force, config.slope_max * 1e-3, 0.01) << "5 N were there";
+  EXPECT_NEAR(out.force, config.slope_max * 1e-3, 0.01) << "5 N were there";
+  EXPECT_NEAR(out.force + out.force_too_stiff, 5, 0.01) << "it says what it does not show";
+  EXPECT_NEAR(out.force_missing, 0, 0.01) << "of what it may show nothing is missing";
   EXPECT_EQ(law.refused(), 0U);
 }
 

@@ -39,6 +39,12 @@ TEST(LogLineTest, WhatNeedsAnEyeIsAWarningOrAnError) {
   EXPECT_EQ(level(change(SiteState::Clutched, NoteCode::PedalReleased)), LogLevel::Info);
   EXPECT_EQ(level(note(NoteCode::ForceRetreat, 3)), LogLevel::Warning);
   EXPECT_EQ(level(note(NoteCode::Marked, 1)), LogLevel::Info);
+  for (const NoteCode code : {NoteCode::ForceIncomplete,
+                              NoteCode::TissueTooStiff,
+                              NoteCode::TipFeelsMore,
+                              NoteCode::TipElsewhere}) {
+    EXPECT_EQ(level(note(code)), LogLevel::Warning) << to_string(code);
+  }
 }
 
 TEST(LogLineTest, StandsBesideItsEventInTheFileAndIsNoRecord) {

@@ -17,7 +17,19 @@ TEST(NotesTest, EveryNumberHasItsOwnTextAndOthersSaySo) {
       EXPECT_TRUE(texts.insert(text).second) << code << ": " << text;
     }
   }
-  EXPECT_EQ(known, 49);
+  EXPECT_EQ(known, 52);
+}
+
+TEST(NotesTest, WhatASitesControlNotesIsOfATick) {
+  for (const NoteCode code : {NoteCode::PedalPressed,
+                              NoteCode::ForceComplete,
+                              NoteCode::TissueTooStiff,
+                              NoteCode::TipElsewhere}) {
+    EXPECT_TRUE(is_of_a_tick(code)) << to_string(code);
+  }
+  for (const NoteCode code : {NoteCode::Marked, NoteCode::StudyAnswer, NoteCode::DiskNearlyFull}) {
+    EXPECT_FALSE(is_of_a_tick(code)) << to_string(code);
+  }
 }
 
 TEST(NotesTest, AStateSaysWhyWhereItIsNotTheUsualOne) {
