@@ -172,8 +172,7 @@ void BreathingEstimator::add(const Guess& guess, const Sample& sample) noexcept 
   const double off = kNoiseShare * sample.force / kNoise;
   const double weight = 1 / (1 + off * off);
   if (depth <= 0) {
-    equations_.square += sample.force * sample.force;
-    equations_.weighted += weight * sample.force * sample.force;
+    equations_.square += weight * sample.force * sample.force;
     return;
   }
   const Shaped shape = shaped(depth);
@@ -185,8 +184,7 @@ void BreathingEstimator::add(const Guess& guess, const Sample& sample) noexcept 
   }
   for (std::size_t k = 0; k < kTimes; ++k) force -= tissue.relaxing[k] * sample.past[k];
   const double left = sample.force - force;
-  equations_.square += left * left;
-  equations_.weighted += weight * left * left;
+  equations_.square += weight * left * left;
   std::array<double, kUnknowns> row{};
   if (here) {
     for (std::size_t j = 0; j < kShapes; ++j) row[j] = shape.value[j];
@@ -230,7 +228,7 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
   Tissue& here = guess.tissues[slot(place_)];
   constexpr double kVariance = kNoise * kNoise;
   guess.square = e.square / e.count;
-  guess.cost = e.weighted / kVariance;
+  guess.cost = e.square / kVariance;
   const bool swings = pace > 0;
   const auto expect = [&](std::size_t unknown, double value, double expected, double spread) {
     const double off = (value - expected) / spread;

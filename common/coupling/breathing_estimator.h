@@ -88,8 +88,7 @@ class BreathingEstimator {
   };
   struct Equations {
     SmallSystem<kUnknowns> system;  ///< [N^2], by unknowns
-    double square{};                ///< [N^2]
-    double weighted{};              ///< [N^2], the same by what each sample is worth
+    double square{};                ///< [N^2], weighted
     double time{};                  ///< [s], sum
     double count{};                 ///< [-]
   };
