@@ -40,7 +40,8 @@ constexpr int kSamplesATick = 10;
 constexpr int kSamplesATickStill = 4;  // once the surface is known to stand still
 constexpr std::uint32_t kRounds = 12;  // through all samples, after the newest of them
 constexpr double kNoise = 8e-3;        // [N], of a sample, with what no such tissue explains,
-constexpr double kNoiseShare = 0.05;   // [-], and of the force
+constexpr double kNoiseShare = 0.05;   // [-], and of the force: paces are judged by both, tissue by
+                                       // the first, or it would be found too soft
 constexpr double kDamped = 0.02;       // [-], of Marquardt
 constexpr double kFloor = 1e-9;        // [N^2], so that no unknown is without an equation
 constexpr double kStepMax = 0.5;       // [mm], of one improvement
@@ -195,9 +196,8 @@ void BreathingEstimator::add(const Guess& guess, const Sample& sample) noexcept 
   row[kSine] = -slope * s;
   row[kRate] = -slope * tau * (guess.sine * c - guess.cosine * s) / kModelDepthScale;
   for (std::size_t i = 0; i < kUnknowns; ++i) {
-    const double weighted = weight * row[i];
-    equations_.system.right[i] += weighted * left;
-    for (std::size_t j = 0; j <= i; ++j) equations_.system.matrix[i][j] += weighted * row[j];
+    equations_.system.right[i] += row[i] * left;
+    for (std::size_t j = 0; j <= i; ++j) equations_.system.matrix[i][j] += row[i] * row[j];
   }
 }
 

@@ -22,11 +22,10 @@ void HeldForce::step(const ModelPayload& model, double position, double force) n
   share_ *= std::exp(-moved / kForgotten);
   if (model.version == 0) return;
   const double depth = position - model.surface - model.swing;
-  given_.age_into(contact_model(model), model.relaxing, depth, period_);
-  model_force_ = given_.force(depth);
+  given_.age_into(contact_model(corrected(model)), model.relaxing, depth, period_);
+  force_ = given_.force(depth);
   const double still = std::max(0.0, 1 - speed_ / kMoves);
-  const double left = force - this->force();
-  share_ += still * period_ / kTime * left / std::max(model_force_, kForceLeast);
+  share_ += still * period_ / kTime * (force - force_) / std::max(force_, kForceLeast);
   share_ = std::clamp(share_, -kShareMost, kShareMost);
 }
 

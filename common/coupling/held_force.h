@@ -19,7 +19,7 @@ class HeldForce {
   /// As it is told.
   [[nodiscard]] ModelPayload corrected(ModelPayload model) const noexcept;
   /// [N], of a tip there, as it is told.
-  [[nodiscard]] double force() const noexcept { return (1 + share_) * model_force_; }
+  [[nodiscard]] double force() const noexcept { return force_; }
   /// Another place.
   void forget() noexcept { share_ = 0; }
 
@@ -28,7 +28,7 @@ class HeldForce {
   double position_{};      ///< [m], at the tick before
   double speed_{};         ///< [m/s], of the tip, lately
   RelaxingContact given_;  ///< what a hand at the tip would be given
-  double model_force_{};   ///< [N], of the model at the tip
+  double force_{};         ///< [N], of it
   double share_{};         ///< [-], that the model is told stronger
 };
 

@@ -79,6 +79,37 @@ TEST(BreathingEstimatorTest, AnotherPlaceBreathesWithTheSameBreath) {
   EXPECT_NEAR(swing.surface() + swing.swing().now, 2e-3 + breath(25), 0.1e-3);
 }
 
+TEST(BreathingEstimatorTest, ADragOverManyPlacesDoesNotEndABreath) {
+  const auto breath = [](double t) { return 1e-3 * std::sin(1.6 * t); };
+  BreathingEstimator swing{kPeriod};
+  palpate(swing, 0, 16, breath);
+  ASSERT_TRUE(swing.believed());
+  double t = 16;
+  for (int place = 0; place < 20; ++place) {
+    swing.new_place();
+    for (int tick = 0; tick < 150; ++tick, t += kPeriod) {
+      swing.step();
+      swing.see(3e-3, hertz(3e-3 - breath(t)));
+    }
+    ASSERT_TRUE(swing.believed()) << place;
+    EXPECT_NEAR(swing.swing().now, breath(t), 0.2e-3) << place;
+  }
+}
+
+TEST(BreathingEstimatorTest, AReadingBelowZeroWhereAnotherPlaceBeginsDoesNotEndABreath) {
+  const auto breath = [](double t) { return 1e-3 * std::sin(1.6 * t); };
+  BreathingEstimator swing{kPeriod};
+  palpate(swing, 0, 16, breath);
+  swing.step();
+  swing.see(3e-3, 0.2);
+  swing.new_place();
+  swing.step();
+  swing.see(-3e-3, -0.02);
+  palpate(swing, 16, 9, breath);
+  ASSERT_TRUE(swing.believed());
+  EXPECT_NEAR(swing.surface() + swing.swing().now, breath(25), 0.1e-3);
+}
+
 TEST(BreathingEstimatorTest, WhatRelaxesIsNoSoftness) {
   BreathingEstimator swing{kPeriod};
   double past = 0;

@@ -102,6 +102,26 @@ TEST(ContactEstimatorTest, FindsWhatATissueThatRelaxesComesTo) {
   }
 }
 
+TEST(ContactEstimatorTest, WhatIsHeldIsToldAsItIsMeasuredBeforeTheFitKnowsWhy) {
+  ContactEstimatorConfig config;
+  config.sensor.step = 0;
+  ContactEstimator estimator{config};
+  LowPass pole{config.sensor.pole, config.period};
+  RelaxingContact given;
+  double past = 0;
+  double position = -3e-3;
+  for (int tick = 0; tick < 3300; ++tick) {
+    if (tick > 1000) position = std::min(4e-3, position + 10e-6);
+    past += 1e-3 / 1.5 * (hertz(position) - past);
+    const double force = 1.4 * hertz(position) - 0.4 * past;
+    estimator.step(position, pole.step(std::max(0.0, force)));
+    const ModelPayload& told = estimator.model();
+    given.age_into(contact_model(told), told.relaxing, position - told.surface, 1e-3);
+    if (tick < 2500) continue;
+    EXPECT_NEAR(given.force(position - told.surface) / force, 1, 0.03) << tick;
+  }
+}
+
 TEST(ContactEstimatorTest, DampingIsNoStiffnessAndDoesNotRelax) {
   double before = 0;
   const auto tissue = [&](double depth) {
