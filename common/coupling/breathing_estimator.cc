@@ -16,26 +16,24 @@ using std::numbers::pi;
 constexpr double kSlowest = 2 * pi * 0.10;  // [rad/s]
 constexpr double kFastest = 2 * pi * 0.60;  // [rad/s]
 // A short arc fits many paces: an adult at rest breathes 12 to 20 times a minute.
-constexpr double kUsual = 2 * pi * 0.26;       // [rad/s]
-constexpr double kUnusual = 8;                 // [-], cost of an octave
-constexpr double kSeenFor = 4;                 // [s], since the first sight, to believe a breath
-constexpr double kStillSeenFor = 2;            // [s], to believe that there is none
-constexpr double kSamplesMin = 30;             // to say anything
-constexpr double kAmplitudeMin = 0.2e-3;       // [m]
-constexpr double kStillBelow = 0.35e-3;        // [m]
-constexpr double kStillBelowSoon = 0.2e-3;     // [m], before a breath can be believed
-constexpr double kAmplitudeMax = 4e-3;         // [m]
-constexpr double kExplainedMin = 0.6;          // [-], to begin believing
-constexpr double kClearly = 0.5;               // [-], of what a tissue at rest leaves, to begin
-constexpr double kExplainedLeast = 0.3;        // [-], to go on
-constexpr double kPresenceTime = 0.3;          // [s]
-constexpr double kContact = 0.03;              // [N]
-constexpr double kAfterContact = 0.05;         // [s]
-constexpr double kSampleEvery = 0.08;          // [s]
-constexpr double kSampleSoonest = 0.025;       // [s], where the tip moves
-constexpr double kSampleDistance = 0.15e-3;    // [m]
-constexpr std::uint32_t kNowhere = 1U << 31U;  // added to the number of a place: no such place
-constexpr std::ptrdiff_t kFew = 10;            // samples at a place that say nothing
+constexpr double kUsual = 2 * pi * 0.26;     // [rad/s]
+constexpr double kUnusual = 8;               // [-], cost of an octave
+constexpr double kSeenFor = 4;               // [s], since the first sight, to believe a breath
+constexpr double kStillSeenFor = 2;          // [s], to believe that there is none
+constexpr std::size_t kSamplesMin = 30;      // to say anything
+constexpr double kAmplitudeMin = 0.2e-3;     // [m]
+constexpr double kStillBelow = 0.35e-3;      // [m]
+constexpr double kStillBelowSoon = 0.2e-3;   // [m], before a breath can be believed
+constexpr double kAmplitudeMax = 4e-3;       // [m]
+constexpr double kExplainedMin = 0.6;        // [-], to begin believing
+constexpr double kClearly = 0.5;             // [-], of what a tissue at rest leaves, to begin
+constexpr double kExplainedLeast = 0.3;      // [-], to go on
+constexpr double kPresenceTime = 0.3;        // [s]
+constexpr double kContact = 0.03;            // [N]
+constexpr double kAfterContact = 0.05;       // [s]
+constexpr double kSampleEvery = 0.08;        // [s]
+constexpr double kSampleSoonest = 0.025;     // [s], where the tip moves
+constexpr double kSampleDistance = 0.15e-3;  // [m]
 constexpr int kSamplesATick = 10;
 constexpr int kSamplesATickStill = 4;  // once the surface is known to stand still
 constexpr std::uint32_t kRounds = 12;  // through all samples, after the newest of them
@@ -82,7 +80,7 @@ double Swing::after(double span) const noexcept {
 BreathingEstimator::BreathingEstimator(double period) noexcept : period_{period} {
   for (std::size_t i = 0; i < guesses_.size(); ++i) {
     Guess& guess = guesses_[i];
-    for (Tissue& tissue : guess.tissues) tissue.shape = kShapeExpected;
+    guess.here.shape = guess.before.shape = kShapeExpected;
     guess.rate = i == 0 ? 0 : rate_of(static_cast<double>(i) - 0.5);
   }
 }
@@ -94,21 +92,14 @@ void BreathingEstimator::step() noexcept {
   fit_some();
 }
 
-/// Each place keeps its tissue, so that a breath found at one is not lost at the next. A place
-/// where the tip hardly stayed, as in a drag, says nothing of a breath.
+/// The oldest place of three is forgotten; of the last its tissue is taken as it was found.
 void BreathingEstimator::new_place() noexcept {
   if (!touched_) return;
-  const auto here = [this](const Sample& sample) { return sample.place == place_; };
-  const auto end = samples_.begin() + static_cast<std::ptrdiff_t>(count_);
-  if (std::count_if(samples_.begin(), end, here) < kFew) {
-    for (Sample& sample : samples_) {
-      if (here(sample)) sample.place = place_ + kNowhere;
-    }
-  }
-  for (Guess& guess : guesses_) guess.tissues[slot(place_ + 1)] = guess.tissues[slot(place_)];
   ++place_;
   touched_ = false;
   contact_at_ = -1;
+  here_ = 0;
+  for (Guess& guess : guesses_) guess.before = guess.here;
   at_guess_ = at_sample_ = 0;
   equations_ = {};
 }
@@ -125,9 +116,8 @@ void BreathingEstimator::see(double position, double force) noexcept {
       const double tau = time_ - guess.origin;
       const double swing =
           guess.cosine * std::cos(guess.rate * tau) + guess.sine * std::sin(guess.rate * tau);
-      Tissue& tissue = guess.tissues[slot(place_)];
-      const double depth = std::pow(force / std::max(0.01, tissue.shape[0]), 2.0 / 3);
-      tissue.surface = position - swing - kModelDepthScale * std::min(depth, 2.0);
+      const double depth = std::pow(force / std::max(0.01, guess.here.shape[0]), 2.0 / 3);
+      guess.here.surface = position - swing - kModelDepthScale * std::min(depth, 2.0);
     }
   } else if (count_ > 0) {
     const Sample& last = samples_[(next_ + kSamples - 1) % kSamples];
@@ -138,6 +128,7 @@ void BreathingEstimator::see(double position, double force) noexcept {
   samples_[next_] = {time_, position, force, past_, place_};
   next_ = (next_ + 1) % kSamples;
   count_ = std::min(count_ + 1, kSamples);
+  ++here_;
   rounds_ = kRounds;
 }
 
@@ -156,13 +147,13 @@ void BreathingEstimator::fit_some() noexcept {
       return;
     }
     const Sample& sample = samples_[at_sample_++];
-    if (place_ - sample.place < kPlaces) add(guesses_[at_guess_], sample);
+    if (sample.place + 1 >= place_) add(guesses_[at_guess_], sample);
   }
 }
 
 void BreathingEstimator::add(const Guess& guess, const Sample& sample) noexcept {
   const bool here = sample.place == place_;
-  const Tissue& tissue = guess.tissues[slot(sample.place)];
+  const Tissue& tissue = here ? guess.here : guess.before;
   const double tau = sample.at - guess.origin;
   const double c = std::cos(guess.rate * tau);
   const double s = std::sin(guess.rate * tau);
@@ -225,7 +216,6 @@ void BreathingEstimator::count_from(double origin, Guess& guess) noexcept {
 void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
   Equations& e = equations_;
   if (e.count < 1) return;
-  Tissue& here = guess.tissues[slot(place_)];
   constexpr double kVariance = kNoise * kNoise;
   guess.square = e.square / e.count;
   guess.cost = e.square / kVariance;
@@ -237,10 +227,10 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
     e.system.right[unknown] -= kVariance * off / spread;
   };
   for (std::size_t j = 0; j < kShapes; ++j) {
-    expect(j, here.shape[j], kShapeExpected[j], kShapeSpread[j]);
+    expect(j, guess.here.shape[j], kShapeExpected[j], kShapeSpread[j]);
   }
   for (std::size_t k = 0; k < kTimes; ++k) {
-    expect(kRelaxes + k, here.relaxing[k], 0, kRelaxingSpread);
+    expect(kRelaxes + k, guess.here.relaxing[k], 0, kRelaxingSpread);
   }
   const double middle = rate_of(static_cast<double>(pace) - 0.5);
   if (swings) {
@@ -254,7 +244,9 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
   std::array<bool, kUnknowns> open{};
   for (std::size_t i = 0; i < (swings ? kUnknowns : kCosine); ++i) {
     const bool share = i >= kRelaxes && i < kCosine;
-    const double now = i < kShapes ? here.shape[i] : share ? here.relaxing[i - kRelaxes] : 1;
+    const double now = i < kShapes ? guess.here.shape[i]
+                       : share     ? guess.here.relaxing[i - kRelaxes]
+                                   : 1;
     open[i] = now > 0 || e.system.right[i] > 0;
   }
   const std::array<double, kUnknowns> by = solved(open);
@@ -263,11 +255,12 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
       std::max({std::abs(by[kSurface]), std::abs(by[kCosine]), std::abs(by[kSine])});
   const double share = most > kStepMax ? kStepMax / most : 1;
   for (std::size_t j = 0; j < kShapes; ++j) {
-    here.shape[j] = std::max(0.0, here.shape[j] + share * by[j]);
+    guess.here.shape[j] = std::max(0.0, guess.here.shape[j] + share * by[j]);
   }
-  here.surface += share * by[kSurface] * kModelDepthScale;
+  guess.here.surface += share * by[kSurface] * kModelDepthScale;
   for (std::size_t k = 0; k < kTimes; ++k) {
-    here.relaxing[k] = std::clamp(here.relaxing[k] + share * by[kRelaxes + k], 0.0, 1.0);
+    guess.here.relaxing[k] =
+        std::clamp(guess.here.relaxing[k] + share * by[kRelaxes + k], 0.0, 1.0);
   }
   if (!swings) return;
   guess.cosine += share * by[kCosine] * kModelDepthScale;
@@ -280,7 +273,9 @@ void BreathingEstimator::improve(Guess& guess, std::size_t pace) noexcept {
 
 void BreathingEstimator::judge() noexcept {
   const double seen_for = time_ - first_seen_;
-  if (seen_for < kStillSeenFor || static_cast<double>(count_) < kSamplesMin) return;
+  if (seen_for < kStillSeenFor || count_ < kSamplesMin) return;
+  // A place that is hardly known ends no belief: with few samples any pace fits any tissue.
+  if (believed_ && here_ < kSamplesMin) return;
   best_ = 1;
   for (std::size_t i = 2; i < guesses_.size(); ++i) {
     if (guesses_[i].cost < guesses_[best_].cost) best_ = i;
@@ -306,13 +301,11 @@ bool BreathingEstimator::settled() const noexcept {
   return still_ || (first_seen_ >= 0 && time_ - first_seen_ >= kSeenFor);
 }
 
-double BreathingEstimator::surface() const noexcept {
-  return guesses_[best_].tissues[slot(place_)].surface;
-}
+double BreathingEstimator::surface() const noexcept { return guesses_[best_].here.surface; }
 
 /// Of a tissue that has let go of nothing yet the force is larger by what relaxes.
 std::array<double, BreathingEstimator::kShapes> BreathingEstimator::shapes() const noexcept {
-  std::array<double, kShapes> slow = guesses_[best_].tissues[slot(place_)].shape;
+  std::array<double, kShapes> slow = guesses_[best_].here.shape;
   double gain = 1;
   for (const double share : relaxing()) gain += share;
   for (double& shape : slow) shape /= gain;
@@ -320,7 +313,7 @@ std::array<double, BreathingEstimator::kShapes> BreathingEstimator::shapes() con
 }
 
 const BreathingEstimator::Shares& BreathingEstimator::relaxing() const noexcept {
-  return guesses_[best_].tissues[slot(place_)].relaxing;
+  return guesses_[best_].here.relaxing;
 }
 
 Swing BreathingEstimator::swing() const noexcept {

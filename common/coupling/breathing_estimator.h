@@ -60,7 +60,6 @@ class BreathingEstimator {
 
  private:
   static constexpr std::size_t kSamples = 384;
-  static constexpr std::uint32_t kPlaces = 8;  ///< whose samples count
   /// And surface, what relaxes, cosine, sine, rate.
   static constexpr std::size_t kUnknowns = kShapes + kTimes + 4;
 
@@ -78,13 +77,14 @@ class BreathingEstimator {
   };
   /// What is supposed at one pace; the first supposes a surface at rest.
   struct Guess {
-    std::array<Tissue, kPlaces> tissues;  ///< of the last places, by slot(); as they were found
-    double cosine{};                      ///< [m]
-    double sine{};                        ///< [m]
-    double rate{};                        ///< [rad/s]
-    double origin{};                      ///< [s], of the phase
-    double square{};                      ///< [N^2], of what is left, mean
-    double cost{};                        ///< [-]
+    Tissue here;
+    Tissue before;    ///< at the last place, as it was found there
+    double cosine{};  ///< [m]
+    double sine{};    ///< [m]
+    double rate{};    ///< [rad/s]
+    double origin{};  ///< [s], of the phase
+    double square{};  ///< [N^2], of what is left, weighted mean
+    double cost{};    ///< [-]
   };
   struct Equations {
     SmallSystem<kUnknowns> system;  ///< [N^2], by unknowns
@@ -93,7 +93,6 @@ class BreathingEstimator {
     double count{};                 ///< [-]
   };
 
-  [[nodiscard]] static std::size_t slot(std::uint32_t place) noexcept { return place % kPlaces; }
   void fit_some() noexcept;
   void add(const Guess& guess, const Sample& sample) noexcept;
   [[nodiscard]] std::array<double, kUnknowns> solved(
@@ -107,6 +106,7 @@ class BreathingEstimator {
   std::array<Sample, kSamples> samples_{};
   std::size_t count_{};
   std::size_t next_{};
+  std::size_t here_{};  ///< samples at this place
   std::uint32_t place_{};
   bool touched_{};         ///< this place
   Shares past_{};          ///< [N], the force on exponential averages

@@ -85,15 +85,21 @@ TEST(BreathingEstimatorTest, ADragOverManyPlacesDoesNotEndABreath) {
   palpate(swing, 0, 16, breath);
   ASSERT_TRUE(swing.believed());
   double t = 16;
-  for (int place = 0; place < 20; ++place) {
+  for (int place = 0; place < 40; ++place) {
     swing.new_place();
-    for (int tick = 0; tick < 150; ++tick, t += kPeriod) {
+    const double stiffer = 1 + 0.5 * std::sin(1.3 * place);
+    for (int tick = 0; tick < 500; ++tick, t += kPeriod) {
+      const double tip = 3e-3 + 0.5e-3 * std::sin(2.1 * place + 2e-3 * tick);
       swing.step();
-      swing.see(3e-3, hertz(3e-3 - breath(t)));
+      swing.see(tip, stiffer * hertz(tip - breath(t)));
     }
     ASSERT_TRUE(swing.believed()) << place;
     EXPECT_NEAR(swing.swing().now, breath(t), 0.2e-3) << place;
   }
+  swing.new_place();
+  palpate(swing, t, 1.4, breath);
+  ASSERT_TRUE(swing.believed());
+  EXPECT_NEAR(swing.swing().now, breath(t + 1.4), 0.1e-3);
 }
 
 TEST(BreathingEstimatorTest, AReadingBelowZeroWhereAnotherPlaceBeginsDoesNotEndABreath) {
