@@ -370,7 +370,8 @@ void ContactEstimator::look(double halfway, double force) noexcept {
   relax();
   collect(force);
   if (model_.version > 0) model_.residual = force - predicted();
-  held_.step(model_, sensed_.raw_tip, force - noise_.bias(held_.force(), config_.sensor.step));
+  const double bias = noise_.bias(held_.force(), config_.sensor.step);
+  held_.step(model_, sensed_.raw_tip, force - bias, noise_.doubt());
 }
 
 void ContactEstimator::step(double position, double force, std::int64_t periods) noexcept {

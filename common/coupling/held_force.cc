@@ -15,7 +15,10 @@ constexpr double kShareMost = 0.5;     // [-]
 
 }  // namespace
 
-void HeldForce::step(const ModelPayload& model, double position, double force) noexcept {
+void HeldForce::step(const ModelPayload& model,
+                     double position,
+                     double force,
+                     double doubt) noexcept {
   const double moved = std::abs(position - position_);
   position_ = position;
   speed_ += period_ / kLately * (moved / period_ - speed_);
@@ -25,7 +28,9 @@ void HeldForce::step(const ModelPayload& model, double position, double force) n
   given_.age_into(contact_model(corrected(model)), model.relaxing, depth, period_);
   force_ = given_.force(depth);
   const double still = std::max(0.0, 1 - speed_ / kMoves);
-  share_ += still * period_ / kTime * (force - force_) / std::max(force_, kForceLeast);
+  const double off = force - force_;
+  const double left = off - std::clamp(off, -doubt, doubt);
+  share_ += still * period_ / kTime * left / std::max(force_, kForceLeast);
   share_ = std::clamp(share_, -kShareMost, kShareMost);
 }
 

@@ -14,8 +14,8 @@ class HeldForce {
   explicit HeldForce(double period) noexcept : period_{period} {}  ///< [s], of step()
 
   /// Once a tick: the tip at `position` [m], half of its way in this tick on average, meets `force`
-  /// [N], both through the same filter.
-  void step(const ModelPayload& model, double position, double force) noexcept;
+  /// [N], both through the same filter. The force may be off by `doubt` [N].
+  void step(const ModelPayload& model, double position, double force, double doubt = 0) noexcept;
   /// As it is told.
   [[nodiscard]] ModelPayload corrected(ModelPayload model) const noexcept;
   /// [N], of a tip there, as it is told.

@@ -13,6 +13,7 @@ using std::numbers::pi;
 
 constexpr std::uint32_t kTicks = 1000;    // 1 s in the air
 constexpr std::uint32_t kTicksMin = 200;  // before them nobody knows what noise is
+constexpr double kCorrected = 0.4;  // [-], of the steps: of more the correction would run ahead
 
 }  // namespace
 
@@ -28,10 +29,11 @@ bool SensorNoise::known() const noexcept { return ticks_ >= kTicksMin; }
 double SensorNoise::deviation() const noexcept { return std::sqrt(square_); }
 
 void SensorNoise::settle(double quantum) noexcept {
-  if (quantum <= 0 || square_ <= 0) return;
-  const double ratio = noise_over_quantum(square_ / (quantum * quantum));
-  // Above 0.4 the correction would run ahead of what it corrects.
-  dither_ = quantum / pi * std::min(0.4, std::exp(-2 * pi * pi * ratio * ratio));
+  if (quantum <= 0) return;
+  const double ratio = square_ > 0 ? noise_over_quantum(square_ / (quantum * quantum)) : 0;
+  const double left = std::exp(-2 * pi * pi * ratio * ratio);  // of the steps, behind the blur
+  if (square_ > 0) dither_ = quantum / pi * std::min(kCorrected, left);
+  doubt_ = quantum / 2 * std::max(0.0, left - kCorrected) / (1 - kCorrected);
 }
 
 /// First harmonic of the sawtooth, smoothed (Widrow and Kollar, Quantization Noise, ch. 4).

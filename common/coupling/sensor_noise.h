@@ -20,11 +20,14 @@ class SensorNoise {
   void settle(double quantum) noexcept;
   /// [N], mean error of a reading at `force` [N].
   [[nodiscard]] double bias(double force, double quantum) const noexcept;
+  /// [N], so far off may the mean of many readings be without it: too little noise to blur steps.
+  [[nodiscard]] double doubt() const noexcept { return doubt_; }
 
  private:
   double square_{};  ///< [N^2]
   std::uint32_t ticks_{};
   double dither_{};  ///< [N], amplitude of the bias
+  double doubt_{};   ///< [N]
 };
 
 }  // namespace palp::coupling

@@ -46,11 +46,13 @@ class Servo {
   double velocity_{};  ///< [m/s]
 };
 
-/// The transducer as the simulated one: its pole, without noise and steps.
+/// The transducer as the simulated one, and as the laws are told: its pole, without noise and
+/// steps.
+constexpr PatientDevices kDevices{.sensor = {.step = 0, .noise = 0}};
 class Transducer {
  public:
   double read(double force) noexcept {
-    const double share = 1 - std::exp(-2 * std::numbers::pi * ForceSensorFacts{}.pole * kPeriod);
+    const double share = 1 - std::exp(-2 * std::numbers::pi * kDevices.sensor.pole * kPeriod);
     value_ += share * (force - value_);
     return value_;
   }
@@ -106,12 +108,12 @@ class Loop {
   Loop(const TwoPortSetup& setup, double begins_at)
       : round_trip_{from_seconds(setup.round_trip)},
         surgeon_{coupling::make_surgeon_coupling(setup.coupling).value()},
-        patient_{coupling::make_patient_coupling(setup.coupling).value()},
+        patient_{coupling::make_patient_coupling(setup.coupling, kDevices).value()},
         up_{0.5 * setup.round_trip},
         down_{0.5 * setup.round_trip},
         stage_{begins_at},
         hand_{begins_at} {
-    coupling::meet(surgeon_, PatientDevices{});
+    coupling::meet(surgeon_, kDevices);
     coupling::begin_epoch(surgeon_, begins_at);
     coupling::begin_epoch(patient_, begins_at);
   }

@@ -67,6 +67,14 @@ TEST(HeldForceTest, WhatWasHeldIsForgottenAsTheTipGoesOn) {
   EXPECT_EQ(told(held, kHeldAt), contact_model(spring()).force(kHeldAt)) << "another place";
 }
 
+TEST(HeldForceTest, WhatACoarseSensorMayBeOffByIsNotLearned) {
+  HeldForce held{kPeriod};
+  for (int tick = 0; tick < 3000; ++tick) held.step(spring(), kHeldAt, 300 * kHeldAt + 0.02, 0.025);
+  EXPECT_NEAR(held.force(), 300 * kHeldAt, 1e-9);
+  for (int tick = 0; tick < 3000; ++tick) held.step(spring(), kHeldAt, 300 * kHeldAt + 0.1, 0.025);
+  EXPECT_NEAR(held.force(), 300 * kHeldAt + 0.075, 1e-3);
+}
+
 TEST(HeldForceTest, AModelThatIsFarOffIsNotMadeAnother) {
   for (const double stiffness : {0.0, 3000.0}) {
     HeldForce held{kPeriod};

@@ -50,6 +50,17 @@ TEST(SensorNoiseTest, TheBiasIsTheMeanErrorOfRounding) {
   }
 }
 
+TEST(SensorNoiseTest, WithLittleNoiseTheMeanOfManyReadingsIsInDoubt) {
+  const auto doubt = [](double spread, double quantum) {
+    SensorNoise noise = heard(spread, 4000);
+    noise.settle(quantum);
+    return noise.doubt();
+  };
+  EXPECT_EQ(doubt(0, kQuantum), kQuantum / 2);
+  EXPECT_EQ(doubt(0.3 * kQuantum, kQuantum), 0);
+  EXPECT_EQ(doubt(0.3 * kQuantum, 0), 0);
+}
+
 TEST(SensorNoiseTest, WithoutStepsOrWithoutNoiseThereIsNoBias) {
   SensorNoise fine = heard(0.02, 1000);
   fine.settle(0);

@@ -72,7 +72,7 @@ TEST(ShortForceTest, ATissueStifferThanMayBeShownIsCalledSo) {
 }
 
 TEST(ShortForceTest, ATissueThatBreathesAgainstAModelAtRestIsCalledMore) {
-  for (const int round_trip_ms : {0, 100, 300}) {
+  for (const int round_trip_ms : {100, 300}) {
     std::vector<std::string> settings = path_of(round_trip_ms);
     settings.emplace_back("patient.simulated_phantom.breathing_mm=1.5");
     settings.emplace_back("patient.simulated_phantom.breathing_hz=0.3");
