@@ -39,8 +39,8 @@ ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcep
       sensed_{.tip = {config.sensor.pole, config.period}},
       held_{config.period},
       swing_{config.period} {
-  expected_[1] = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
-  here_.expected = expected_;
+  expected_.c[1] = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
+  here_.expected = expected_.c;
 }
 
 double ContactEstimator::surface_of(std::size_t candidate) const noexcept {
@@ -61,10 +61,10 @@ void ContactEstimator::place_grid(double centre) noexcept {
     const double xi = std::max(0.0, sensed_.tip.value() - surface_of(i)) / kModelDepthScale;
     const auto shapes = model_shapes(xi);
     for (std::size_t term = 0; term < kModelTerms; ++term) shapes_[term][i] = shapes[term];
-    found_[i] = expected_;
+    found_[i] = expected_.c;
   }
   best_ = kMiddle;
-  surface_expected_ = centre;
+  expected_.surface = centre;
   placed_ = true;
 }
 
@@ -72,11 +72,11 @@ void ContactEstimator::place_grid(double centre) noexcept {
 /// forgotten. Where no breath is believed yet, one may be why it walks.
 void ContactEstimator::begin_again() noexcept {
   if (model_.swing_rate > 0) swing_ = BreathingEstimator{config_.period};
-  expected_ = here_.expected;
+  expected_.c = here_.expected;
   sensed_.tip.reset(sensed_.raw_tip);
   sensed_.tip_mean = sensed_.raw_tip_mean;
   ContactModel believed{0, {}, kModelDepthMax};
-  std::copy_n(expected_.begin(), kModelTerms, believed.c.begin());
+  std::copy_n(expected_.c.begin(), kModelTerms, believed.c.begin());
   place_grid(sensed_.tip_mean - believed.depth(sensed_.force_mean));
 }
 
@@ -84,7 +84,7 @@ void ContactEstimator::begin_again() noexcept {
 void ContactEstimator::withdraw() noexcept {
   placed_ = here_.contact = false;
   doubt_.ticks = 0;
-  expected_ = here_.expected;
+  expected_.c = here_.expected;
   ++model_.version;
   model_.c = {};
   model_.stiffness = {};
@@ -239,7 +239,7 @@ void ContactEstimator::search() noexcept {
   const double swings = std::hypot(model_.swing, model_.swing_quadrature);
   if (surface_of(best_) + swings < here_.deepest_in_air - kAstray) return begin_again();
   if (best_ < kEdge || best_ + kEdge >= kCandidates) {
-    expected_ = winner.c;
+    expected_.c = winner.c;
     const KnotStiffness stiffness = spline_.stiffness();
     const double share = spline_.share();
     place_grid(surface_of(best_));
@@ -342,7 +342,7 @@ void ContactEstimator::begin_contact() noexcept {
   const double depth = std::cbrt(std::pow(sensed_.force_mean / config_.stiffness_expected, 2));
   place_grid(sensed_.tip_mean - depth);
   Solution prior;
-  prior.c = expected_;
+  prior.c = expected_.c;
   here_.deepest = sensed_.tip_mean;
   doubt_.tip = sensed_.tip.value();
   doubt_.ticks = kDoubtTicks;
@@ -379,7 +379,7 @@ void ContactEstimator::step(double position, double force, std::int64_t periods)
   const double halfway = sense(position, force);
   watch_surface();
   look(halfway, force);
-  told_ = held_.corrected(model_);
+  held_.tell(model_);
 }
 
 }  // namespace palp::coupling

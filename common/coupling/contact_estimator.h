@@ -45,7 +45,7 @@ class ContactEstimator {
   /// becomes what is expected.
   void new_place(const Place& place) noexcept;
 
-  [[nodiscard]] const ModelPayload& model() const noexcept { return told_; }
+  [[nodiscard]] const ModelPayload& model() const noexcept { return held_.told(); }
 
  private:
   static constexpr std::size_t kCandidates = 64;
@@ -148,6 +148,11 @@ class ContactEstimator {
     /// speed [N m/s].
     std::array<double, kTerms - kModelTerms> terms{};
   };
+  /// Before the data say anything else.
+  struct Expected {
+    Terms c{};         ///< [N]
+    double surface{};  ///< [m]
+  };
   /// What was felt at this place.
   struct Here {
     bool contact{};
@@ -180,11 +185,9 @@ class ContactEstimator {
   std::array<Terms, kCandidates> found_{};  ///< the last solution of each
   std::size_t best_{};
   std::uint32_t turn_{};
-  Terms expected_{};           ///< [N]
-  double surface_expected_{};  ///< [m]
+  Expected expected_;
   ModelPayload model_;
   HeldForce held_;
-  ModelPayload told_;  ///< as it is known at a tip that rests
   BreathingEstimator swing_;
   Here here_;
   Places places_;

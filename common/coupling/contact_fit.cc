@@ -48,7 +48,7 @@ ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate, bool r
     const double spread = closed ? kClosed * kSpread[row] : kSpread[row];
     const double prior = noise / (spread * spread);
     a[row][row] += prior;
-    b[row] = right_[row][candidate] + (closed ? 0 : prior * expected_[row]);
+    b[row] = right_[row][candidate] + (closed ? 0 : prior * expected_.c[row]);
   }
 
   Terms& c = found_[candidate];
@@ -58,9 +58,9 @@ ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate, bool r
     double product = 0;
     for (std::size_t column = 0; column < kTerms; ++column) product += a[row][column] * c[column];
     cost += c[row] * (product - 2 * b[row]);
-    cost += noise * (expected_[row] / kSpread[row]) * (expected_[row] / kSpread[row]);
+    cost += noise * (expected_.c[row] / kSpread[row]) * (expected_.c[row] / kSpread[row]);
   }
-  const double off = (surface_of(candidate) - surface_expected_) / config_.surface_spread;
+  const double off = (surface_of(candidate) - expected_.surface) / config_.surface_spread;
   return {c, cost + noise * off * off};
 }
 

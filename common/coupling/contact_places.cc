@@ -66,7 +66,7 @@ void ContactEstimator::new_place(const Place& place) noexcept {
   const Known* there = known_at(place);
   if (!placed_ && there == nullptr) return;
   const Known& expected = there != nullptr ? *there : last_known();
-  expected_ = here_.expected = expected.c;
+  expected_.c = here_.expected = expected.c;
   place_grid(expected.surface);
   spline_.expect(expected.stiffness, expected.spline_share);
   if (there == nullptr) return;
@@ -74,7 +74,7 @@ void ContactEstimator::new_place(const Place& place) noexcept {
   Solution again;
   again.c = expected.c;
   publish(again);
-  told_ = model_;
+  held_.tell(model_);
 }
 
 }  // namespace palp::coupling

@@ -16,20 +16,24 @@ class HeldForce {
   /// Once a tick: the tip at `position` [m], half of its way in this tick on average, meets `force`
   /// [N], both through the same filter. The force may be off by `doubt` [N].
   void step(const ModelPayload& model, double position, double force, double doubt = 0) noexcept;
-  /// As it is told.
-  [[nodiscard]] ModelPayload corrected(ModelPayload model) const noexcept;
+  /// From here on `model` is told, corrected.
+  void tell(const ModelPayload& model) noexcept { told_ = corrected(model); }
+  [[nodiscard]] const ModelPayload& told() const noexcept { return told_; }
   /// [N], of a tip there, as it is told.
   [[nodiscard]] double force() const noexcept { return force_; }
   /// Another place.
   void forget() noexcept { share_ = 0; }
 
  private:
+  [[nodiscard]] ModelPayload corrected(ModelPayload model) const noexcept;
+
   double period_;          ///< [s]
   double position_{};      ///< [m], at the tick before
   double speed_{};         ///< [m/s], of the tip, lately
   RelaxingContact given_;  ///< what a hand at the tip would be given
   double force_{};         ///< [N], of it
   double share_{};         ///< [-], that the model is told stronger
+  ModelPayload told_;
 };
 
 }  // namespace palp::coupling

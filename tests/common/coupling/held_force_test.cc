@@ -22,8 +22,9 @@ ModelPayload spring() {
   return model;
 }
 
-double told(const HeldForce& held, double position) {
-  return contact_model(held.corrected(spring())).force(position);
+double told(HeldForce& held, double position) {
+  held.tell(spring());
+  return contact_model(held.told()).force(position);
 }
 
 /// A tip that rests for `span` [s] on a tissue of `stiffness` [N/m].
