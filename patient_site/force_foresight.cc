@@ -30,7 +30,7 @@ void ForceForesight::feel(double tip, double force, std::optional<double> age) n
   if (!age) return;
   constexpr double kOldest = 127;
   const double late = std::clamp((*age + hidden_) / period_, 0.0, kOldest);
-  const auto ticks_ago = static_cast<std::size_t>(late + 0.5);
+  const auto ticks_ago = static_cast<std::size_t>(std::lround(late));
   readings_[count_++ % readings_.size()] = {
       .tip = tips_[(ticks_ + tips_.size() - ticks_ago) % tips_.size()],
       .force = force,
