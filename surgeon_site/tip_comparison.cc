@@ -35,14 +35,13 @@ void TipComparison::look(const Look& now, const PatientDevices& devices, double 
   now_.span += passed;
   // A hair: the sum of ten periods may fall short of ten.
   if (now_.span < kBin * (1 - 1e-6)) return;
-  const double position = now_.position / now_.span;
-  const double way = count_ == 0 ? 0 : position - position_;
-  given_[count_++ % kBins] = {now_.given / now_.span, way};
-  position_ = position;
   const double span = now_.span;
-  compare({now_.given / span, now_.measured / span, position, now_.tip / span, span},
-          now.round_trip,
-          devices);
+  const Sums mean{
+      now_.given / span, now_.measured / span, now_.position / span, now_.tip / span, span};
+  const double way = count_ == 0 ? 0 : mean.position - position_;
+  given_[count_++ % kBins] = {mean.given, way};
+  position_ = mean.position;
+  compare(mean, now.round_trip, devices);
   now_ = {};
 }
 

@@ -46,9 +46,10 @@ class Servo {
   double velocity_{};  ///< [m/s]
 };
 
-/// The transducer as the simulated one, and as the laws are told: its pole, without noise and
-/// steps.
+/// What the laws are told of the devices: the transducer has neither steps nor noise.
 constexpr PatientDevices kDevices{.sensor = {.step = 0, .noise = 0}};
+
+/// The transducer as the simulated one: its pole, without noise and steps.
 class Transducer {
  public:
   double read(double force) noexcept {
