@@ -89,6 +89,7 @@ SimulatedPhantomConfig make_simulation(const proto::config::SimulatedPhantom& me
   simulation.surface_offset = from_milli(message.surface_offset_mm());
   simulation.breathing_amplitude = from_milli(message.breathing_mm());
   simulation.breathing_frequency = message.breathing_hz();
+  simulation.breathing_variation = message.breathing_variation();
   simulation.can_drag = message.can_drag();
   simulation.viscous_factor = message.viscous_s_per_m();
   simulation.sensor_cut_off = message.sensor_pole_hz();

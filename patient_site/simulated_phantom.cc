@@ -45,6 +45,13 @@ PatientDevices facts_of(const SimulatedPhantomConfig& config) noexcept {
   return facts;
 }
 
+Breath breath_of(const SimulatedPhantomConfig& config) noexcept {
+  return Breath{{.amplitude = config.breathing_amplitude,
+                 .frequency = config.breathing_frequency,
+                 .variation = config.breathing_variation,
+                 .seed = config.seed}};
+}
+
 SimulatedPhantom::SimulatedPhantom(const Phantom& phantom, const SimulatedPhantomConfig& config)
     : config_{config},
       field_{make_field(phantom, config.viscous_factor)},
@@ -52,7 +59,8 @@ SimulatedPhantom::SimulatedPhantom(const Phantom& phantom, const SimulatedPhanto
       position_{config.start_position},
       place_{config.start_place},
       surface_{config.surface_offset + field_->surface(config.start_place)},
-      relaxing_{phantom.relaxation} {
+      relaxing_{phantom.relaxation},
+      breath_{breath_of(config)} {
   PALP_CHECK(config.servo_frequency > 0 && config.sensor_cut_off > 0, "frequencies are positive");
   const double omega = 2 * std::numbers::pi * config.servo_frequency;
   servo_stiffness_ = omega * omega;
@@ -112,17 +120,11 @@ void SimulatedPhantom::integrate_step() noexcept {
   place_ = {step_towards(place_.x, there.x, way_max), step_towards(place_.y, there.y, way_max)};
   ++steps_;
 
-  surface_ = config_.surface_offset + field_->surface(place_);
-  double surface_rate = 0;
-  if (config_.breathing_amplitude > 0) {
-    const double omega = 2 * std::numbers::pi * config_.breathing_frequency;
-    const double phase = omega * kStepSeconds * static_cast<double>(steps_);
-    surface_ += config_.breathing_amplitude * std::sin(phase);
-    surface_rate = config_.breathing_amplitude * omega * std::cos(phase);
-  }
+  const Breath::Motion breath = breath_.at(kStepSeconds * static_cast<double>(steps_));
+  surface_ = config_.surface_offset + field_->surface(place_) + breath.position;
   const double elastic =
       relaxing_.step(field_->elastic_force(place_, position_ - surface_), kStepSeconds);
-  const double rate = velocity_ - surface_rate;
+  const double rate = velocity_ - breath.velocity;
   contact_force_ = std::max(0.0, elastic * field_->growth(rate));
   tissue_energy_ += contact_force_ * velocity_ * kStepSeconds;
   sensed_force_ += sensor_gain_ * (contact_force_ - sensed_force_);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "patient_site/breath.h"
 #include "patient_site/force_sensor.h"
 #include "patient_site/phantom.h"
 #include "patient_site/stage.h"
@@ -24,15 +25,19 @@ struct SimulatedPhantomConfig {
   double surface_offset{0};       ///< [m], where the undeformed surface lies
   double breathing_amplitude{0};  ///< [m], of the surface
   double breathing_frequency{0};  ///< [Hz]
+  double breathing_variation{0};  ///< [-], from breath to breath; see BreathConfig
   double viscous_factor{0.5};     ///< [s/m]: F_c = f(d) (1 + factor * rate of d)
   double sensor_cut_off{20};      ///< [Hz], first-order pole of the transducer
   double force_noise{0.015};      ///< [N], rms, white, per sample; 0: none
   double force_quantum{0.05};     ///< [N], paper II.A: resolution of the transducer; 0: exact
-  std::uint64_t seed{1};          ///< of the force noise
+  std::uint64_t seed{1};          ///< of the force noise and of what varies in breathing
 };
 
 /// What such devices say of themselves.
 [[nodiscard]] PatientDevices facts_of(const SimulatedPhantomConfig& config) noexcept;
+
+/// How the surface of such a phantom breathes.
+[[nodiscard]] Breath breath_of(const SimulatedPhantomConfig& config) noexcept;
 
 /// The plant's own state, for judges: nothing of it may reach a node.
 struct PhantomTruth {
@@ -88,6 +93,7 @@ class SimulatedPhantom final : public Stage, public ForceSensor {
   double sensed_force_{};   ///< [N], behind the transducer's pole
   double tissue_energy_{};  ///< [J]
   RelaxingForce relaxing_;
+  Breath breath_;
 };
 
 }  // namespace palp::patient

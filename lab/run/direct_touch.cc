@@ -1,9 +1,7 @@
 #include "lab/run/direct_touch.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
-#include <numbers>
 
 #include "judge/drag_bump.h"
 #include "judge/swing_finder.h"
@@ -22,13 +20,13 @@ std::vector<TouchTick> direct_touch(const Scenario& scenario) {
   surgeon::HandPlant hand{scenario.hand.plant, script.at({}).position};
   double force = 0;
   std::vector<TouchTick> ticks;
+  patient::Breath breath = patient::breath_of(tissue);
   double depth = -1;  // [m]
   for (Duration at{}; at < script.length(); at += kStep) {
     const surgeon::Intent begin = script.at(at);
     const surgeon::Intent end = script.at(at + kStep);
     hand.advance({begin.position, begin.velocity}, {end.position, end.velocity}, force, kStep);
-    const double phase = 2 * std::numbers::pi * tissue.breathing_frequency * seconds(at + kStep);
-    const double surface = field->surface(end.place) + tissue.breathing_amplitude * std::sin(phase);
+    const double surface = field->surface(end.place) + breath.at(seconds(at + kStep)).position;
     const double before = depth;
     depth = hand.position() - surface;
     const double rate = (depth - before) / seconds(kStep);

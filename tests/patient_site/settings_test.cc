@@ -60,6 +60,7 @@ void add(settings_test::FieldList& list, const SimulatedPhantomConfig& simulatio
       .add("surface_offset", simulation.surface_offset)
       .add("breathing_amplitude", simulation.breathing_amplitude)
       .add("breathing_frequency", simulation.breathing_frequency)
+      .add("breathing_variation", simulation.breathing_variation)
       .add("viscous_factor", simulation.viscous_factor)
       .add("sensor_cut_off", simulation.sensor_cut_off)
       .add("force_noise", simulation.force_noise)
