@@ -5,11 +5,12 @@
 
 #include "common/core/result.h"
 #include "common/core/time.h"
+#include "surgeon_site/reaction.h"
 #include "surgeon_site/tanh_table.h"
 
 namespace palp::surgeon {
 
-/// Impedance of a hand at the device: a passive spring, damper and mass between intent and handle.
+/// Impedance of a hand at the device, at rest: a spring, damper and mass between intent and handle.
 struct Grip {
   double mass{};       ///< [kg], moves with the handle
   double damping{};    ///< [N s/m]
@@ -31,12 +32,24 @@ inline constexpr std::array<std::string_view, 4> kGripNames{"light", "mid", "fir
 /// Mechanics of the hand and of the haptic device's handle.
 struct HandPlantConfig {
   Grip grip{kMidGrip};
+  ReactionConfig reaction{};
   double mass{0.075};           ///< [kg], handle
   double damping{0.05};         ///< [N s/m], handle
   double friction{0.02};        ///< [N], Coulomb, as friction * tanh(v / friction_speed)
   double friction_speed{2e-3};  ///< [m/s]
   Duration step{std::chrono::microseconds{100}};  ///< of the integration, > 0
 };
+
+/// The most reflex [-] with which the hand does not swing by itself, whatever the delay, in air
+/// or against any spring: three quarters of where the small-gain theorem ends.
+///
+/// With A(jw) of the activation, a spring k_e >= 0 and no damping but the grip's, the hand is
+/// stable where reflex k |A| < |k + k_e - M w^2 + j b w| at all w, since a delay only turns the
+/// left side. Below w_n = sqrt(k/M) the right side is least without a spring; above, it is b w or
+/// more, and b w / |A| grows. So only w <= w_n count, with k_e = 0. Co-contraction raises k and w_n
+/// and keeps the damping ratio, so |A| falls and the border rises; that its slow change swings
+/// nothing either is swept by ReactionTest, as are springs that are sampled.
+[[nodiscard]] double reflex_borne(const HandPlantConfig& config) noexcept;
 
 /// Where the hand's intent is at one instant.
 struct Pull {
@@ -45,8 +58,9 @@ struct Pull {
 };
 
 /// (M + m_h) a = k_h (x_i - x) + b_h (v_i - v) - F - b_m v - friction: a hand at a handle that
-/// pushes back with F. Semi-implicit Euler in steps of `step`; F is held between calls, the intent
-/// is a cubic between its ends. A value; thread: rt-safe.
+/// pushes back with F. One that reacts has c k_h (x_i - x + r) + sqrt(c) b_h (v_i - v) instead, by
+/// its tension c and its reflex r (`Reaction`). Semi-implicit Euler in steps of `step`; F is held
+/// between calls, the intent is a cubic between its ends. A value; thread: rt-safe.
 class HandPlant {
  public:
   HandPlant(const HandPlantConfig& config, double position) noexcept;  ///< [m], at rest
@@ -60,8 +74,13 @@ class HandPlant {
   [[nodiscard]] double work() const noexcept { return work_; }
 
  private:
+  /// [N], of the hand on the handle; the handle is `stretch` [m] and `rate` [m/s] behind the
+  /// intent.
+  [[nodiscard]] double pull(double stretch, double rate, double load) noexcept;
+
   HandPlantConfig config_;
   TanhTable tanh_;
+  Reaction reaction_;
   double position_;    ///< [m]
   double velocity_{};  ///< [m/s]
   double work_{};      ///< [J]

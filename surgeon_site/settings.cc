@@ -1,6 +1,7 @@
 #include "surgeon_site/settings.h"
 
 #include "common/config/document.h"
+#include "common/core/formatted.h"
 #include "common/settings/units.h"
 #include "proto/config.pb.h"
 
@@ -18,6 +19,18 @@ Result<SimulatedHandConfig> make_hand(const proto::config::Hand& message) {
   hand.plant.mass = message.mass_kg();
   hand.plant.damping = message.damping_n_s_per_m();
   hand.plant.friction = message.friction_n();
+  hand.plant.reaction.reflex = message.reflex();
+  hand.plant.reaction.reflex_delay = settings::from_milliseconds(message.reflex_delay_ms());
+  hand.plant.reaction.co_contraction = message.co_contraction_per_n();
+  if (const double most = reflex_borne(hand.plant); message.reflex() > most) {
+    return fail(
+        formatted("hand.reflex %g is too much: grip '%s' on a device of %g kg may swing by "
+                  "itself beyond %.3f",
+                  message.reflex(),
+                  message.grip().c_str(),
+                  message.mass_kg(),
+                  most));
+  }
   hand.person.surface_offset = from_milli(message.surface_offset_mm());
   hand.person.engage_again = message.engage_again();
   hand.tremor = from_milli(message.tremor_mm());

@@ -43,6 +43,9 @@ std::string text_of(const Settings& settings) {
       .add("grip.mass", settings.hand.plant.grip.mass)
       .add("grip.damping", settings.hand.plant.grip.damping)
       .add("grip.stiffness", settings.hand.plant.grip.stiffness)
+      .add("reaction.reflex", settings.hand.plant.reaction.reflex)
+      .add("reaction.reflex_delay", settings.hand.plant.reaction.reflex_delay)
+      .add("reaction.co_contraction", settings.hand.plant.reaction.co_contraction)
       .add("plant.mass", settings.hand.plant.mass)
       .add("plant.damping", settings.hand.plant.damping)
       .add("plant.friction", settings.hand.plant.friction)
@@ -97,6 +100,9 @@ TEST(SurgeonSettingsTest, UnitsChangeAtTheBorder) {
                                        "loop.period_us=500",
                                        "hand.tremor_mm=0.5",
                                        "hand.encoder_um=10",
+                                       "hand.reflex=30%",
+                                       "hand.reflex_delay_ms=70",
+                                       "hand.co_contraction_per_n=0.2",
                                        "impairment.loss=5%",
                                        "duration_s=1.5"});
   EXPECT_EQ(made.link.watchdog.hold_after, std::chrono::milliseconds{40});
@@ -105,8 +111,29 @@ TEST(SurgeonSettingsTest, UnitsChangeAtTheBorder) {
   EXPECT_EQ(made.link.period, made.loop.period);
   EXPECT_EQ(made.hand.tremor, 0.5e-3);
   EXPECT_EQ(made.hand.encoder_step, 10e-6);
+  EXPECT_EQ(made.hand.plant.reaction.reflex, 0.3);
+  EXPECT_EQ(made.hand.plant.reaction.reflex_delay, std::chrono::milliseconds{70});
+  EXPECT_EQ(made.hand.plant.reaction.co_contraction, 0.2);
   EXPECT_EQ(made.impairment.loss, 0.05);
   EXPECT_EQ(made.duration, std::chrono::milliseconds{1500});
+}
+
+TEST(SurgeonSettingsTest, AReflexIsNoLargerThanTheGripBearsOnThisDevice) {
+  for (const std::string grip : {"light", "mid", "firm", "arm"}) {
+    EXPECT_EQ(settings_with({"hand.grip=" + grip, "hand.reflex=0.5"}).hand.plant.reaction.reflex,
+              0.5);
+  }
+  config::Document document = config::surgeon_document();
+  ASSERT_TRUE(document.set("hand.grip=light"));
+  ASSERT_TRUE(document.set("hand.mass_kg=2"));
+  ASSERT_TRUE(document.set("hand.reflex=0.06"));
+  EXPECT_TRUE(make_settings(document));
+  ASSERT_TRUE(document.set("hand.reflex=0.07"));
+  const auto made = make_settings(document);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().text,
+            "hand.reflex 0.07 is too much: grip 'light' on a device of 2 kg may swing by itself "
+            "beyond 0.062");
 }
 
 TEST(SurgeonSettingsTest, AnUnknownCouplingIsAnErrorThatListsTheKnownOnes) {

@@ -89,6 +89,7 @@ const std::map<std::string, std::string>& suffixes() {
                                                         {"m/s", "_m_per_s"},
                                                         {"m/s^2", "_m_per_s2"},
                                                         {"s/m", "_s_per_m"},
+                                                        {"1/N", "_per_n"},
                                                         {"ppm", "_ppm"},
                                                         {"kbit/s", "_kbps"},
                                                         {"records", "_records"},

@@ -58,6 +58,13 @@ TEST(DirectTouchTest, WhereTheSurfaceComesUpThePressIsHarder) {
             1.1 * touched({kPlain}));
 }
 
+TEST(DirectTouchTest, AFingerReactsAsTheHandDoes) {
+  const double passive = touched({kPlain});
+  EXPECT_GT(touched({kPlain, "surgeon.hand.reflex=0.5"}), 1.03 * passive);
+  EXPECT_GT(touched({kPlain, "surgeon.hand.co_contraction_per_n=1"}), 1.03 * passive);
+  EXPECT_EQ(touched({kPlain, "surgeon.hand.reflex_delay_ms=20"}), passive) << "without a reflex";
+}
+
 TEST(DirectTouchTest, ALightHandThatTapsQuicklyOnSomethingStiffBounces) {
   config::Document document = load_scenario("standard").value();
   for (const char* setting :
