@@ -68,11 +68,10 @@ void PatientControl::take_stage(const StageState& read) noexcept {
   now_.velocity = 0;
   if (!begun_) stage_sampled_at_ = now_.at;
   if (!finite) return;
-  now_.position = read.position;
+  stage_position_ = read.position;
   now_.velocity = read.velocity;
   now_.place = read.place;
   stage_sampled_at_ = read.sampled_at;
-  if (!std::exchange(gate_begun_, true)) gate_.begin(read.position, read.place);
 }
 
 void PatientControl::take_force(const std::optional<ForceSample>& read) noexcept {
@@ -89,6 +88,24 @@ void PatientControl::take_force(const std::optional<ForceSample>& read) noexcept
   // What the site slept through was no silence of the sensor's.
   const TimePoint heard_at = std::max(force_sampled_at_, awake_since_);
   find_fault(now_.at - heard_at > config_.sensor_stale, NoteCode::SensorSilent);
+}
+
+/// What yields between encoder and tissue is known here and in stage_target(): all else of the
+/// site, and the other site, mean the tip. Its speed stays the stage's: a reading's rate is noise.
+void PatientControl::find_tip() noexcept {
+  now_.position = stage_position_;
+  if (devices_.sensor.yield > 0) now_.position -= devices_.sensor.yield * now_.contact_force;
+  if (stage_was_finite_ && !std::exchange(gate_begun_, true)) {
+    gate_.begin(now_.position, now_.place);
+  }
+}
+
+/// Else the tip would stop short of what the gate let pass. This feeds the force back, by less than
+/// it takes for any tissue; a yield stated too large may add what the limit of force bounds.
+double PatientControl::stage_target(double tip) const noexcept {
+  if (!(devices_.sensor.yield > 0)) return tip;
+  const double force = std::clamp(now_.contact_force, 0.0, config_.gate.force_limit);
+  return std::max(tip, std::min(tip + devices_.sensor.yield * force, devices_.stage.travel_max));
 }
 
 /// The state is that of the tick before, and so the target.
@@ -183,6 +200,7 @@ PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
   device_fault_ = NoteCode::None;
   take_stage(in.stage);
   take_force(in.force);
+  find_tip();
   const bool felt = in.force && std::isfinite(in.force->force);
   gate_.feel(now_.position,
              now_.contact_force,
@@ -210,7 +228,7 @@ PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
       limit(wanted.target_position, place_asked ? in.arrived.peer.place : gate_.place(), lapse);
   take_findings(in.found);
   return {.halt = answer.halt,
-          .target = {answer.position, answer.place},
+          .target = {stage_target(answer.position), answer.place},
           .to_peer = {{.state = now_.state,
                        .epoch = now_.epoch,
                        .place = now_.place,

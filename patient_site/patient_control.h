@@ -82,6 +82,7 @@ class PatientControl {
  private:
   void take_stage(const StageState& read) noexcept;
   void take_force(const std::optional<ForceSample>& read) noexcept;
+  void find_tip() noexcept;
   void watch_devices(const Lapse& lapse) noexcept;
   void note_not_finite(bool finite, bool& was_finite) noexcept;
   void find_fault(bool found, record::NoteCode what) noexcept;
@@ -89,6 +90,7 @@ class PatientControl {
   void record_decision(const SupervisorOutput& decision, SiteState before) noexcept;
   [[nodiscard]] coupling::PatientInput law_input(const link::Arrivals& arrived) const noexcept;
   [[nodiscard]] MotionAnswer limit(double target, const Place& place, const Lapse& lapse) noexcept;
+  [[nodiscard]] double stage_target(double tip) const noexcept;
   [[nodiscard]] DepthReport depth_report() const noexcept;
   [[nodiscard]] MapReport map_report() const noexcept;
   [[nodiscard]] MapCell map_cell(std::span<const MapCell> cells) const noexcept;
@@ -105,6 +107,7 @@ class PatientControl {
   record::SiteAccount account_;
   PatientStatus now_;  ///< of this tick: what is shown, and what one tick leaves to the next
   bool begun_{};
+  double stage_position_{};          ///< [m], the last one that was a number
   bool gate_begun_{};                ///< with the first reading that has numbers
   record::NoteCode device_fault_{};  ///< the first that was found in this tick
   bool stage_was_finite_{true};

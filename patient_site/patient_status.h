@@ -28,7 +28,7 @@ struct PatientStatus : record::SiteCounts {
   double velocity{};         ///< [m/s]
   Place place{};
   double contact_force{};  ///< [N], measured
-  double command{};        ///< [m], to the stage
+  double command{};        ///< [m], where the tip shall be
   bool gate_acted{};
   record::NoteCode place_refused{};  ///< why the tip does not follow in the plane; None: it does
   double surface{};                  ///< [m], as learned

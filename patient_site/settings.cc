@@ -95,9 +95,20 @@ SimulatedPhantomConfig make_simulation(const proto::config::SimulatedPhantom& me
   simulation.sensor_cut_off = message.sensor_pole_hz();
   simulation.force_noise = from_milli(message.sensor_noise_mn());
   simulation.force_quantum = from_milli(message.sensor_quantum_mn());
+  simulation.servo_stiffness = 1e3 * message.servo_n_per_mm();
+  simulation.yield = from_micro(message.yield_um_per_n());
+  simulation.yield_stated = message.yield_stated();
   simulation.seed = seed;
   simulation.start_position += std::min(0.0, simulation.surface_offset);  // never in the tissue
   return simulation;
+}
+
+Result<void> check_servo(double newtons_per_mm) {
+  if (newtons_per_mm == 0 || newtons_per_mm >= 1) return {};
+  return fail(number_text("simulated_phantom.servo_n_per_mm = ",
+                          newtons_per_mm,
+                          3,
+                          " is neither 1 or more nor 0, which nothing moves"));
 }
 
 Result<depth::DepthEstimatorConfig> make_estimator(const proto::config::Estimator& message,
@@ -149,6 +160,8 @@ Result<Settings> make_settings(const proto::config::PatientConfig& message) {
   const auto coupling = settings::make_coupling(message.coupling());
   if (!coupling) return fail(coupling.error().text);
   if (const auto known = check_devices(message); !known) return fail(known.error().text);
+  const auto servo = check_servo(message.simulated_phantom().servo_n_per_mm());
+  if (!servo) return fail(servo.error().text);
   const auto record = settings::make_record(message.record());
   if (!record) return fail(record.error().text);
   Settings made;

@@ -154,6 +154,7 @@ Result<DevicePlan> make_plan(const ModbusDevice& message, const std::string& whe
   plan.lag = from_milli(message.lag_ms());
   plan.pole = message.pole_hz();
   plan.noise = from_milli(message.noise_mn());
+  plan.yield = settings::from_micro(message.yield_um_per_n());
   return plan;
 }
 
@@ -180,6 +181,7 @@ Result<CardPlan> make_card_plan(const proto::config::HidCard& message, const std
   plan.serial = message.serial();
   plan.pole = message.pole_hz();
   plan.noise = from_milli(message.noise_mn());
+  plan.yield = settings::from_micro(message.yield_um_per_n());
   return plan;
 }
 

@@ -7,6 +7,7 @@
 #include "common/core/check.h"
 #include "common/core/limits.h"
 #include "common/core/random.h"
+#include "patient_site/balanced_force.h"
 
 namespace palp::patient {
 namespace {
@@ -41,6 +42,7 @@ PatientDevices facts_of(const SimulatedPhantomConfig& config) noexcept {
   facts.sensor.pole = config.sensor_cut_off;
   facts.sensor.step = config.force_quantum;
   facts.sensor.noise = config.force_noise;
+  facts.sensor.yield = config.yield_stated * config.yield;
   facts.sensor.lag = to_tenth_of_millisecond(1 / (2 * std::numbers::pi * config.sensor_cut_off));
   return facts;
 }
@@ -57,14 +59,17 @@ SimulatedPhantom::SimulatedPhantom(const Phantom& phantom, const SimulatedPhanto
       field_{make_field(phantom, config.viscous_factor)},
       target_{config.start_position, config.start_place},
       position_{config.start_position},
+      tip_{config.start_position},
       place_{config.start_place},
       surface_{config.surface_offset + field_->surface(config.start_place)},
       relaxing_{phantom.relaxation},
       breath_{breath_of(config)} {
   PALP_CHECK(config.servo_frequency > 0 && config.sensor_cut_off > 0, "frequencies are positive");
+  PALP_CHECK(config.servo_stiffness >= 0 && config.yield >= 0, "nothing yields backwards");
   const double omega = 2 * std::numbers::pi * config.servo_frequency;
-  servo_stiffness_ = omega * omega;
+  servo_pull_ = omega * omega;
   servo_drag_ = 2 * config.servo_damping * omega;
+  servo_yield_ = config.servo_stiffness > 0 ? 1 / config.servo_stiffness : 0;
   sensor_gain_ = 1 - std::exp(-2 * std::numbers::pi * config.sensor_cut_off * kStepSeconds);
 }
 
@@ -83,8 +88,9 @@ void SimulatedPhantom::move_to(const StageTarget& target) noexcept {
   target_ = target;
 }
 
+/// Against what presses now: a target at the tip would give way a little with every call.
 void SimulatedPhantom::halt() noexcept {
-  target_.position = position_;
+  target_.position = position_ + servo_yield_ * contact_force_;
   target_.place = place_;
 }
 
@@ -110,8 +116,11 @@ void SimulatedPhantom::advance(TimePoint now) noexcept {
 }
 
 void SimulatedPhantom::integrate_step() noexcept {
-  const double pull = servo_stiffness_ * (target_.position - position_) - servo_drag_ * velocity_;
-  const double acceleration = std::clamp(pull, -config_.acceleration_max, config_.acceleration_max);
+  const double pull = servo_pull_ * (target_.position - position_) - servo_drag_ * velocity_;
+  // The limit is the motor's; the tissue pushes as it likes.
+  const double acceleration =
+      std::clamp(pull, -config_.acceleration_max, config_.acceleration_max) -
+      servo_pull_ * servo_yield_ * contact_force_;
   velocity_ =
       std::clamp(velocity_ + acceleration * kStepSeconds, -config_.speed_max, config_.speed_max);
   position_ += velocity_ * kStepSeconds;
@@ -122,17 +131,42 @@ void SimulatedPhantom::integrate_step() noexcept {
 
   const Breath::Motion breath = breath_.at(kStepSeconds * static_cast<double>(steps_));
   surface_ = config_.surface_offset + field_->surface(place_) + breath.position;
-  const double elastic =
-      relaxing_.step(field_->elastic_force(place_, position_ - surface_), kStepSeconds);
-  const double rate = velocity_ - breath.velocity;
-  contact_force_ = std::max(0.0, elastic * field_->growth(rate));
-  tissue_energy_ += contact_force_ * velocity_ * kStepSeconds;
+  touch(breath.velocity);
   sensed_force_ += sensor_gain_ * (contact_force_ - sensed_force_);
 }
 
+/// The tip's velocity is that of the whole step, for both kinds: so no step gives back more energy
+/// than an elastic tissue holds.
+void SimulatedPhantom::touch(double surface_rate) noexcept {
+  const double stood = tip_;
+  tip_ = position_;
+  tip_velocity_ = velocity_;
+  if (config_.yield > 0) {
+    tip_ -= config_.yield * force_behind_yield(stood, surface_rate);
+    tip_velocity_ = (tip_ - stood) / kStepSeconds;
+  }
+  const double elastic =
+      relaxing_.step(field_->elastic_force(place_, tip_ - surface_), kStepSeconds);
+  contact_force_ = std::max(0.0, elastic * field_->growth(tip_velocity_ - surface_rate));
+  tissue_energy_ += contact_force_ * tip_velocity_ * kStepSeconds;
+}
+
+/// Of the end of this step, at which the tip will stand where that force lets it: so a tissue that
+/// is stiff beside the yield makes nothing swing.
+double SimulatedPhantom::force_behind_yield(double stood, double surface_rate) const noexcept {
+  const auto answer = [&](double force) {
+    const double tip = position_ - config_.yield * force;
+    const double elastic =
+        RelaxingForce{relaxing_}.step(field_->elastic_force(place_, tip - surface_), kStepSeconds);
+    const double rate = (tip - stood) / kStepSeconds - surface_rate;
+    return std::max(0.0, elastic * field_->growth(rate));
+  };
+  return balanced_force(answer, contact_force_);
+}
+
 PhantomTruth SimulatedPhantom::truth() const noexcept {
-  return {.position = position_,
-          .velocity = velocity_,
+  return {.position = tip_,
+          .velocity = tip_velocity_,
           .place = place_,
           .surface = surface_,
           .contact_force = contact_force_,

@@ -66,7 +66,8 @@ std::optional<std::string> flaw_in(const ForceSensorFacts& sensor) {
                   {"range", sensor.range, " N", 0.01, 100'000},
                   {"noise", sensor.noise, " N", 0, 1000},
                   {"rate", sensor.rate, " Hz", 1, kRateMax},
-                  {"lag", sensor.lag, " s", 0, 10}});
+                  {"lag", sensor.lag, " s", 0, 10},
+                  {"yield", sensor.yield, " m/N", 0, 0.01}});
 }
 
 }  // namespace
@@ -96,7 +97,8 @@ std::string describe(const StageFacts& stage) {
 std::string describe(const ForceSensorFacts& sensor) {
   return "pole " + digits(sensor.pole) + " Hz, steps of " + digits(sensor.step) + " N, range " +
          digits(sensor.range) + " N, noise " + digits(sensor.noise) + " N rms, " +
-         digits(sensor.rate) + " Hz, lag " + digits(sensor.lag) + " s";
+         digits(sensor.rate) + " Hz, lag " + digits(sensor.lag) + " s, yield " +
+         digits(sensor.yield) + " m/N";
 }
 
 }  // namespace palp

@@ -40,6 +40,7 @@ struct ForceSensorFacts {
   double noise{0.015};  ///< [N], 0 to 1000; rms of a reading in quiet air
   double rate{1000};    ///< [Hz], 1 to 100,000; of new readings
   double lag{8e-3};     ///< [s], 0 to 10; of a reading behind the force, its pole included
+  double yield{};       ///< [m/N], 0 to 0.01; how far it and what holds it yield; 0: rigid
 };
 
 /// [s], from a hand's move to the force that answers it, beside that of a device of 1 kHz: a

@@ -14,7 +14,7 @@
 /// Thread: any but rt; these allocate.
 namespace palp::link {
 
-inline constexpr std::uint32_t kProtocolVersion = 10;
+inline constexpr std::uint32_t kProtocolVersion = 11;
 inline constexpr std::size_t kNameSizeMax = 40;      ///< [bytes], coupling and git
 inline constexpr std::size_t kTextSizeMax = 160;     ///< [bytes], a sentence
 inline constexpr std::size_t kControlSizeMax = 512;  ///< [bytes], any control message

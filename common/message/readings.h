@@ -162,7 +162,8 @@ inline constexpr auto fields<S> = list({},
                                        field<3, &S::range>("range_n", always),
                                        field<4, &S::noise>("noise_n", always),
                                        field<5, &S::rate>("rate_hz", always),
-                                       field<6, &S::lag>("lag_s", always));
+                                       field<6, &S::lag>("lag_s", always),
+                                       field<8, &S::yield>("yield_m_per_n", always));
 
 template <std::same_as<DeviceFacts> S>
 inline constexpr auto fields<S> = list({.shared = "Devices"},

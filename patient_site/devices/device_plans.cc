@@ -74,6 +74,7 @@ ForceSensorFacts sensor_facts_of(const DevicePlan& plan) noexcept {
   if (plan.profile.force && plan.profile.force->kind == WordKind::F32) facts.step = 0;
   facts.range = plan.installation.force_range;
   facts.noise = plan.noise;
+  facts.yield = plan.yield;
   facts.rate = 1 / seconds(plan.profile.period);
   facts.lag = plan.lag;
   return facts;
@@ -90,6 +91,7 @@ ForceSensorFacts sensor_facts_of(const CardPlan& plan) noexcept {
       std::abs(built_in.newtons_per_volt) * 2 * model.full_scales.at(built_in.range) / model.steps;
   facts.range = built_in.load.force_range;
   facts.noise = plan.noise;
+  facts.yield = plan.yield;
   facts.rate = kRate;
   facts.lag = kCardDelay + 1 / (2 * std::numbers::pi * plan.pole);
   return facts;

@@ -18,6 +18,7 @@ struct DevicePlan {
   double lag{};    ///< [s]
   double pole{};   ///< [Hz]
   double noise{};  ///< [N], rms
+  double yield{};  ///< [m/N]
 };
 
 /// A force card, ready to be made.
@@ -26,6 +27,7 @@ struct CardPlan {
   std::string serial;  ///< empty: whichever is there
   double pole{};       ///< [Hz]
   double noise{};      ///< [N], rms
+  double yield{};      ///< [m/N]
 };
 
 /// What stands behind `--devices FILE`.

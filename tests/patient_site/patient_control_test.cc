@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -139,6 +140,56 @@ TEST(PatientControlTest, ContactSamplesAreRawAndSayHowOldTheyAre) {
   EXPECT_EQ(last.force, 0.05);
   EXPECT_EQ(last.position_age, 2ms);
   EXPECT_EQ(last.force_age, 7ms);
+}
+
+/// All that is made of a reading means the tip; the reading itself is kept as it was.
+TEST(PatientControlTest, TheTipStandsBehindTheStageByWhatTheSensorYields) {
+  PatientDevices facts;
+  facts.sensor.yield = 20e-6;
+  Bench bench{facts};
+  for (int i = 0; i < 10; ++i) bench.engaged_tick(0);
+  bench.in.stage.position = 1.25e-3;
+  bench.force = 2;
+  const PatientOutputs out = bench.engaged_tick(0);
+  const double tip = 1.25e-3 - 2 * 20e-6;
+  EXPECT_EQ(bench.control.status().position, tip);
+  EXPECT_EQ(out.to_peer.port.position, tip);
+  EXPECT_EQ(bench.recorder.all<SiteTick>().back().position, tip);
+  EXPECT_EQ(bench.recorder.all<StageReading>().back().position, 1.25e-3);
+  ContactSample last;
+  while (bench.contact.try_dequeue(last)) continue;
+  EXPECT_EQ(last.position, tip);
+}
+
+/// The gate's target is one for the tip: the stage goes as much further as the sensor gives way.
+TEST(PatientControlTest, TheStageIsAskedForWhatItsSensorGivesWay) {
+  PatientDevices facts;
+  facts.sensor.yield = 1e-3;
+  Bench bench{facts};
+  const auto beyond = [&](double force) {
+    bench.force = force;
+    const double target = bench.engaged_tick(0).target.position;
+    return target - bench.control.status().command;
+  };
+  for (int i = 0; i < 10; ++i) bench.engaged_tick(0);
+  EXPECT_EQ(beyond(0), 0);
+  EXPECT_NEAR(beyond(2), 2e-3, 1e-12);
+  EXPECT_EQ(beyond(-0.5), 0) << "nothing pulls the tip";
+  EXPECT_NEAR(beyond(4), 3e-3, 1e-12) << "a force above the gate's limit moves nothing more";
+  facts.stage.travel_max = 0.5e-3;
+  Bench at_the_end{facts};
+  for (int i = 0; i < 10; ++i) at_the_end.engaged_tick(0);
+  at_the_end.force = 2;
+  EXPECT_EQ(at_the_end.engaged_tick(0).target.position, 0.5e-3);
+}
+
+/// In the record a zero has a sign.
+TEST(PatientControlTest, ARigidSensorLeavesTheReadingAsItIs) {
+  Bench bench;
+  bench.in.stage.position = -0.0;
+  bench.force = -0.0;
+  bench.tick();
+  EXPECT_TRUE(std::signbit(bench.control.status().position));
 }
 
 TEST(PatientControlTest, ItsDevicesAndThePeersAreWrittenDownOnce) {

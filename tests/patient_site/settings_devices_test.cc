@@ -13,7 +13,8 @@ normal { profile: "orca" address: "serial:/dev/ttyUSB0" zero_mm: 40 travel_max_m
 x { profile: "iai" address: "tcp:127.0.0.1:5020" station: 2 travel_min_mm: -40
     speed_max_m_per_s: 0.05 }
 y { profile: "az" address: "serial:/dev/ttyUSB1" um_per_count: 5 baud: 115200 travel_max_mm: 30 }
-cell { profile: "tlb4" address: "tcp:127.0.0.1:5021" mn_per_count: 20 lag_ms: 12 }
+cell { profile: "tlb4" address: "tcp:127.0.0.1:5021" mn_per_count: 20 lag_ms: 12
+       yield_um_per_n: 30 }
 )";
 
 std::string refusal(const std::string& text) {
@@ -40,6 +41,7 @@ TEST(DevicePlansTest, AStageOfThreeMakersAndACell) {
   const ForceSensorFacts sensor = sensor_facts_of(*plans->cell);
   EXPECT_EQ(sensor.step, 0.02);
   EXPECT_EQ(sensor.lag, 0.012);
+  EXPECT_DOUBLE_EQ(sensor.yield, 30e-6);
   EXPECT_EQ(sensor.rate, 100);
 }
 
@@ -84,6 +86,8 @@ TEST(DevicePlansTest, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(refusal("normal { profile: \"iai\" address: \"serial:/dev/a\" }"
                       "cell { profile: \"tlb4\" address: \"serial:/dev/a\" }"),
               HasSubstr("line of its own"));
+  EXPECT_THAT(refusal("normal { profile: \"orca\" yield_um_per_n: 1001 }"),
+              HasSubstr("yield_um_per_n"));
   EXPECT_THAT(refusal("normal { profile: \"file:/no/such\" address: \"tcp:1.2.3.4:5\" }"),
               HasSubstr("/no/such"));
 }
@@ -102,12 +106,14 @@ TEST(DevicePlansTest, AllProfilesOfTheHouseAreSound) {
 
 TEST(DevicePlansTest, ACardTakesThePlaceOfTheCell) {
   const std::string axis = "normal { profile: \"iai\" address: \"tcp:127.0.0.1:502\" } ";
-  const auto plans = make_device_plans(axis + "card { n_per_v: 5 range: 1 channel: 3 }", "rig");
+  const auto plans =
+      make_device_plans(axis + "card { n_per_v: 5 range: 1 channel: 3 yield_um_per_n: 7 }", "rig");
   ASSERT_TRUE(plans) << plans.error().text;
   EXPECT_EQ(plans->card->installation.channel, 3);
   const ForceSensorFacts sensor = facts_of(*plans).sensor;
   EXPECT_NEAR(sensor.step, 0.76e-3, 0.01e-3);
   EXPECT_EQ(sensor.rate, 1000);
+  EXPECT_DOUBLE_EQ(sensor.yield, 7e-6);
   EXPECT_EQ(sensor_silence_of(*plans), std::chrono::milliseconds{5});
   EXPECT_THAT(refusal(axis + "card { channel: 1 }"), HasSubstr("not calibrated: no n_per_v"));
   EXPECT_THAT(refusal(std::string{kThreeAxes} + "card { n_per_v: 5 }"), HasSubstr("not both"));

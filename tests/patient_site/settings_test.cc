@@ -65,6 +65,9 @@ void add(settings_test::FieldList& list, const SimulatedPhantomConfig& simulatio
       .add("sensor_cut_off", simulation.sensor_cut_off)
       .add("force_noise", simulation.force_noise)
       .add("force_quantum", simulation.force_quantum)
+      .add("servo_stiffness", simulation.servo_stiffness)
+      .add("yield", simulation.yield)
+      .add("yield_stated", simulation.yield_stated)
       .add("simulation.seed", simulation.seed);
 }
 
@@ -155,6 +158,16 @@ TEST(PatientSettingsTest, ACameraIsOneThatCanBe) {
   ASSERT_TRUE(document.set("camera.source=test"));
   ASSERT_TRUE(document.set("link.through=127.0.0.1:9"));
   EXPECT_THAT(make_settings(document).error().text, HasSubstr("no video through a relay"));
+}
+
+TEST(PatientSettingsTest, AServoIsMovedByNothingOrHasSomeStiffness) {
+  EXPECT_EQ(settings_with({"simulated_phantom.servo_n_per_mm=1"}).simulation.servo_stiffness, 1e3);
+  config::Document document = config::patient_document();
+  ASSERT_TRUE(document.set("simulated_phantom.servo_n_per_mm=0.9"));
+  EXPECT_THAT(make_settings(document).error().text,
+              HasSubstr("servo_n_per_mm = 0.900 is neither 1 or more nor 0"));
+  EXPECT_THAT(document.set("simulated_phantom.yield_um_per_n=1001").error().text,
+              HasSubstr("yield_um_per_n"));
 }
 
 TEST(PatientSettingsTest, TheEstimatorHasTheLoopsPeriod) {

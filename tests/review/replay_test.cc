@@ -152,6 +152,18 @@ TEST(ReplayTest, DevicesThatFailDoSoAgain) {
   }
 }
 
+/// The file holds the stage's readings, and the yield by which they become the tip's.
+TEST(ReplayTest, ASensorThatYieldsDoesSoAgain) {
+  Scenario scenario = rough("mmt", FaultKind::None);
+  scenario.duration = 8s;
+  scenario.tissue.yield = 200e-6;
+  scenario.tissue.servo_stiffness = 20e3;
+  const Files files = session_of(scenario);
+  EXPECT_EQ(replay(files).patient.difference, "");
+  const auto devices = all<DevicesTold>(files.patient.bytes());
+  EXPECT_EQ(devices.at(0).facts.sensor->yield, 200e-6);
+}
+
 TEST(ReplayTest, WhatTheSurgeonIsToldOfItsForceIsToldAgain) {
   auto document = load_scenario("standard").value();
   ASSERT_TRUE(document.set("patient.simulated_phantom.breathing_mm=1.5"));

@@ -20,7 +20,7 @@ NO_DEVICES = {
     "stage_travel_side_m": 0.0, "stage_speed_m_per_s": 0.0, "stage_acceleration_m_per_s2": 0.0,
     "stage_rate_hz": 0.0, "stage_lag_s": 0.0, "stage_drags": 0, "sensor_pole_hz": 0.0,
     "sensor_step_n": 0.0, "sensor_range_n": 0.0, "sensor_noise_n": 0.0, "sensor_rate_hz": 0.0,
-    "sensor_lag_s": 0.0,
+    "sensor_lag_s": 0.0, "sensor_yield_m_per_n": 0.0,
 }  # fmt: skip
 HAND = NO_DEVICES | {
     "hand_axes": 3, "hand_force_peak_n": 8.5, "hand_force_continuous_n": 1.4,

@@ -27,6 +27,11 @@ TEST(DeviceFactsTest, ANumberOutsideItsRangeIsNamedWithItsValueAndLimit) {
   facts = all();
   facts.hand->axes = 7;
   EXPECT_EQ(flaw_of(facts), "the hand's axes of 7 is not 1 to 6");
+  facts = all();
+  facts.sensor->yield = 0.02;
+  EXPECT_EQ(flaw_of(facts), "the force sensor's yield of 0.02 m/N is not 0 to 0.01 m/N");
+  facts.sensor->yield = -1e-6;
+  EXPECT_EQ(flaw_of(facts), "the force sensor's yield of -1e-06 m/N is not 0 to 0.01 m/N");
 }
 
 /// Every number has both borders, and none lets through what is no number.
@@ -49,7 +54,8 @@ TEST(DeviceFactsTest, NoNumberIsLeftOut) {
                                      &facts.sensor->range,
                                      &facts.sensor->noise,
                                      &facts.sensor->rate,
-                                     &facts.sensor->lag};
+                                     &facts.sensor->lag,
+                                     &facts.sensor->yield};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     for (const double bad : {kNan, kInfinite, -kInfinite}) {
       const double good = std::exchange(*numbers[i], bad);
@@ -70,7 +76,8 @@ TEST(DeviceFactsTest, PeopleReadThemInOneLine) {
   EXPECT_EQ(describe(StageFacts{}),
             "3 axes, -0.2 to 0.2 m, +-0.25 m, 0.15 m/s, 8 m/s^2, 1000 Hz, lag 0.0143 s, drags");
   EXPECT_EQ(describe(ForceSensorFacts{}),
-            "pole 20 Hz, steps of 0.05 N, range 49 N, noise 0.015 N rms, 1000 Hz, lag 0.008 s");
+            "pole 20 Hz, steps of 0.05 N, range 49 N, noise 0.015 N rms, 1000 Hz, lag 0.008 s, "
+            "yield 0 m/N");
 }
 
 }  // namespace

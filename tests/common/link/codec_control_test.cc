@@ -28,7 +28,7 @@ Hello some_hello() {
           .git = "0123abc",
           .devices = {.hand = {},
                       .stage = StageFacts{3, -0.1, 0.2, 0.3, 0.4, 5, 600, 0.07, true},
-                      .sensor = ForceSensorFacts{8, 0.09, 10, 0.011, 1200, 0.013}}};
+                      .sensor = ForceSensorFacts{8, 0.09, 10, 0.011, 1200, 0.013, 0.0014}}};
 }
 
 TEST(CodecControlTest, ThePageOfTheWireNamesThisVersionAndItsSizes) {
