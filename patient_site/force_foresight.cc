@@ -77,7 +77,7 @@ void ForceForesight::fit(std::size_t used, bool moved) noexcept {
   force_ = newest.force + (rise - stiffness_ * way) / count;
 }
 
-double ForceForesight::bound(double tip) const noexcept {
+double ForceForesight::bound(double tip, double limit) const noexcept {
   if (count_ == 0) return std::numeric_limits<double>::max();
   const Reading& newest = reading(0);
   // Where the force leaves the line, the tissue has a kink.
@@ -85,8 +85,8 @@ double ForceForesight::bound(double tip) const noexcept {
   const double stiffness =
       newest.force >= touched_ ? std::max(stiffness_, config_.stiffness_min) : stiffness_;
   if (!(stiffness > 0)) return std::numeric_limits<double>::max();
-  const double rest = config_.limit - std::min(config_.margin, config_.limit / 2);
-  const double kink = config_.limit + config_.beyond;
+  const double rest = limit - std::min(config_.margin, limit / 2);
+  const double kink = limit + config_.beyond;
   const double ahead =
       std::min((rest - force) / stiffness, (kink - force) / (config_.steeper * stiffness));
   // Where its target stands, the tip goes on by a share of its lead.

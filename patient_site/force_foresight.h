@@ -10,8 +10,7 @@
 namespace palp::patient {
 
 struct ForceForesightConfig {
-  double limit{3};            ///< [N], that the tissue is not pressed beyond
-  double margin{0.15};        ///< [N], below it the tip comes to rest; at most half of it counts
+  double margin{0.15};        ///< [N], below a limit the tip comes to rest, at half of a small one
   double beyond{0.4};         ///< [N], above it: as far as a kink may take the force
   double steeper{2.5};        ///< [-], than the tissue that was felt last a kink may be
   double stiffness_min{600};  ///< [N/m], of what is touched, whatever the first readings say
@@ -35,8 +34,8 @@ class ForceForesight {
   void begin(double tip) noexcept;
   /// Once a tick. `age` [s] of the force where it is a new reading, else nullopt.
   void feel(double tip, double force, std::optional<double> age) noexcept;
-  /// The deepest target [m] that brakes in time.
-  [[nodiscard]] double bound(double tip) const noexcept;
+  /// The deepest target [m] that brakes in time for a `limit` > 0 [N] of the force.
+  [[nodiscard]] double bound(double tip, double limit) const noexcept;
   /// Of the tissue that was felt last [N/m], >= 0.
   [[nodiscard]] double stiffness() const noexcept { return stiffness_; }
   /// [m], of the tip behind the sensor's pole.

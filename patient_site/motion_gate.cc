@@ -132,8 +132,11 @@ void MotionGate::follow(double target, double dt) noexcept {
 
 /// A target that is too deep is taken back to the tip and behind it: only so a stage brakes at
 /// once.
-void MotionGate::brake(double tip, double dt) noexcept {
-  const double deepest = std::max(foresight_.bound(tip), config_.travel_min);
+void MotionGate::brake(const MotionRequest& request, double dt) noexcept {
+  const double tip = request.tip;
+  const double most =
+      std::min(config_.force_limit, finite_or(request.force_most, config_.force_limit));
+  const double deepest = std::max(foresight_.bound(tip, most), config_.travel_min);
   if (command_ <= deepest) return;
   command_ =
       std::max(deepest, std::min(command_, tip) - kRetreatGrowth * config_.retreat_speed * dt);
@@ -204,10 +207,10 @@ MotionAnswer MotionGate::pass(const MotionRequest& request, const Lapse& lapse) 
     }
   } else if (request.state != SiteState::Engaged) {
     hold();
-    brake(request.tip, span);
+    brake(request, span);
   } else if (!finite) {
     hold();
-    brake(request.tip, span);
+    brake(request, span);
     condition = NoteCode::NotFinite;
     note_once(answer, condition, 0);
   } else {
@@ -224,7 +227,7 @@ MotionAnswer MotionGate::pass(const MotionRequest& request, const Lapse& lapse) 
     follow_place(request, span, answer);
     leave_place(request.tip);
     follow(target, span);
-    brake(request.tip, span);
+    brake(request, span);
   }
   if (condition == NoteCode::None) noted_ = NoteCode::None;
   if (answer.place_refused == NoteCode::None) place_noted_ = NoteCode::None;

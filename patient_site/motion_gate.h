@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "common/core/device_facts.h"
@@ -46,6 +47,8 @@ struct MotionRequest {
   double tip{};            ///< [m], of the stage
   double contact_force{};  ///< [N]
   Place stands{};          ///< of the stage, in the plane
+  /// [N], by the law, beside the gate's own limit
+  double force_most{std::numeric_limits<double>::infinity()};
 };
 
 struct MotionAnswer {
@@ -73,7 +76,7 @@ class MotionGate {
                       double period = 1e-3) noexcept  ///< [s], of the calls of feel()
       : config_{config},
         ceiling_{{.limit = config.force_limit}},
-        foresight_{devices, period, {.limit = config.force_limit}},
+        foresight_{devices, period},
         plane_{config.plane},
         noise_square_{config.contact_force * config.contact_force / 4} {}
 
@@ -105,7 +108,7 @@ class MotionGate {
   void follow(double target, double dt) noexcept;
   void move_out(double tip, double target, double speed, double dt) noexcept;
   void hold() noexcept;
-  void brake(double tip, double dt) noexcept;
+  void brake(const MotionRequest& request, double dt) noexcept;
   [[nodiscard]] double speed_limit(double target) const noexcept;
   [[nodiscard]] double deepest() const noexcept;
   [[nodiscard]] double within_limits(double position) const noexcept;

@@ -173,13 +173,16 @@ coupling::PatientInput PatientControl::law_input(const link::Arrivals& arrived) 
   return in;
 }
 
-MotionAnswer PatientControl::limit(double target, const Place& place, const Lapse& lapse) noexcept {
+MotionAnswer PatientControl::limit(const coupling::PatientOutput& wanted,
+                                   const Place& place,
+                                   const Lapse& lapse) noexcept {
   const MotionAnswer answer = gate_.pass({.state = now_.state,
-                                          .position = target,
+                                          .position = wanted.target_position,
                                           .place = place,
                                           .tip = now_.position,
                                           .contact_force = now_.contact_force,
-                                          .stands = now_.place},
+                                          .stands = now_.place,
+                                          .force_most = wanted.force_most},
                                          lapse);
   if (answer.note != NoteCode::None) account_.note(answer.note, answer.detail);
   if (answer.place_note != NoteCode::None) {
@@ -225,7 +228,7 @@ PatientOutputs PatientControl::decide(const PatientInputs& in) noexcept {
   const coupling::PatientOutput wanted = coupling::step(parts_.law, law_input(in.arrived), lapse);
   const bool place_asked = in.arrived.peer_heard && now_.state == SiteState::Engaged;
   const MotionAnswer answer =
-      limit(wanted.target_position, place_asked ? in.arrived.peer.place : gate_.place(), lapse);
+      limit(wanted, place_asked ? in.arrived.peer.place : gate_.place(), lapse);
   take_findings(in.found);
   return {.halt = answer.halt,
           .target = {stage_target(answer.position), answer.place},

@@ -89,7 +89,9 @@ class PatientControl {
   [[nodiscard]] SupervisorOutput supervise(const PatientInputs& in, const Lapse& lapse) noexcept;
   void record_decision(const SupervisorOutput& decision, SiteState before) noexcept;
   [[nodiscard]] coupling::PatientInput law_input(const link::Arrivals& arrived) const noexcept;
-  [[nodiscard]] MotionAnswer limit(double target, const Place& place, const Lapse& lapse) noexcept;
+  [[nodiscard]] MotionAnswer limit(const coupling::PatientOutput& wanted,
+                                   const Place& place,
+                                   const Lapse& lapse) noexcept;
   [[nodiscard]] double stage_target(double tip) const noexcept;
   [[nodiscard]] DepthReport depth_report() const noexcept;
   [[nodiscard]] MapReport map_report() const noexcept;

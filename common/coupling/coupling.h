@@ -52,6 +52,8 @@ struct PatientInput {
 struct PatientOutput {
   double target_position{};  ///< [m]; unlimited, the gate limits
   PortSample to_surgeon;
+  /// [N], the tip is to press no harder on its way in: the gate brakes in time.
+  double force_most{std::numeric_limits<double>::infinity()};
 };
 
 /// A law is a value: copy it and both copies go on alike.

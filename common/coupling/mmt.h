@@ -57,10 +57,8 @@ struct MmtConfig {
   /// [N], so much harder than the hand is told may the tip press, and `unfelt_share` of what it is
   /// told.
   double unfelt{0.35};
-  double unfelt_share{0.1};  ///< [-]
-  /// [m], most that a tip which waits goes back at once: a model that is too soft asks for far
-  /// more.
-  double back{0.2e-3};
+  double unfelt_share{0.1};        ///< [-]
+  double braked_beyond{0.2};       ///< [N], beyond that the gate lets it press no harder
   double unfelt_drag{0.02};        ///< [N], the same of a tip that is dragged
   double unfelt_drag_share{0.05};  ///< [-]
   double drag_memory{0.3};         ///< [s], for so long after it came to another place
@@ -144,9 +142,7 @@ class MmtPatient {
  private:
   [[nodiscard]] double target(const PatientInput& in, const Lapse& lapse) noexcept;
   [[nodiscard]] double allowed() const noexcept;
-  [[nodiscard]] double allowed_in_drag() const noexcept;
-  [[nodiscard]] double unfelt() const noexcept;
-  [[nodiscard]] double wait(const PatientInput& in, double span) noexcept;
+  [[nodiscard]] double behind_in_drag(double led) const noexcept;
   void give_way(double force, double span) noexcept;
   void notice_drag(const PatientInput& in, double span) noexcept;
 
@@ -158,7 +154,6 @@ class MmtPatient {
   double hand_velocity_{};  ///< [m/s], newest
   double hand_force_{};     ///< [N], newest
   double yielded_{};        ///< [m]
-  double doubted_{};        ///< [m], of a wait
   double since_drag_;       ///< [s]
   TimePoint heard_at_{};
   LowPass lead_velocity_;  ///< [m/s]

@@ -9,7 +9,6 @@ namespace palp::coupling {
 namespace {
 
 constexpr Duration kStale = std::chrono::milliseconds{20};  // older speed is no speed
-constexpr double kTrusted = 0.5;  // [-], of the force that a model foresees
 constexpr double kDragged = 0.1;  // [N], of a tip that is in the tissue as it goes along
 
 ContactEstimatorConfig with_sensor(ContactEstimatorConfig config,
@@ -34,7 +33,6 @@ void MmtPatient::begin_epoch(double position) noexcept {
   hand_velocity_ = 0;
   hand_force_ = 0;
   yielded_ = 0;
-  doubted_ = 0;
   lead_velocity_.reset(0);
 }
 
@@ -51,19 +49,12 @@ double MmtPatient::target(const PatientInput& in, const Lapse& lapse) noexcept {
   const double lead = std::min(config_.lead_max, stage_lead_ + 0.5 * seconds(in.round_trip));
   const double led =
       hand_ + lead * lead_velocity_.step(finite_or(hand_velocity_, 0), lapse.periods);
-  const double waiting = led - wait(in, seconds(lapse.period));
-  return std::min(led - yielded_, std::max(waiting, in.position - config_.back));
+  return led - std::max(yielded_, behind_in_drag(led));
 }
 
-/// [N], most that the tip may press: little harder than the hand was given last.
+/// [N], from here on the tip gives way: little harder than the hand was given last.
 double MmtPatient::allowed() const noexcept {
   return config_.unfelt + (1 + config_.unfelt_share) * std::max(0.0, hand_force_);
-}
-
-/// A finger that is dragged over something hard gives way to it at once; a hand over a long path
-/// does so late, and until then the tip would press as deep as beside it.
-double MmtPatient::allowed_in_drag() const noexcept {
-  return config_.unfelt_drag + (1 + config_.unfelt_drag_share) * std::max(0.0, hand_force_);
 }
 
 void MmtPatient::notice_drag(const PatientInput& in, double span) noexcept {
@@ -79,32 +70,17 @@ void MmtPatient::give_way(double force, double span) noexcept {
   yielded_ = std::clamp(yielded_ + config_.yield * pressed * span, 0.0, config_.yield_most);
 }
 
-/// A finger that goes into a tissue feels it at once; a hand over a long path goes on as if there
-/// was none. The tip does not go with it: it waits where it presses little harder than the hand
-/// has felt so far. @returns how far behind the hand that is [m].
-double MmtPatient::unfelt() const noexcept {
+/// A finger that is dragged over something hard gives way to it at once; a hand over a long path
+/// does so late, and until then the tip would press as deep as beside it. Both ends know the same
+/// tissue, so the model says where to wait. @returns how far behind `led` that is [m].
+double MmtPatient::behind_in_drag(double led) const noexcept {
   const ModelPayload& found = estimator_.model();
-  if (found.version == 0) return 0;
+  if (found.version == 0 || since_drag_ >= config_.drag_memory) return 0;
   const ContactModel model = contact_model(found);
-  const double depth = hand_ - model.surface - found.swing;
-  const double most = since_drag_ < config_.drag_memory ? allowed_in_drag() : allowed();
-  if (!(model.force(depth) > most)) return 0;
-  return depth - model.depth(most);
-}
-
-/// A tip that waits does not find out that the tissue is gone or softer: where it feels less than
-/// half of what the model says, it goes on as slowly as it gives way. @returns as unfelt() [m].
-double MmtPatient::wait(const PatientInput& in, double span) noexcept {
-  const double waits = unfelt();
-  if (!(waits > 0)) {
-    doubted_ = 0;
-    return 0;
-  }
-  const ModelPayload& found = estimator_.model();
-  const double there = contact_model(found).force(in.position - found.surface - found.swing);
-  const double less = kTrusted * there - finite_or(in.contact_force, 0);
-  doubted_ = std::clamp(doubted_ + config_.yield * less * span, 0.0, waits);
-  return waits - doubted_;
+  const double depth = led - model.surface - found.swing;
+  const double most =
+      config_.unfelt_drag + (1 + config_.unfelt_drag_share) * std::max(0.0, hand_force_);
+  return model.force(depth) > most ? depth - model.depth(most) : 0;
 }
 
 PatientOutput MmtPatient::step(const PatientInput& in, const Lapse& lapse) noexcept {
@@ -119,7 +95,11 @@ PatientOutput MmtPatient::step(const PatientInput& in, const Lapse& lapse) noexc
   const PairedReadings::Pair pair = paired_.step(
       in.now, in.now - in.position_age, in.position, in.now - in.force_age, in.contact_force);
   estimator_.step(pair.position, pair.force, lapse.periods);
-  return {aim, {in.position, in.velocity, in.contact_force, estimator_.model()}};
+  // A finger that goes into a tissue feels it at once; a hand over a long path goes on as if there
+  // was none. The tip does not go with it.
+  return {.target_position = aim,
+          .to_surgeon = {in.position, in.velocity, in.contact_force, estimator_.model()},
+          .force_most = allowed() + config_.braked_beyond};
 }
 
 }  // namespace palp::coupling

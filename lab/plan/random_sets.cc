@@ -196,13 +196,23 @@ void fill_first(Plan& plan, const PlanAsk& ask) {
 }
 
 /// Tissues and gestures that nobody chose, over the links, hands and servos of `mc`; every fourth
-/// surface breathes.
+/// surface breathes, no breath like the last one. Every second hand reacts, and every second stage
+/// and sensor yields to the tissue.
 void fill_wild(Plan& plan, const PlanAsk& ask) {
   fill_random(plan, ask, false);
   plan.direct_touch = true;
   const std::string tissue = "patient.simulated_phantom.";
   plan.label_names.insert(plan.label_names.end(),
-                          {"drawn", "viscous_s_per_m", "breathing_mm", "breathing_hz"});
+                          {"drawn",
+                           "viscous_s_per_m",
+                           "breathing_mm",
+                           "breathing_hz",
+                           "breathing_variation",
+                           "servo_n_per_mm",
+                           "yield_um_per_n",
+                           "reflex",
+                           "reflex_delay_ms",
+                           "co_contraction_per_n"});
   for (Case& one : plan.cases) {
     const auto uniform = [&](std::uint64_t which) {
       return random_uniform(ask.seed, kCaseStream + 80 + which, one.index);
@@ -215,9 +225,20 @@ void fill_wild(Plan& plan, const PlanAsk& ask) {
     for (const auto& [name, value] :
          {std::pair{"viscous_s_per_m", uniform(0)},
           std::pair{"breathing_mm", breathes ? 0.2 + 1.3 * uniform(2) : 0},
-          std::pair{"breathing_hz", breathes ? 0.15 + 0.25 * uniform(3) : 0}}) {
+          std::pair{"breathing_hz", breathes ? 0.15 + 0.25 * uniform(3) : 0},
+          std::pair{"breathing_variation", breathes ? 0.3 * uniform(4) : 0},
+          std::pair{"servo_n_per_mm", uniform(5) < 0.5 ? 10 * std::pow(10.0, uniform(6)) : 0},
+          std::pair{"yield_um_per_n", uniform(5) < 0.5 ? 50 * uniform(7) : 0}}) {
       one.labels.push_back(nine_digit_text(value));
       one.settings.push_back({tissue + name, one.labels.back()});
+    }
+    const bool reacts = uniform(8) < 0.5;
+    for (const auto& [name, value] :
+         {std::pair{"reflex", reacts ? 0.5 * uniform(9) : 0},
+          std::pair{"reflex_delay_ms", 20 + 130 * uniform(10)},
+          std::pair{"co_contraction_per_n", reacts ? 0.5 * uniform(11) : 0}}) {
+      one.labels.push_back(nine_digit_text(value));
+      one.settings.push_back({std::string{"surgeon.hand."} + name, one.labels.back()});
     }
   }
 }

@@ -16,6 +16,7 @@ namespace palp::patient {
 namespace {
 
 constexpr Duration kTick = std::chrono::milliseconds{1};
+constexpr double kLimit = 3;  // [N]
 
 /// Straight up to `kink` [m], and `steeper` times as steep below it.
 Phantom kinked(double stiffness, double kink, double steeper) {
@@ -74,9 +75,9 @@ class GatedTip {
 TEST(ForceForesightTest, InTheAirEverythingIsAllowed) {
   ForceForesight foresight;
   foresight.begin(0);
-  EXPECT_GT(foresight.bound(0), 1);
+  EXPECT_GT(foresight.bound(0, kLimit), 1);
   for (int i = 0; i < 100; ++i) foresight.feel(50e-6 * i, i % 7 == 0 ? 0.05 : 0, 0.0);
-  EXPECT_GT(foresight.bound(5e-3), 10e-3);
+  EXPECT_GT(foresight.bound(5e-3, kLimit), 10e-3);
 }
 
 /// Readings of a tissue of 800 N/m under a tip that goes evenly, behind one pole and in steps.
@@ -105,7 +106,7 @@ TEST(ForceForesightTest, AForceThatRisesUnderATipThatStandsSaysNothingOfItsTissu
   for (int i = 0; i <= 100; ++i) foresight.feel(20e-6 * i, 16e-3 * i, 0.0);
   for (int i = 0; i <= 1000; ++i) foresight.feel(2e-3, 1.6 + 1e-3 * i, 0.0);
   EXPECT_NEAR(foresight.stiffness(), 800, 100);
-  EXPECT_NEAR(foresight.bound(2e-3), 2e-3 + 3 * 0.25 / foresight.stiffness(), 30e-6)
+  EXPECT_NEAR(foresight.bound(2e-3, kLimit), 2e-3 + 3 * 0.25 / foresight.stiffness(), 30e-6)
       << "but it counts";
 }
 
@@ -117,7 +118,7 @@ TEST(ForceForesightTest, ForcesThatLeaveTheLineCountAtOnce) {
   foresight.feel(20e-6 * 60, force, 0.0);
   const double doubt = ForceSensorFacts{}.step + 2 * ForceSensorFacts{}.noise;
   const double kink = (3.4 - force + doubt) / (2.5 * foresight.stiffness());
-  EXPECT_LE(foresight.bound(20e-6 * 60), 20e-6 * 60 + 3 * kink + 1e-9);
+  EXPECT_LE(foresight.bound(20e-6 * 60, kLimit), 20e-6 * 60 + 3 * kink + 1e-9);
 }
 
 TEST(ForceForesightTest, AReadingThatIsOldBelongsToWhereTheTipWas) {
@@ -125,7 +126,7 @@ TEST(ForceForesightTest, AReadingThatIsOldBelongsToWhereTheTipWas) {
     ForceForesight foresight{{.stage = {}, .sensor = {.pole = 1e5, .lag = lag}}};
     foresight.begin(0);
     for (int i = 0; i <= 40; ++i) foresight.feel(50e-6 * i, 40e-3 * i, 0.0);
-    return foresight.bound(2e-3);
+    return foresight.bound(2e-3, kLimit);
   };
   EXPECT_NEAR(bound_with(0) - bound_with(0.01), 3 * 0.5e-3, 20e-6) << "by a third of its lead";
 }

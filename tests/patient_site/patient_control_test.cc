@@ -108,6 +108,25 @@ TEST(PatientControlTest, BrakesInTimeByReadingsThatAreOld) {
   EXPECT_GE(highest, 2.5);
 }
 
+TEST(PatientControlTest, TheTipPressesNoHarderThanItsLawAsks) {
+  PatientDevices facts;
+  facts.sensor.pole = 1e5;
+  facts.sensor.lag = 0;
+  Bench bench{facts};
+  const coupling::MmtConfig config;
+  bench.law = coupling::PatientCoupling{coupling::MmtPatient{config, facts}};
+  for (int i = 0; i < 10; ++i) bench.engaged_tick(0);
+  double highest = 0;
+  for (int i = 0; i < 500; ++i) {
+    bench.in.stage.position = bench.control.status().command;
+    bench.force = 600 * std::max(0.0, bench.in.stage.position);
+    bench.engaged_tick(8e-3);
+    highest = std::max(highest, bench.force);
+  }
+  EXPECT_LE(highest, config.unfelt + config.braked_beyond) << "the hand was given nothing";
+  EXPECT_GE(highest, 0.5 * config.unfelt);
+}
+
 TEST(PatientControlTest, ASensorOfLargeStepsMayRestOnOneForLongerAndFeelsContactLater) {
   const auto stopped_after = [](double step) {
     PatientDevices facts;
