@@ -87,11 +87,11 @@ Result<void> take_phantom(const Phantom& phantom, Settings& settings) {
     std::fprintf(stderr, "palp-patient: warning: %s\n", phantom.caution.c_str());
   }
   const SimulatedPhantomConfig& simulation = settings.simulation;
-  settings.node.gate = within_tables(
-      settings.node.gate,
-      simulation.surface_offset -
-          simulation.breathing_amplitude * (1 + simulation.breathing_variation),
-      phantom.depth_max());
+  settings.node.gate =
+      within_tables(settings.node.gate,
+                    simulation.surface_offset -
+                        simulation.breathing_amplitude * (1 + simulation.breathing_variation),
+                    phantom.depth_max());
   return {};
 }
 

@@ -11,6 +11,13 @@ namespace palp::patient {
 namespace {
 
 constexpr double kStep = 1e-3;  // [s]
+
+/// [s], 0 to `until`, every `step`.
+std::vector<double> times(double until, double step) {
+  std::vector<double> out(static_cast<std::size_t>(std::lround(until / step)));
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = step * static_cast<double>(i);
+  return out;
+}
 constexpr BreathConfig kVaried{.amplitude = 1e-3, .frequency = 0.25, .variation = 0.3, .seed = 7};
 
 /// Where it turns: instants [s] and positions [m].
@@ -22,7 +29,7 @@ std::vector<Turn> turns_of(const BreathConfig& config, double until) {
   Breath breath{config};
   std::vector<Turn> turns;
   double before = breath.at(0).velocity;
-  for (double t = kStep; t < until; t += kStep) {
+  for (const double t : times(until, kStep)) {
     const Breath::Motion now = breath.at(t);
     if (before * now.velocity < 0) turns.push_back({t, now.position});
     before = now.velocity;
@@ -32,7 +39,7 @@ std::vector<Turn> turns_of(const BreathConfig& config, double until) {
 
 TEST(BreathTest, WithoutAnAmplitudeTheSurfaceStandsStill) {
   Breath breath{{.amplitude = 0, .frequency = 0.25, .variation = 0.3}};
-  for (double t = 0; t < 20; t += 0.1) {
+  for (const double t : times(20, 0.1)) {
     EXPECT_EQ(breath.at(t).position, 0);
     EXPECT_EQ(breath.at(t).velocity, 0);
   }
@@ -41,7 +48,7 @@ TEST(BreathTest, WithoutAnAmplitudeTheSurfaceStandsStill) {
 TEST(BreathTest, WithoutVariationItIsASine) {
   Breath breath{{.amplitude = 2e-3, .frequency = 0.3}};
   const double omega = 2 * std::numbers::pi * 0.3;
-  for (double t = 0; t < 20; t += 0.01) {
+  for (const double t : times(20, 0.01)) {
     const Breath::Motion now = breath.at(t);
     EXPECT_DOUBLE_EQ(now.position, 2e-3 * std::sin(omega * t));
     EXPECT_DOUBLE_EQ(now.velocity, 2e-3 * omega * std::cos(omega * t));
@@ -53,7 +60,7 @@ TEST(BreathTest, TheLeastVariationIsNearlyTheSine) {
   Breath sine{config};
   config.variation = 1e-9;
   Breath varied{config};
-  for (double t = 0; t < 20; t += 0.01) {
+  for (const double t : times(20, 0.01)) {
     EXPECT_NEAR(sine.at(t).position, varied.at(t).position, 1e-10);
   }
 }
@@ -64,8 +71,8 @@ TEST(BreathTest, VelocityIsTheDerivativeAndNeverJumps) {
   // Half a cosine of 0.7 times the usual length, from one deepest turn to the other.
   const double rate_most = 2 * std::numbers::pi * 0.25 / 0.7;
   const double change_most = 1.3e-3 * rate_most * rate_most * kStep;
-  for (double t = kStep; t < 200; t += kStep) {
-    const Breath::Motion now = breath.at(t);
+  for (const double t : times(200, kStep)) {
+    const Breath::Motion now = breath.at(t + kStep);
     EXPECT_NEAR((now.position - before.position) / kStep,
                 0.5 * (now.velocity + before.velocity),
                 change_most);
@@ -106,7 +113,7 @@ TEST(BreathTest, AnotherSeedIsAnotherBreathAndTheSameTheSame) {
   Breath same{kVaried};
   Breath another{other};
   double apart = 0;
-  for (double t = 0; t < 30; t += 0.01) {
+  for (const double t : times(30, 0.01)) {
     const double position = one.at(t).position;
     EXPECT_EQ(position, same.at(t).position);
     apart = std::max(apart, std::abs(position - another.at(t).position));
@@ -117,8 +124,8 @@ TEST(BreathTest, AnotherSeedIsAnotherBreathAndTheSameTheSame) {
 TEST(BreathTest, AskedSeldomItIsWhereItWouldBe) {
   Breath often{kVaried};
   Breath seldom{kVaried};
-  for (double t = 0; t < 100; t += 0.5) {
-    for (double s = t; s < t + 0.5; s += 0.01) (void)often.at(s);
+  for (const double t : times(100, 0.5)) {
+    for (const double s : times(0.5, 0.01)) (void)often.at(t + s);
     EXPECT_NEAR(often.at(t + 0.5).position, seldom.at(t + 0.5).position, 1e-15);
   }
 }
