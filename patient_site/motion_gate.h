@@ -47,7 +47,8 @@ struct MotionRequest {
   double tip{};            ///< [m], of the stage
   double contact_force{};  ///< [N]
   Place stands{};          ///< of the stage, in the plane
-  /// [N], by the law, beside the gate's own limit
+  /// [N], the law's limit beside the gate's own: to whatever is lower the tip is braked wherever it
+  /// follows or holds
   double force_most{std::numeric_limits<double>::infinity()};
 };
 

@@ -103,7 +103,6 @@ void PatientControl::find_tip() noexcept {
 /// Else the tip would stop short of what the gate let pass. This feeds the force back, by less than
 /// it takes for any tissue; a yield stated too large may add what the limit of force bounds.
 double PatientControl::stage_target(double tip) const noexcept {
-  if (!(devices_.sensor.yield > 0)) return tip;
   const double force = std::clamp(now_.contact_force, 0.0, config_.gate.force_limit);
   return std::max(tip, std::min(tip + devices_.sensor.yield * force, devices_.stage.travel_max));
 }

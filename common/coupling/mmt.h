@@ -54,12 +54,12 @@ struct MmtConfig {
   double period{1e-3};          ///< [s]
   double lead_max{25e-3};       ///< [s], most that the target runs ahead of the hand's position
   double lead_cut_off{15};      ///< [Hz], of the velocity it runs ahead with
-  /// [N], so much harder than the hand is told may the tip press, and `unfelt_share` of what it is
-  /// told.
+  /// [N], so much harder than the hand is told, and by `unfelt_share` of what it is told, the tip
+  /// presses before it gives way.
   double unfelt{0.35};
   double unfelt_share{0.1};        ///< [-]
-  double braked_beyond{0.2};       ///< [N], beyond that the gate lets it press no harder
-  double unfelt_drag{0.02};        ///< [N], the same of a tip that is dragged
+  double braked_beyond{0.2};       ///< [N], above that: from there on the gate brakes it
+  double unfelt_drag{0.02};        ///< [N], as `unfelt`, of a tip that is dragged: it waits there
   double unfelt_drag_share{0.05};  ///< [-]
   double drag_memory{0.3};         ///< [s], for so long after it came to another place
   double yield{6e-3};              ///< [m/s per N], at which the tip gives way to more than that
