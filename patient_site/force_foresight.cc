@@ -13,6 +13,8 @@ ForceForesight::ForceForesight(const PatientDevices& devices,
     : config_{config},
       period_{period},
       hidden_{std::max(0.0, devices.sensor.lag - 1 / (2 * std::numbers::pi * devices.sensor.pole))},
+      late_{devices.stage.lag + devices.sensor.lag +
+            0.5 * (1 / devices.stage.rate + 1 / devices.sensor.rate)},
       share_{std::max(config.share_min, 1 - config.braking / std::max(devices.stage.lag, period))},
       touched_{felt_as_contact(devices.sensor)},
       doubt_{devices.sensor.step + 2 * devices.sensor.noise},
@@ -77,6 +79,18 @@ void ForceForesight::fit(std::size_t used, bool moved) noexcept {
   force_ = newest.force + (rise - stiffness_ * way) / count;
 }
 
+/// Below the limit, where the tip comes to rest [N].
+double ForceForesight::rest(double limit) const noexcept {
+  return limit - std::min(config_.margin, limit / 2);
+}
+
+double ForceForesight::step_most(double limit) const noexcept {
+  if (count_ == 0) return std::numeric_limits<double>::max();
+  const double missing = std::max(0.0, rest(limit) - std::max(force_, reading(0).force));
+  const double way = missing / std::max(stiffness_, config_.stiffness_min);
+  return way * period_ / (config_.patience * late_);
+}
+
 double ForceForesight::bound(double tip, double limit) const noexcept {
   if (count_ == 0) return std::numeric_limits<double>::max();
   const Reading& newest = reading(0);
@@ -85,10 +99,9 @@ double ForceForesight::bound(double tip, double limit) const noexcept {
   const double stiffness =
       newest.force >= touched_ ? std::max(stiffness_, config_.stiffness_min) : stiffness_;
   if (!(stiffness > 0)) return std::numeric_limits<double>::max();
-  const double rest = limit - std::min(config_.margin, limit / 2);
   const double kink = limit + config_.beyond;
   const double ahead =
-      std::min((rest - force) / stiffness, (kink - force) / (config_.steeper * stiffness));
+      std::min((rest(limit) - force) / stiffness, (kink - force) / (config_.steeper * stiffness));
   // Where its target stands, the tip goes on by a share of its lead.
   return tip + (newest.tip + ahead - tip) / share_;
 }

@@ -17,6 +17,7 @@ struct ForceForesightConfig {
   double window{12e-3};       ///< [s], of readings that say how steep the tissue is
   double span{0.1e-3};        ///< [m], no less of the tip's way says it
   double braking{9.5e-3};     ///< [s], of the stage's lag: what brakes spare
+  double patience{1.5};       ///< [-], of what is late: so long a braked tip waits for its force
   double share_min{1.0 / 3};  ///< [-], of its lead, that the tip goes on when its target stands
 };
 
@@ -36,6 +37,10 @@ class ForceForesight {
   void feel(double tip, double force, std::optional<double> age) noexcept;
   /// The deepest target [m] that brakes in time for a `limit` > 0 [N] of the force.
   [[nodiscard]] double bound(double tip, double limit) const noexcept;
+  /// Once it was braked: how much deeper the target may go per tick [m]. What is missing of the
+  /// `limit` > 0 [N] is to come no sooner than it can be known: on a slow stage the tip would run
+  /// into its limit again and again.
+  [[nodiscard]] double step_most(double limit) const noexcept;
   /// Of the tissue that was felt last [N/m], >= 0.
   [[nodiscard]] double stiffness() const noexcept { return stiffness_; }
   /// [m], of the tip behind the sensor's pole.
@@ -47,6 +52,7 @@ class ForceForesight {
     double force{};  ///< [N]
     double at{};     ///< [s]
   };
+  [[nodiscard]] double rest(double limit) const noexcept;
   void learn() noexcept;
   void fit(std::size_t used, bool moved) noexcept;
   [[nodiscard]] const Reading& reading(std::size_t back) const noexcept {
@@ -56,6 +62,7 @@ class ForceForesight {
   ForceForesightConfig config_;
   double period_;   ///< [s]
   double hidden_;   ///< [s], of a reading behind its stamp, without the pole
+  double late_;     ///< [s], from a target to the force that says what it did
   double share_;    ///< [-], of its lead, that the tip goes on
   double touched_;  ///< [N], felt as contact
   double doubt_;    ///< [N], by which one reading may be wrong

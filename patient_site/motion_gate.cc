@@ -130,14 +130,28 @@ void MotionGate::follow(double target, double dt) noexcept {
   command_ = within_limits(next.command);
 }
 
+/// [N], of the law's limit and its own the lower one.
+double MotionGate::force_most(const MotionRequest& request) const noexcept {
+  return std::min(config_.force_limit, finite_or(request.force_most, config_.force_limit));
+}
+
+/// Where a tip that was braked may go: a little deeper at a time, until it is asked to go out.
+double MotionGate::after_braking(double target, const MotionRequest& request) noexcept {
+  if (within_limits(request.position) <= command_) braked_ = false;
+  if (!braked_) return target;
+  const double most = force_most(request);
+  const bool rests = foresight_.bound(request.tip, most) >= request.tip;
+  const double from = rests ? std::max(command_, request.tip) : command_;
+  return std::min(target, from + foresight_.step_most(most));
+}
+
 /// A target that is too deep is taken back to the tip and behind it: only so a stage brakes at
 /// once.
 void MotionGate::brake(const MotionRequest& request, double dt) noexcept {
   const double tip = request.tip;
-  const double most =
-      std::min(config_.force_limit, finite_or(request.force_most, config_.force_limit));
-  const double deepest = std::max(foresight_.bound(tip, most), config_.travel_min);
+  const double deepest = std::max(foresight_.bound(tip, force_most(request)), config_.travel_min);
   if (command_ <= deepest) return;
+  braked_ = true;
   command_ =
       std::max(deepest, std::min(command_, tip) - kRetreatGrowth * config_.retreat_speed * dt);
   velocity_ = 0;
@@ -226,7 +240,7 @@ MotionAnswer MotionGate::pass(const MotionRequest& request, const Lapse& lapse) 
     }
     follow_place(request, span, answer);
     leave_place(request.tip);
-    follow(target, span);
+    follow(after_braking(target, request), span);
     brake(request, span);
   }
   if (condition == NoteCode::None) noted_ = NoteCode::None;

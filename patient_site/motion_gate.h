@@ -109,6 +109,8 @@ class MotionGate {
   void follow(double target, double dt) noexcept;
   void move_out(double tip, double target, double speed, double dt) noexcept;
   void hold() noexcept;
+  [[nodiscard]] double force_most(const MotionRequest& request) const noexcept;
+  [[nodiscard]] double after_braking(double target, const MotionRequest& request) noexcept;
   void brake(const MotionRequest& request, double dt) noexcept;
   [[nodiscard]] double speed_limit(double target) const noexcept;
   [[nodiscard]] double deepest() const noexcept;
@@ -138,6 +140,7 @@ class MotionGate {
     int ticks{};                    ///< since then
   };
   std::optional<Doubt> doubt_;
+  bool braked_{};  ///< and not asked to go out since
   bool resynchronising_{};
   record::NoteCode noted_{};        ///< of the tick before: a lasting condition is noted once
   record::NoteCode place_noted_{};  ///< the same of the place

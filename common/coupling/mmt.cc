@@ -34,13 +34,20 @@ RelaxingContact::Shares blended(RelaxingContact::Shares from,
   return from;
 }
 
+/// A device that answers late drives a hand the more, the steeper the line.
+ReleaseLineConfig at_device(ReleaseLineConfig line, const HandFacts& hand) noexcept {
+  if (answer_delay(hand) > 0) line.steepest = line.soft;
+  return line;
+}
+
 }  // namespace
 
 MmtSurgeon::MmtSurgeon(const MmtConfig& config, const HandFacts& hand) noexcept
     : config_{config},
       device_{hand, config.velocity_cut_off},
       velocity_{device_.velocity_cut_off(), config.period},
-      tank_{config.tank} {}
+      tank_{config.tank},
+      release_{at_device(config.release, hand)} {}
 
 /// The axis may have moved under the hand, so there is no work in this tick. The tank is kept.
 void MmtSurgeon::begin_epoch(double position) noexcept {
@@ -57,8 +64,7 @@ void MmtSurgeon::drop_model() noexcept {
   stored_ = 0;
   shown_force_ = 0;
   depth_ = 0;
-  release_ = 0;
-  released_ = 0;
+  release_.end();
   brake_ = 0;
   ContactModel nothing = shown_.elastic();
   nothing.c = {};
@@ -146,23 +152,19 @@ void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& 
   }
 }
 
-/// The hand moved, the model did not. Within the play a force that lets go steeply stays as it is:
-/// else every tremble of a holding hand, and every count of its encoder, would cost some of it.
+/// The hand moved, the model did not.
 void MmtSurgeon::give_way(double moved) noexcept {
   depth_ += moved;
-  const double slack = slack_ - moved;
-  slack_ = std::clamp(slack, 0.0, config_.release_play);
-  released_ = std::max(0.0, released_ - release_ * (slack - slack_));
+  release_.move(moved);
 }
 
 double MmtSurgeon::force_now() const noexcept {
-  return release_ > 0 ? released_ : shown_.force(depth_);
+  return release_.holds() ? release_.force() : shown_.force(depth_);
 }
 
 /// What the hand could take as it lets the force push it out.
 double MmtSurgeon::energy_now() const noexcept {
-  if (release_ <= 0) return shown_.energy(depth_);
-  return 0.5 * released_ * released_ / release_ + released_ * (config_.release_play - slack_);
+  return release_.holds() ? release_.energy() : shown_.energy(depth_);
 }
 
 /// The greatest depth with which energy and force stay below their limits. Holding a force takes no
@@ -170,12 +172,10 @@ double MmtSurgeon::energy_now() const noexcept {
 /// shown all the same and lets go along a steeper line, which stores less.
 void MmtSurgeon::choose_depth(double position, double energy_max, double force_max) noexcept {
   const double whole = depth_at(position);
-  const double play = config_.release_play - slack_;
   const auto fits = [&](double depth) {
     const double force = shown_.force(depth);
-    const double steep = 0.5 * force * force / config_.release_max + force * play;
     return force <= force_max + kForceTolerance &&
-           std::min(shown_.energy(depth), steep) <= energy_max + kEnergyTolerance;
+           std::min(shown_.energy(depth), release_.least(force)) <= energy_max + kEnergyTolerance;
   };
   depth_ = whole;
   if (whole > 0 && !fits(whole)) {
@@ -187,11 +187,10 @@ void MmtSurgeon::choose_depth(double position, double energy_max, double force_m
     }
     depth_ = low;
   }
-  released_ = shown_.force(depth_);
-  release_ = 0;
   if (shown_.energy(depth_) > energy_max + kEnergyTolerance) {
-    const double left = std::max(kEnergyTolerance, energy_max - released_ * play);
-    release_ = std::min(0.5 * released_ * released_ / left, config_.release_max);
+    release_.hold(shown_.force(depth_), energy_max);
+  } else {
+    release_.end();
   }
 }
 

@@ -13,6 +13,7 @@
 #include "common/coupling/coupling.h"
 #include "common/coupling/late_device.h"
 #include "common/coupling/paired_readings.h"
+#include "common/coupling/release_line.h"
 
 /// Coupling `mmt`: the patient site says what the tissue is like, not what it just did. The
 /// surgeon site renders that model at the device's rate, behind a tank that pays for every change
@@ -34,10 +35,7 @@ struct MmtConfig {
   double slew_rest{0.1};    ///< [-], share of it under a hand at rest; none a little faster out
   double slew_beside{1};    ///< [N/s], of a new model beside what motion alone does
   Duration round_trip_short{std::chrono::milliseconds{8}};
-  /// [N/m], steepest that the shown force lets go while the tank is short. The steeper, the less a
-  /// held force has to store, and the less quietly a hand holds.
-  double release_max{1500};
-  double release_play{60e-6};   ///< [m], that a holding hand trembles and its encoder counts
+  ReleaseLineConfig release;    ///< of a force that the tank cannot pay the spring of
   double blend{0.05};           ///< [s], time constant of changes of the model
   double believed{0.6};         ///< [N], so much may a peer take back as it learns
   double doubt{0.2};            ///< [N], beyond that, with which `blend` doubles
@@ -111,11 +109,9 @@ class MmtSurgeon {
   double tank_;               ///< [J]
   double stored_{};           ///< [J]
   double shown_force_{};      ///< [N], of the shown model, last tick
-  double depth_{};     ///< [m], of the shown model; less than the hand's while force is missing
-  double release_{};   ///< [N/m], along which the force lets go; 0: along the model
-  double released_{};  ///< [N], with `release_`: the force
-  double slack_{};     ///< [m], 0 to `release_play`: the hand gave way, the force did not
-  double brake_{};     ///< [N]
+  double depth_{};  ///< [m], of the shown model; less than the hand's while force is missing
+  ReleaseLine release_;
+  double brake_{};  ///< [N]
   RelaxingContact shown_;
   bool showing_{};
   Swing swing_;                                   ///< of the newest model, when it was sent
