@@ -49,7 +49,8 @@ struct MetricsConfig {
   double force_cap{8.5};                                             ///< [N], of the haptic device
   double period{1e-3};                                               ///< [s]
   double force_continuous{std::numeric_limits<double>::infinity()};  ///< [N], of its motors
-  double own_swing{};  ///< [m], of the same hand at the tissue with its own finger
+  double own_swing{};  ///< [m], of the same hand at the tissue with its own finger: hand and
+                       ///< tip may swing so much
   double stiffest{std::numeric_limits<double>::infinity()};  ///< [N/m], most that may be shown
   double round_trip{};                                       ///< [s], mean, of the path
   double tip_force_limit{3};  ///< [N], above it the patient's gate retreats

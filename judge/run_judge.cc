@@ -315,10 +315,12 @@ void RunJudge::sum_up_stability() {
   call_unstable(metrics_, swings_, hand, "the hand swings by 1 mm or more in a hold");
   metrics_.contact.hand_swing = hand_swing_.largest();
   metrics_.contact.tip_swing = tip_swing_.largest();
-  // A light hand that taps on something stiff bounces there with its own finger too.
-  const bool cycles = metrics_.contact.hand_swing >= config_.own_swing + kUnstableCycle;
+  // A light hand that taps on something stiff bounces there with its own finger too, which is hand
+  // and tip in one.
+  const double unstable = config_.own_swing + kUnstableCycle;
+  const bool cycles = metrics_.contact.hand_swing >= unstable;
   call_unstable(metrics_, cycles, hand, "the hand swings by itself");
-  const bool tip_cycles = metrics_.contact.tip_swing >= kUnstableCycle;
+  const bool tip_cycles = metrics_.contact.tip_swing >= unstable;
   call_unstable(metrics_, tip_cycles, tip, "the tip swings by itself");
   call_unstable(metrics_, ran_away_, hand, "the hand ran away");
   const bool at_limit = at_cap_ >= kUnstableCapTime;

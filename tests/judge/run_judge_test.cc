@@ -178,17 +178,22 @@ TEST(RunJudgeTest, AHandThatSwingsWhileItMovesIsUnstable) {
   EXPECT_STREQ(metrics.unstable_reason, "the hand swings by itself");
 }
 
-TEST(RunJudgeTest, AHandThatSwingsNoMoreThanWithItsOwnFingerIsStable) {
-  MetricsConfig config;
-  config.own_swing = 0.4e-3;
-  RunJudge judge{config};
-  for (int i = 0; i < 2000; ++i) {
-    RunTick tick = tick_at(i, PhaseKind::Tap, 1);
-    tick.hand = hammering(1e-3 * i);
-    judge.look(tick);
+TEST(RunJudgeTest, HandAndTipThatSwingNoMoreThanTheHandsOwnFingerAreStable) {
+  for (const double own_swing : {0.4e-3, 0.2e-3}) {
+    MetricsConfig config;
+    config.own_swing = own_swing;
+    RunJudge judge{config};
+    for (int i = 0; i < 2000; ++i) {
+      RunTick tick = tick_at(i, PhaseKind::Tap, 1);
+      tick.hand = tick.tip = hammering(1e-3 * i);
+      judge.look(tick);
+    }
+    const RunMetrics metrics = judge.metrics();
+    EXPECT_NEAR(metrics.contact.hand_swing, 0.8e-3, 0.02e-3);
+    EXPECT_NEAR(metrics.contact.tip_swing, 0.8e-3, 0.02e-3);
+    EXPECT_EQ(metrics.contact.unstable_hand, own_swing < 0.3e-3);
+    EXPECT_EQ(metrics.contact.unstable_tip, own_swing < 0.3e-3);
   }
-  EXPECT_NEAR(judge.metrics().contact.hand_swing, 0.8e-3, 0.02e-3);
-  EXPECT_FALSE(judge.metrics().unstable);
 }
 
 TEST(RunJudgeTest, ASineThatAPersonMeansIsStable) {
