@@ -9,6 +9,9 @@ namespace {
 constexpr double kEnergyTolerance = 1e-15;  // [J]
 constexpr double kForceTolerance = 1e-12;   // [N]
 constexpr int kHalvings = 30;
+// [-], of the tank, that is spent. The rest is for what the counts of an encoder hide of a hand's
+// work: 30 um at 1.7 N.
+constexpr double kSpent = 0.95;
 
 constexpr bool may_render(SiteState state) noexcept {
   return state == SiteState::Engaged || state == SiteState::Hold || state == SiteState::Retract;
@@ -34,19 +37,18 @@ RelaxingContact::Shares blended(RelaxingContact::Shares from,
   return from;
 }
 
-/// A device that answers late drives a hand the more, the steeper the line.
-ReleaseLineConfig at_device(ReleaseLineConfig line, const HandFacts& hand) noexcept {
-  if (answer_delay(hand) > 0) line.steepest = line.soft;
-  return line;
+MmtConfig with_reserve(MmtConfig config) noexcept {
+  config.tank *= kSpent;
+  return config;
 }
 
 }  // namespace
 
 MmtSurgeon::MmtSurgeon(const MmtConfig& config, const HandFacts& hand) noexcept
-    : config_{config},
+    : config_{with_reserve(config)},
       device_{hand, config.velocity_cut_off},
       velocity_{device_.velocity_cut_off(), config.period},
-      tank_{config.tank},
+      tank_{config_.tank},
       release_{at_device(config.release, hand)} {}
 
 /// The axis may have moved under the hand, so there is no work in this tick. The tank is kept.

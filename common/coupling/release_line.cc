@@ -9,6 +9,11 @@ constexpr double kEnergyLeast = 1e-15;  // [J]
 
 }  // namespace
 
+ReleaseLineConfig at_device(ReleaseLineConfig line, const HandFacts& hand) noexcept {
+  if (answer_delay(hand) > 0) line.steepest = line.soft;
+  return line;
+}
+
 double ReleaseLine::steepest(double force) const noexcept {
   return std::clamp(std::max(force, plateau_) / config_.way, config_.soft, config_.steepest);
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "common/core/device_facts.h"
+
 namespace palp::coupling {
 
 struct ReleaseLineConfig {
@@ -10,6 +12,9 @@ struct ReleaseLineConfig {
   double settle{0.1};     ///< [s], after which the play lies where the hand rests
   double period{1e-3};    ///< [s], of the calls of hold()
 };
+
+/// A device that answers late drives a hand the more, the steeper the line: it gets the soft one.
+[[nodiscard]] ReleaseLineConfig at_device(ReleaseLineConfig line, const HandFacts& hand) noexcept;
 
 /// How a force lets go of a hand where nobody can pay for the spring behind it. Holding a force
 /// takes no energy, giving way does, so the force follows a steep line that stores little: it stays

@@ -1,13 +1,11 @@
 #include "common/coupling/release_line.h"
 
 #include <algorithm>
-#include <array>
 
 #include <gtest/gtest.h>
 
 #include "common/core/device_facts.h"
 #include "common/core/random.h"
-#include "common/coupling/mmt.h"
 
 namespace palp::coupling {
 namespace {
@@ -91,27 +89,10 @@ TEST(ReleaseLineTest, ThePlayComesToWhereTheHandRests) {
   }
 }
 
-/// [N], missing at a hand that rests 4 mm deep in a place as it becomes known.
-double missing_with(const HandFacts& hand) {
-  MmtSurgeon law{MmtConfig{}, hand};
-  law.begin_epoch(4e-3);
-  Incoming told;
-  told.fresh = true;
-  told.sample.payload = ModelPayload{.version = 1, .c = {0, 0.3}, .depth_max = 4e-3};
-  const std::array arrived{told};
-  SurgeonInput in{.state = SiteState::Engaged, .position = 4e-3, .arrived = arrived};
-  double missing = 0;
-  for (int tick = 0; tick < 4000; ++tick) {
-    const SurgeonOutput out = law.step(in, std::chrono::milliseconds{1});
-    in.force_applied = out.force;
-    missing = out.force_missing;
-  }
-  return missing;
-}
-
 TEST(ReleaseLineTest, ADeviceThatAnswersLateGetsNoSteepLine) {
-  EXPECT_NEAR(missing_with({}), 0, 1e-6);
-  EXPECT_GT(missing_with({.lag = 5e-3}), 0.1);
+  EXPECT_EQ(at_device(kConfig, {}).steepest, kConfig.steepest);
+  EXPECT_EQ(at_device(kConfig, {.lag = 5e-3}).steepest, kConfig.soft);
+  EXPECT_EQ(at_device(kConfig, {.rate = 500}).steepest, kConfig.soft);
 }
 
 }  // namespace
