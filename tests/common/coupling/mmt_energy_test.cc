@@ -67,7 +67,7 @@ double pushed_out(double offset) {
   return -hand.work_min;
 }
 
-TEST(MmtEnergyTest, WhatTheCountsOfAnEncoderHideIsWithinTheTank) {
+TEST(MmtEnergyTest, AFirmHandThatIsPushedOutAndGoesGetsNoMoreThanTheTank) {
   double most = 0;
   for (int i = 0; i < 30; ++i) most = std::max(most, pushed_out(1e-6 * i));
   EXPECT_LE(most, MmtConfig{}.tank);
