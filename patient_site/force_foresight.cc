@@ -88,7 +88,7 @@ double ForceForesight::step_most(double limit) const noexcept {
   if (count_ == 0) return std::numeric_limits<double>::max();
   const double missing = std::max(0.0, rest(limit) - std::max(force_, reading(0).force));
   const double way = missing / std::max(stiffness_, config_.stiffness_min);
-  return way * period_ / (late_ + config_.patience);
+  return way * period_ / late_;
 }
 
 double ForceForesight::bound(double tip, double limit) const noexcept {

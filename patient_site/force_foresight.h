@@ -17,7 +17,6 @@ struct ForceForesightConfig {
   double window{12e-3};       ///< [s], of readings that say how steep the tissue is
   double span{0.1e-3};        ///< [m], no less of the tip's way says it
   double braking{9.5e-3};     ///< [s], of the stage's lag: what brakes spare
-  double patience{12e-3};  ///< [s], beside what is late: so long a braked tip waits for its force
   double share_min{1.0 / 3};  ///< [-], of its lead, that the tip goes on when its target stands
 };
 

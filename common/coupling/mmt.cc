@@ -9,9 +9,6 @@ namespace {
 constexpr double kEnergyTolerance = 1e-15;  // [J]
 constexpr double kForceTolerance = 1e-12;   // [N]
 constexpr int kHalvings = 30;
-// [-], of the tank, that is spent. The rest is for what the counts of an encoder hide of a hand's
-// work: 30 um at 1.7 N.
-constexpr double kSpent = 0.95;
 
 constexpr bool may_render(SiteState state) noexcept {
   return state == SiteState::Engaged || state == SiteState::Hold || state == SiteState::Retract;
@@ -37,18 +34,13 @@ RelaxingContact::Shares blended(RelaxingContact::Shares from,
   return from;
 }
 
-MmtConfig with_reserve(MmtConfig config) noexcept {
-  config.tank *= kSpent;
-  return config;
-}
-
 }  // namespace
 
 MmtSurgeon::MmtSurgeon(const MmtConfig& config, const HandFacts& hand) noexcept
-    : config_{with_reserve(config)},
+    : config_{config},
       device_{hand, config.velocity_cut_off},
       velocity_{device_.velocity_cut_off(), config.period},
-      tank_{config_.tank},
+      tank_{config.tank},
       release_{at_device(config.release, hand)} {}
 
 /// The axis may have moved under the hand, so there is no work in this tick. The tank is kept.

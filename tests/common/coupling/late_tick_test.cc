@@ -173,7 +173,7 @@ TEST(LateTickBooksTest, TheWorkOfAHeldForceIsThatForceTimesTheWay) {
     for (const std::int64_t periods : {1, 5, 50, 5000}) {
       const MmtConfig mmt;
       EXPECT_DOUBLE_EQ(after_a_jump(MmtSurgeon{mmt}, way, periods).tank(),
-                       MmtSurgeon{mmt}.tank() + std::min(0.0, way))
+                       mmt.tank + std::min(0.0, way))
           << "it is full at first";
       const WaveConfig wave;
       EXPECT_DOUBLE_EQ(after_a_jump(WaveSurgeon{wave}, way, periods).tank(), wave.tank.start + way);

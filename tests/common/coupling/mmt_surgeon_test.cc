@@ -52,7 +52,7 @@ TEST(MmtSurgeonTest, ASurfaceFoundWhilePressingIsLetInAsFarAsTheTankPays) {
   const MmtConfig config;
   ASSERT_LT(whole.energy(4e-3), config.tank);
   EXPECT_NEAR(discover(soft).force, whole.force(4e-3), 1e-6) << "all of it";
-  EXPECT_NEAR(discover(hard).stored, MmtSurgeon{config}.tank(), 1e-9) << "as much as was there";
+  EXPECT_NEAR(discover(hard).stored, config.tank, 1e-9) << "as much as was there";
   EXPECT_LE(discover(soft).rate_max, config.slew_small + 1e-6);
   EXPECT_LE(discover(hard).rate_max, config.slew_small + 1e-6);
 }
