@@ -7,7 +7,7 @@ namespace palp::judge {
 
 void ContactEnergy::look(const Look& now) noexcept {
   if (!std::exchange(begun_, true)) work_before_ = now.work;
-  if (now.truth > 0 || now.felt > kFelt) {
+  if (now.truth > 0 || now.felt > (touches_ ? kLetGo : kFelt)) {
     touches_ = true;
     touched_at_ = now.at;
   }

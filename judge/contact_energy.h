@@ -8,8 +8,9 @@ namespace palp::judge {
 /// give back what it took; from air to air whatever the hand got was made. Thread: any one.
 class ContactEnergy {
  public:
-  static constexpr double kFelt = 0.05;   ///< [N], felt force: in contact
-  static constexpr double kEnded = 0.02;  ///< [s], without force: the contact is over
+  static constexpr double kFelt = 0.05;    ///< [N], felt force: in contact
+  static constexpr double kLetGo = 0.005;  ///< [N], below it nothing of a contact is left
+  static constexpr double kEnded = 0.02;   ///< [s], so long: the contact is over
 
   /// One tick at the hand.
   struct Look {

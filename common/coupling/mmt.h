@@ -23,8 +23,8 @@ namespace palp::coupling {
 
 /// One list, as message Mmt of the configuration has it.
 struct MmtConfig {
-  /// [J], full at first, and the guarantee, but for what the counts of an encoder hide of the work:
-  /// the most that the hand can get from any moment on at which nothing is shown.
+  /// [J], full at first, and the guarantee: the most that the hand can get from any moment on at
+  /// which nothing is shown.
   double tank{1e-3};
   double slew{4};           ///< [N/s], of the force while a new model comes in
   double slew_short{12};    ///< [N/s], the same below `round_trip_short`

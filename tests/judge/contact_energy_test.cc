@@ -101,6 +101,27 @@ TEST(ContactEnergyTest, TwentyMillisecondsWithoutForceEndAContact) {
   }
 }
 
+/// A tissue may sink away under a hand that is given little of it still: what that stores is of the
+/// same contact.
+TEST(ContactEnergyTest, AContactLastsUntilNothingOfItIsLeft) {
+  ContactEnergy energy;
+  double at = 0;
+  double work = 0;
+  const auto ticks = [&](int count, double felt, double gain) {
+    for (int i = 0; i < count; ++i) {
+      at += 1e-3;
+      work += gain;
+      energy.look({.at = at, .felt = felt, .work = work});
+    }
+  };
+  ticks(50, 0, 0);
+  ticks(100, 0.3, 4e-6);
+  ticks(100, 0.04, 0);
+  ticks(100, 0.3, -6e-6);
+  ticks(50, 0, 0);
+  EXPECT_NEAR(energy.in_contact(), 200e-6, 1e-9);
+}
+
 TEST(ContactEnergyTest, WhereNobodyKnowsTheTissueTheForceFeltTells) {
   ContactEnergy energy;
   energy.look({.at = 0, .truth = NAN});
