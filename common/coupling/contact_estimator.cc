@@ -38,6 +38,7 @@ ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcep
       onset_{config.detection_force, config.sensor, config.period},
       sensed_{.tip = {config.sensor.pole, config.period}},
       held_{config.period},
+      drift_{config.period},
       swing_{config.period} {
   expected_.c[1] = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
   here_.expected = expected_.c;
@@ -352,7 +353,7 @@ void ContactEstimator::begin_contact() noexcept {
 void ContactEstimator::look(double halfway, double force) noexcept {
   const double threshold = onset_.force(noise_.deviation());
   const bool contact = sensed_.force_mean >= threshold && noise_.known();
-  if (placed_ && !contact && sensed_.tip.value() > centre_ + kMisplaced) placed_ = false;
+  if (placed_ && !contact && sensed_.tip.value() > centre_ + kMisplaced) withdraw();
   doubt(threshold);
   if (!placed_) {
     if (!contact) return noise_.listen(force);  // before the first contact every reading is noise
@@ -370,8 +371,19 @@ void ContactEstimator::look(double halfway, double force) noexcept {
   relax();
   collect(force);
   if (model_.version > 0) model_.residual = force - predicted();
-  const double bias = noise_.bias(held_.force(), config_.sensor.step);
-  held_.step(model_, sensed_.raw_tip, force - bias, noise_.doubt());
+  follow_told(force - noise_.bias(held_.force(), config_.sensor.step));
+}
+
+/// What is told is compared with the `force` [N] of a tip that rests or is slow. A surface that may
+/// move does; one that is known to stand still has a tissue that relaxes.
+void ContactEstimator::follow_told(double force) noexcept {
+  const ModelPayload moved = drift_.moved(model_);
+  held_.step(moved, sensed_.raw_tip, force, noise_.doubt());
+  if (swing_.still()) {
+    drift_.fade();
+  } else {
+    drift_.step(moved, {sensed_.raw_tip, held_.speed(), force, held_.force()});
+  }
 }
 
 void ContactEstimator::step(double position, double force, std::int64_t periods) noexcept {
@@ -379,7 +391,7 @@ void ContactEstimator::step(double position, double force, std::int64_t periods)
   const double halfway = sense(position, force);
   watch_surface();
   look(halfway, force);
-  held_.tell(model_);
+  held_.tell(drift_.moved(model_));
 }
 
 }  // namespace palp::coupling

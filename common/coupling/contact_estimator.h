@@ -13,6 +13,7 @@
 #include "common/coupling/held_force.h"
 #include "common/coupling/sensor_noise.h"
 #include "common/coupling/spline_estimator.h"
+#include "common/coupling/surface_drift.h"
 #include "common/message/port_sample.h"
 
 /// The patient's half of `mmt` at work: finds the contact model behind positions and forces.
@@ -76,6 +77,7 @@ class ContactEstimator {
   void withdraw() noexcept;
   void track(double position) noexcept;
   void watch_surface() noexcept;
+  void follow_told(double force) noexcept;
   [[nodiscard]] Solution solve(std::size_t candidate, bool relaxes) noexcept;
   [[nodiscard]] double surface_of(std::size_t candidate) const noexcept;
   [[nodiscard]] double equation_noise() const noexcept;
@@ -188,6 +190,7 @@ class ContactEstimator {
   Expected expected_;
   ModelPayload model_;
   HeldForce held_;
+  SurfaceDrift drift_;
   BreathingEstimator swing_;
   Here here_;
   Places places_;

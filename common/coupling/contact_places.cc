@@ -59,6 +59,7 @@ void ContactEstimator::new_place(const Place& place) noexcept {
   places_.here = place;
   swing_.new_place();
   held_.forget();
+  drift_.forget();
   here_.contact = false;
   here_.touched = 0;
   here_.deepest = -1;

@@ -6,15 +6,17 @@
 
 namespace palp::coupling {
 
-/// How much a peer takes back of what it told. Who learns a tissue tells more and more of it, or
-/// less and less; who raises a force and lowers it again, without a motion of the hand, does not
-/// know it or lies. Thread: rt. A value.
+/// How much a peer takes back of what it told: of a force [N], or of where a surface is [m]. Who
+/// learns a tissue tells more and more of it, or less and less; who raises a force and lowers it
+/// again, without a motion of the hand, does not know it or lies. Thread: rt. A value.
 class Contradiction {
  public:
-  /// News changed the told force at the hand's own place by `change` [N].
+  /// To either side, what noise does to a model.
+  explicit Contradiction(double play) noexcept : play_{play} {}
+  /// News changed by `change` what is told of the hand's own place.
   void tell(double change) noexcept {
     told_ += change;
-    const double edge = std::clamp(followed_, told_ - kPlay, told_ + kPlay);
+    const double edge = std::clamp(followed_, told_ - play_, told_ + play_);
     const double moved = edge - std::exchange(followed_, edge);
     (moved > 0 ? raised_ : lowered_) += std::abs(moved);
   }
@@ -24,17 +26,23 @@ class Contradiction {
     raised_ *= kept;
     lowered_ *= kept;
   }
-  /// [N], that was raised and lowered again, or the other way round, in the last kMemory.
+  /// What was raised and lowered again, or the other way round, in the last kMemory.
   [[nodiscard]] double taken_back() const noexcept { return std::min(raised_, lowered_); }
+  /// [-] >= 1, how many times slower its peer is to be followed: more than `believed` is doubted,
+  /// with the square of the rest over `doubt`.
+  [[nodiscard]] double slower(double believed, double doubt) const noexcept {
+    const double doubts = std::max(0.0, taken_back() - believed) / doubt;
+    return 1 + doubts * doubts;
+  }
 
  private:
-  static constexpr double kPlay = 0.03;  // [N], to either side: what noise does to a model
   static constexpr double kMemory = 10;  // [s]
 
-  double told_{};      ///< [N], all changes
-  double followed_{};  ///< [N], the same with play
-  double raised_{};    ///< [N]
-  double lowered_{};   ///< [N]
+  double play_;        ///< [N] or [m], as all that follow
+  double told_{};      ///< all changes
+  double followed_{};  ///< the same with play
+  double raised_{};
+  double lowered_{};
 };
 
 }  // namespace palp::coupling

@@ -21,6 +21,7 @@ class HeldForce {
   [[nodiscard]] const ModelPayload& told() const noexcept { return told_; }
   /// [N], of a tip there, as it is told.
   [[nodiscard]] double force() const noexcept { return force_; }
+  [[nodiscard]] double speed() const noexcept { return speed_; }  ///< [m/s], of the tip, lately
   /// Another place.
   void forget() noexcept { share_ = 0; }
 

@@ -91,23 +91,26 @@ void MmtSurgeon::hear(const SurgeonInput& in) noexcept {
   }
   version_ = model->version;
   if (model->version == 0) return;
+  const double foreseen = swing_.after(swing_age_);
+  swing_ = {model->swing, model->swing_quadrature, model->swing_rate};
+  swing_age_ = 0.5 * seconds(in.round_trip);
+  surface_contradiction_.tell(swing_.after(swing_age_) - foreseen);
   const double told = told_force(in.position);
   told_ = contact_model(*model);
   candidate_ = no_steeper(told_, config_.slope_max / quick_gain(model->relaxing));
   candidate_relaxing_ = model->relaxing;
-  // Another swing than was foreseen is a change of the model, not a motion of the surface.
-  const double foreseen = swing_.after(swing_age_);
-  swing_ = {model->swing, model->swing_quadrature, model->swing_rate};
-  swing_age_ = 0.5 * seconds(in.round_trip);
-  swung_ += swing_.after(swing_age_) - foreseen;
-  contradiction_.tell(told_force(in.position) - told);
+  force_contradiction_.tell(told_force(in.position) - told);
 }
 
-/// [-], than of a peer that takes nothing back.
-double MmtSurgeon::slower() const noexcept {
-  const double doubted = std::max(0.0, contradiction_.taken_back() - config_.believed);
-  const double doubts = doubted / config_.doubt;
-  return 1 + doubts * doubts;
+/// The surface moves as its swing does, as fast as one that breathes may. A peer that tells of
+/// other swings than it foresaw moves it less.
+void MmtSurgeon::swing_shown(ContactModel& elastic, double span) noexcept {
+  const double slower =
+      surface_contradiction_.slower(config_.surface_believed, config_.surface_doubt);
+  const double most = config_.surface_speed / slower * span;
+  const double way = std::clamp(swing_.after(swing_age_) - swung_, -most, most);
+  elastic.surface += way;
+  swung_ += way;
 }
 
 /// The shown model ages at `depth` and moves towards the newest one; in the air at once, for
@@ -121,20 +124,21 @@ void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& 
   for (double& coefficient : aim.c) coefficient *= given;
   for (double& stiffness : aim.stiffness) stiffness *= given;
   // The surface swings on by itself; what is blended is the rest.
-  const double swung = swing_.after(swing_age_);
   ContactModel elastic = shown_.elastic();
-  elastic.surface += (swung - swung_) / slower();
-  aim.surface += swung;
-  swung_ = swung;
-  if (!showing_ || (depth <= 0 && position <= aim.surface)) {
+  const double swung = swing_.after(swing_age_);
+  if (!showing_ || (depth <= 0 && position <= aim.surface + swung)) {
+    aim.surface += swung;
+    swung_ = swung;
     shown_.age_into(aim, candidate_relaxing_, depth, passed);
     showing_ = true;
     return;
   }
+  swing_shown(elastic, passed);
+  aim.surface += swung_;
   const RelaxingContact before = shown_;
   const double force = before.force(depth);
   const double fall_max = config_.fall * seconds(lapse.period);
-  const double blend = config_.blend * slower();
+  const double blend = config_.blend * force_contradiction_.slower(config_.believed, config_.doubt);
   double share = -std::expm1(-seconds(lapse.period) / blend);
   for (int attempt = 0; attempt < 8; ++attempt) {
     const ContactModel between = blended(elastic, aim, share);
@@ -242,7 +246,8 @@ SurgeonOutput MmtSurgeon::let_go(const SurgeonInput& in, double work) noexcept {
 SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexcept {
   const double span = seconds(lapse.period);
   swing_age_ += seconds(lapse.passed());
-  contradiction_.age(seconds(lapse.passed()));
+  force_contradiction_.age(seconds(lapse.passed()));
+  surface_contradiction_.age(seconds(lapse.passed()));
   hear(in);
   const double speed = velocity_.step(in.position, lapse.periods);
   const double work = in.force_applied * (in.position - position_before_);

@@ -35,23 +35,26 @@ struct MmtConfig {
   double slew_rest{0.1};    ///< [-], share of it under a hand at rest; none a little faster out
   double slew_beside{1};    ///< [N/s], of a new model beside what motion alone does
   Duration round_trip_short{std::chrono::milliseconds{8}};
-  ReleaseLineConfig release;    ///< of a force that the tank cannot pay the spring of
-  double blend{0.05};           ///< [s], time constant of changes of the model
-  double believed{0.6};         ///< [N], so much may a peer take back as it learns
-  double doubt{0.2};            ///< [N], beyond that, with which `blend` doubles
-  double fall{25};              ///< [N/s], most by which they let the force fall
-  double brake{2};              ///< [N s/m], on the way in, while a force is still to come in
-  double contact_damping{0.2};  ///< [N s/m], on the way out: the way in is what a finger judges
-  double air_damping{0.3};      ///< [N s/m], fills the tank
-  double repay_contact{3};      ///< [N s/m], on top on the way out while the tank is empty
-  double repay_air{0.7};        ///< [N s/m], the same in the air
-  double empty_damping{2};      ///< [N s/m], on top while the tank is overdrawn
-  double overdraft{5e-6};       ///< [J], with which that is reached
-  double velocity_cut_off{60};  ///< [Hz]
-  double fade{1};               ///< [s], of the model in Retract
-  double period{1e-3};          ///< [s]
-  double lead_max{25e-3};       ///< [s], most that the target runs ahead of the hand's position
-  double lead_cut_off{15};      ///< [Hz], of the velocity it runs ahead with
+  ReleaseLineConfig release;      ///< of a force that the tank cannot pay the spring of
+  double blend{0.05};             ///< [s], time constant of changes of the model
+  double believed{0.6};           ///< [N], so much may a peer take back as it learns
+  double doubt{0.2};              ///< [N], beyond that, with which `blend` doubles
+  double surface_speed{8e-3};     ///< [m/s], at most, of a shown surface that swings or drifts
+  double surface_believed{8e-3};  ///< [m], so much of its way may a peer take back
+  double surface_doubt{3e-3};     ///< [m], beyond that, with which `surface_speed` halves
+  double fall{25};                ///< [N/s], most by which they let the force fall
+  double brake{2};                ///< [N s/m], on the way in, while a force is still to come in
+  double contact_damping{0.2};    ///< [N s/m], on the way out: the way in is what a finger judges
+  double air_damping{0.3};        ///< [N s/m], fills the tank
+  double repay_contact{3};        ///< [N s/m], on top on the way out while the tank is empty
+  double repay_air{0.7};          ///< [N s/m], the same in the air
+  double empty_damping{2};        ///< [N s/m], on top while the tank is overdrawn
+  double overdraft{5e-6};         ///< [J], with which that is reached
+  double velocity_cut_off{60};    ///< [Hz]
+  double fade{1};                 ///< [s], of the model in Retract
+  double period{1e-3};            ///< [s]
+  double lead_max{25e-3};         ///< [s], most that the target runs ahead of the hand's position
+  double lead_cut_off{15};        ///< [Hz], of the velocity it runs ahead with
   /// [N], so much harder than the hand is told, and by `unfelt_share` of what it is told, the tip
   /// presses before it gives way.
   double unfelt{0.35};
@@ -86,9 +89,9 @@ class MmtSurgeon {
   void hear(const SurgeonInput& in) noexcept;
   [[nodiscard]] double told_force(double position) const noexcept;
   [[nodiscard]] double too_stiff(double position) const noexcept;
-  [[nodiscard]] double slower() const noexcept;
   void drop_model() noexcept;
   [[nodiscard]] SurgeonOutput let_go(const SurgeonInput& in, double work) noexcept;
+  void swing_shown(ContactModel& elastic, double span) noexcept;
   void approach_candidate(double position, double depth, const Lapse& lapse) noexcept;
   [[nodiscard]] double depth_at(double position) const noexcept {
     return position - shown_.elastic().surface;
@@ -116,11 +119,12 @@ class MmtSurgeon {
   bool showing_{};
   Swing swing_;                                   ///< of the newest model, when it was sent
   double swing_age_{};                            ///< [s], since then
-  double swung_{};                                ///< [m], of the shown surface
+  double swung_{};                                ///< [m], of the shown surface, towards it
   std::optional<ContactModel> candidate_;         ///< none: nothing was learned yet
   ContactModel told_;                             ///< the same, as steep as it was told
   RelaxingContact::Shares candidate_relaxing_{};  ///< [-]
-  Contradiction contradiction_;
+  Contradiction force_contradiction_{30e-3};      ///< [N]
+  Contradiction surface_contradiction_{30e-6};    ///< [m]
   std::uint32_t version_{};
   Ramp presence_{1};
   std::uint64_t refused_{};

@@ -13,8 +13,10 @@
 namespace palp::coupling {
 namespace {
 
+constexpr double kPlay = 0.03;  // [N]
+
 TEST(ContradictionTest, WhoLearnsTakesNothingBack) {
-  Contradiction contradiction;
+  Contradiction contradiction{kPlay};
   for (int news = 0; news < 1000; ++news) {
     contradiction.tell(2e-3 + (news % 2 == 0 ? 0.02 : -0.02));  // 2 N in all, and noise
     contradiction.age(1e-3);
@@ -24,7 +26,7 @@ TEST(ContradictionTest, WhoLearnsTakesNothingBack) {
 
 TEST(ContradictionTest, WhatIsRaisedAndLoweredAgainIsTakenBack) {
   for (const double first : {0.5, -0.5}) {
-    Contradiction contradiction;
+    Contradiction contradiction{kPlay};
     contradiction.tell(first);
     EXPECT_EQ(contradiction.taken_back(), 0);
     contradiction.tell(-first);
@@ -36,12 +38,26 @@ TEST(ContradictionTest, WhatIsRaisedAndLoweredAgainIsTakenBack) {
 }
 
 TEST(ContradictionTest, IsForgottenWithinSomeSeconds) {
-  Contradiction contradiction;
+  Contradiction contradiction{kPlay};
   contradiction.tell(0.5);
   contradiction.tell(-0.5);
   const double at_first = contradiction.taken_back();
   for (int tick = 0; tick < 30'000; ++tick) contradiction.age(1e-3);
   EXPECT_NEAR(contradiction.taken_back() / at_first, 0.05, 0.001);
+}
+
+TEST(ContradictionTest, TheMoreIsTakenBackTheSlowerItsPeerIsFollowed) {
+  Contradiction contradiction{kPlay};
+  EXPECT_EQ(contradiction.slower(0.2, 0.1), 1);
+  double before = 1;
+  for (int lie = 0; lie < 5; ++lie) {
+    contradiction.tell(0.3);
+    contradiction.tell(-0.3);
+    const double slower = contradiction.slower(0.2, 0.1);
+    EXPECT_NEAR(slower, 1 + std::pow((0.24 * (lie + 1) - 0.2) / 0.1, 2), 1e-9);
+    EXPECT_GT(slower, before);
+    before = slower;
+  }
 }
 
 /// What a patient site tells after a time [s].
@@ -91,7 +107,7 @@ ModelPayload another_breath(double at) {
 
 TEST(MmtSurgeonTest, APeerThatTakesBackWhatItToldMovesNoHand) {
   MmtConfig all_believed;
-  all_believed.believed = 1e9;
+  all_believed.believed = all_believed.surface_believed = 1e9;
   for (const Story& story : {Story{soft_or_stiff}, Story{another_breath}}) {
     const double unguarded = moved(story, all_believed);
     EXPECT_GT(unguarded, 0.5e-3) << "there is something to hold back";
@@ -101,7 +117,7 @@ TEST(MmtSurgeonTest, APeerThatTakesBackWhatItToldMovesNoHand) {
 
 TEST(MmtSurgeonTest, APeerThatLearnsIsFollowedAtOnce) {
   MmtConfig all_believed;
-  all_believed.believed = 1e9;
+  all_believed.believed = all_believed.surface_believed = 1e9;
   // Of ever more, as a tissue is found: half of it comes after 6.5 s.
   const auto learned = [](double at) {
     return ModelPayload{.version = 1, .c = {0, at < 6.5 ? 0.1 : 0.2}, .depth_max = 5e-3};

@@ -71,12 +71,23 @@ TEST(ShortForceTest, ATissueStifferThanMayBeShownIsCalledSo) {
   }
 }
 
+Told held_against_a_breath(int round_trip_ms) {
+  std::vector<std::string> settings = path_of(round_trip_ms);
+  settings.emplace_back("patient.simulated_phantom.breathing_mm=1.5");
+  settings.emplace_back("patient.simulated_phantom.breathing_hz=0.3");
+  return told_of("hold 1\npress 3 1 8\nlift 1 1\n", settings);
+}
+
+/// A short path lets the hand follow the surface before a breath is known.
+TEST(ShortForceTest, OverAShortPathATissueThatBreathesIsFeltWhole) {
+  for (const int round_trip_ms : {20, 100}) {
+    EXPECT_TRUE(std::isnan(held_against_a_breath(round_trip_ms).announced)) << round_trip_ms;
+  }
+}
+
 TEST(ShortForceTest, ATissueThatBreathesAgainstAModelAtRestIsCalledMore) {
-  for (const int round_trip_ms : {100, 300}) {
-    std::vector<std::string> settings = path_of(round_trip_ms);
-    settings.emplace_back("patient.simulated_phantom.breathing_mm=1.5");
-    settings.emplace_back("patient.simulated_phantom.breathing_hz=0.3");
-    const Told told = told_of("hold 1\npress 3 1 8\nlift 1 1\n", settings);
+  for (const int round_trip_ms : {300, 500}) {
+    const Told told = held_against_a_breath(round_trip_ms);
     EXPECT_EQ(told.announced, 1) << round_trip_ms << " ms";
     EXPECT_TRUE(told.why.contains(NoteCode::TipFeelsMore)) << round_trip_ms << " ms";
   }
