@@ -134,7 +134,8 @@ void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& 
     return;
   }
   swing_shown(elastic, passed);
-  aim.surface += swung_;
+  // Of no tissue the surface is nowhere.
+  aim.surface = aim.force(kModelDepthMax) > 0 ? aim.surface + swung_ : elastic.surface;
   const RelaxingContact before = shown_;
   const double force = before.force(depth);
   const double fall_max = config_.fall * seconds(lapse.period);

@@ -115,6 +115,34 @@ TEST(MmtSurgeonTest, APeerThatTakesBackWhatItToldMovesNoHand) {
   }
 }
 
+/// Of a doubted peer the model goes slowly, but it goes: its surface, which is none any more, does
+/// not come up under the hand first.
+TEST(MmtSurgeonTest, OfNoTissueNothingComesUpUnderTheHand) {
+  MmtSurgeon law{{}};
+  law.begin_epoch(2e-3);
+  double force = 0;
+  double at_last = 0;
+  for (int tick = 0; tick < 12'000; ++tick) {
+    const double at = 1e-3 * tick;
+    Incoming incoming;
+    incoming.sample.payload =
+        at < 8 ? soft_or_stiff(at) : ModelPayload{.version = 1, .surface = -15e-3};
+    incoming.fresh = true;
+    const std::array arrived{incoming};
+    SurgeonInput in;
+    in.state = SiteState::Engaged;
+    in.position = 2e-3;
+    in.force_applied = force;
+    in.arrived = arrived;
+    force = law.step(in, std::chrono::milliseconds{1}).force;
+    if (at > 8) {
+      ASSERT_LE(force, at_last + 1e-9) << at;
+    }
+    at_last = force;
+  }
+  EXPECT_GT(force, 0) << "there is something that could come up";
+}
+
 TEST(MmtSurgeonTest, APeerThatLearnsIsFollowedAtOnce) {
   MmtConfig all_believed;
   all_believed.believed = all_believed.surface_believed = 1e9;
