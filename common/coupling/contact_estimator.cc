@@ -371,18 +371,18 @@ void ContactEstimator::look(double halfway, double force) noexcept {
   relax();
   collect(force);
   if (model_.version > 0) model_.residual = force - predicted();
-  follow_told(force - noise_.bias(held_.force(), config_.sensor.step));
+  follow_told(force - noise_.bias(held_.force(), config_.sensor.step), contact);
 }
 
 /// What is told is compared with the `force` [N] of a tip that rests or is slow. A surface that may
 /// move does; one that is known to stand still has a tissue that relaxes.
-void ContactEstimator::follow_told(double force) noexcept {
+void ContactEstimator::follow_told(double force, bool touches) noexcept {
   const ModelPayload moved = drift_.moved(model_);
   held_.step(moved, sensed_.raw_tip, force, noise_.doubt());
   if (swing_.still()) {
     drift_.fade();
   } else {
-    drift_.step(moved, {sensed_.raw_tip, held_.speed(), force, held_.force()});
+    drift_.step(moved, {sensed_.raw_tip, held_.speed(), force, held_.force(), touches});
   }
 }
 

@@ -77,7 +77,7 @@ class ContactEstimator {
   void withdraw() noexcept;
   void track(double position) noexcept;
   void watch_surface() noexcept;
-  void follow_told(double force) noexcept;
+  void follow_told(double force, bool touches) noexcept;
   [[nodiscard]] Solution solve(std::size_t candidate, bool relaxes) noexcept;
   [[nodiscard]] double surface_of(std::size_t candidate) const noexcept;
   [[nodiscard]] double equation_noise() const noexcept;

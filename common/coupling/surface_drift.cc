@@ -13,7 +13,7 @@ constexpr double kUsual = 1.6;       // [rad/s], of a breath
 constexpr double kSlow = 2e-3;       // [m/s], of the tip lately: up to here the surface moves it
 constexpr double kQuick = 4e-3;      // [m/s], and from here on the hand does: taps say nothing
 constexpr double kForgotten = 1e-3;  // [m], of the tip's way
-constexpr double kFelt = 0.03;       // [N]
+constexpr double kFelt = 0.03;       // [N], told
 constexpr double kFarthest = 4e-3;   // [m]
 constexpr double kFastest = 8e-3;    // [m/s], of the surface
 constexpr double kOffMost = 1e-3;    // [m], that one reading is believed
@@ -45,9 +45,9 @@ void SurfaceDrift::step(const ModelPayload& model, const Met& met) noexcept {
   speed_ *= kept;
   if (model.version == 0) return;
   const double depth = met.position - model.surface - model.swing;
-  if (met.force < kFelt && (met.given < kFelt || depth <= 0)) return coast();
+  if (!met.touches && (met.given < kFelt || depth <= 0)) return coast();
   double off = depth;  // [m], that the surface is deeper: by all of it where nothing is felt
-  if (met.force >= kFelt) {
+  if (met.touches) {
     const ContactModel elastic = contact_model(model);
     // What relaxed is no motion of the surface.
     const double elastic_share = met.given > kFelt ? elastic.force(depth) / met.given : 1;

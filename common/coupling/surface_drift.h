@@ -17,6 +17,7 @@ class SurfaceDrift {
     double speed{};     ///< [m/s] >= 0, of the tip, lately
     double force{};     ///< [N], measured
     double given{};     ///< [N], to a hand there, by the model as it is told
+    bool touches{};     ///< it is felt: one reading may be noise
   };
   /// Once a tick, with `model` as moved() told it last.
   void step(const ModelPayload& model, const Met& met) noexcept;

@@ -32,7 +32,8 @@ double told(const SurfaceDrift& drift, double span = 0) {
 /// A tip at `position` [m], lately of `speed` [m/s], in a spring whose surface is at `surface` [m].
 void meet(SurfaceDrift& drift, double position, double speed, double surface) {
   const auto force = [position](double at) { return kStiffness * std::max(0.0, position - at); };
-  drift.step(drift.moved(spring()), {position, speed, force(surface), force(told(drift))});
+  drift.step(drift.moved(spring()),
+             {position, speed, force(surface), force(told(drift)), force(surface) > 0.03});
 }
 
 double breath(double at) { return 1.2e-3 * std::sin(kTurn * 0.25 * at); }
@@ -74,6 +75,14 @@ TEST(SurfaceDriftTest, WhereNothingIsFeltTheSurfaceIsNotAboveTheTip) {
   EXPECT_NEAR(told(drift), 1e-3, 0.1e-3);
 }
 
+TEST(SurfaceDriftTest, AReadingInTheAirIsNoSurface) {
+  SurfaceDrift drift{kPeriod};
+  for (int tick = 0; tick < 3000; ++tick) {
+    drift.step(drift.moved(spring()), {-3e-3, 0, tick % 10 == 0 ? 0.05 : 0, 0, false});
+  }
+  EXPECT_EQ(told(drift), 0);
+}
+
 TEST(SurfaceDriftTest, AsTheTipGoesOnItIsForgotten) {
   SurfaceDrift drift{kPeriod};
   for (int tick = 0; tick < 3000; ++tick) meet(drift, kTip, 0, 1e-3);
@@ -87,7 +96,7 @@ TEST(SurfaceDriftTest, WhatRelaxesIsNoMotionOfTheSurface) {
   for (int tick = 0; tick < 3000; ++tick) {
     // A fifth is gone, and the model says so.
     const double given = 0.8 * kStiffness * (kTip - told(drift));
-    drift.step(drift.moved(spring()), {kTip, 0, 0.8 * kStiffness * kTip, given});
+    drift.step(drift.moved(spring()), {kTip, 0, 0.8 * kStiffness * kTip, given, true});
   }
   EXPECT_NEAR(told(drift), 0, 5e-6);
 }
