@@ -37,8 +37,7 @@ ContactEstimator::ContactEstimator(const ContactEstimatorConfig& config) noexcep
       gain_{LowPass{config.sensor.pole, config.period}.gain()},
       onset_{config.detection_force, config.sensor, config.period},
       sensed_{.tip = {config.sensor.pole, config.period}},
-      held_{config.period},
-      drift_{config.period},
+      told_{HeldForce{config.period}, SurfaceDrift{config.period}},
       swing_{config.period} {
   expected_.c[1] = config.stiffness_expected * kModelDepthScale * std::sqrt(kModelDepthScale);
   here_.expected = expected_.c;
@@ -371,18 +370,19 @@ void ContactEstimator::look(double halfway, double force) noexcept {
   relax();
   collect(force);
   if (model_.version > 0) model_.residual = force - predicted();
-  follow_told(force - noise_.bias(held_.force(), config_.sensor.step), contact);
+  follow_told(force - noise_.bias(told_.held.force(), config_.sensor.step), contact);
 }
 
 /// What is told is compared with the `force` [N] of a tip that rests or is slow. A surface that may
 /// move does; one that is known to stand still has a tissue that relaxes.
 void ContactEstimator::follow_told(double force, bool touches) noexcept {
-  const ModelPayload moved = drift_.moved(model_);
-  held_.step(moved, sensed_.raw_tip, force, noise_.doubt());
+  const ModelPayload moved = told_.drift.moved(model_);
+  told_.held.step(moved, sensed_.raw_tip, force, noise_.doubt());
   if (swing_.still()) {
-    drift_.fade();
+    told_.drift.fade();
   } else {
-    drift_.step(moved, {sensed_.raw_tip, held_.speed(), force, held_.force(), touches});
+    told_.drift.step(moved,
+                     {sensed_.raw_tip, told_.held.speed(), force, told_.held.force(), touches});
   }
 }
 
@@ -391,7 +391,7 @@ void ContactEstimator::step(double position, double force, std::int64_t periods)
   const double halfway = sense(position, force);
   watch_surface();
   look(halfway, force);
-  held_.tell(drift_.moved(model_));
+  told_.held.tell(told_.drift.moved(model_));
 }
 
 }  // namespace palp::coupling

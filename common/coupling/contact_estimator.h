@@ -46,7 +46,7 @@ class ContactEstimator {
   /// becomes what is expected.
   void new_place(const Place& place) noexcept;
 
-  [[nodiscard]] const ModelPayload& model() const noexcept { return held_.told(); }
+  [[nodiscard]] const ModelPayload& model() const noexcept { return told_.held.told(); }
 
  private:
   static constexpr std::size_t kCandidates = 64;
@@ -164,6 +164,12 @@ class ContactEstimator {
     Terms expected{};           ///< [N], before anything was felt
   };
 
+  /// The model, corrected by what a slow tip meets.
+  struct Told {
+    HeldForce held;
+    SurfaceDrift drift;
+  };
+
   ContactEstimatorConfig config_;
   double gain_;  ///< [-], of the transducer's pole
   ContactOnset onset_;
@@ -189,8 +195,7 @@ class ContactEstimator {
   std::uint32_t turn_{};
   Expected expected_;
   ModelPayload model_;
-  HeldForce held_;
-  SurfaceDrift drift_;
+  Told told_;
   BreathingEstimator swing_;
   Here here_;
   Places places_;

@@ -58,8 +58,8 @@ void ContactEstimator::new_place(const Place& place) noexcept {
   if (placed_ && (here_.contact || places_.visits == 0)) remember();
   places_.here = place;
   swing_.new_place();
-  held_.forget();
-  drift_.forget();
+  told_.held.forget();
+  told_.drift.forget();
   here_.contact = false;
   here_.touched = 0;
   here_.deepest = -1;
@@ -75,7 +75,7 @@ void ContactEstimator::new_place(const Place& place) noexcept {
   Solution again;
   again.c = expected.c;
   publish(again);
-  held_.tell(model_);
+  told_.held.tell(model_);
 }
 
 }  // namespace palp::coupling

@@ -38,11 +38,11 @@ class Contradiction {
  private:
   static constexpr double kMemory = 10;  // [s]
 
-  double play_;        ///< [N] or [m], as all that follow
-  double told_{};      ///< all changes
-  double followed_{};  ///< the same with play
-  double raised_{};
-  double lowered_{};
+  double play_;        ///< [N] or [m]
+  double told_{};      ///< [N] or [m], all changes
+  double followed_{};  ///< [N] or [m], the same with play
+  double raised_{};    ///< [N] or [m]
+  double lowered_{};   ///< [N] or [m]
 };
 
 }  // namespace palp::coupling
