@@ -80,7 +80,7 @@ void ContactEstimator::begin_again() noexcept {
   place_grid(sensed_.tip_mean - believed.depth(sensed_.force_mean));
 }
 
-/// What passed for a contact was noise: there is no tissue here.
+/// There is no tissue here: what passed for a contact was noise, or the tissue is elsewhere.
 void ContactEstimator::withdraw() noexcept {
   placed_ = here_.contact = false;
   doubt_.ticks = 0;

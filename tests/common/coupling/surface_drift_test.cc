@@ -6,10 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "common/core/filters.h"
 #include "common/coupling/breathing_estimator.h"
-#include "common/coupling/contact_estimator.h"
 #include "common/coupling/contact_model.h"
+#include "tests/common/coupling/sensed_tip.h"
 
 namespace palp::coupling {
 namespace {
@@ -118,22 +117,15 @@ double hertz(double depth) { return depth > 0 ? 1897 * depth * std::sqrt(depth) 
 /// `from` to `until` [s].
 template <class Surface>
 double held_off(const Surface& surface, double from, double until) {
-  ContactEstimatorConfig config;
-  config.sensor.step = 0;
-  ContactEstimator estimator{config};
-  LowPass pole{config.sensor.pole, config.period};
-  RelaxingContact given;
+  SensedTip tip;
   double position = -3e-3;
   double off = 0;
   for (int tick = 0; kPeriod * tick < until; ++tick) {
     const double at = kPeriod * tick;
     if (at > 1) position = std::min(3e-3, position + 10e-6);
     const double force = hertz(position - surface(at));
-    estimator.step(position, pole.step(force));
-    const ModelPayload& model = estimator.model();
-    const double depth = position - model.surface - model.swing;
-    given.age_into(contact_model(model), model.relaxing, depth, kPeriod);
-    if (at > from) off = std::max(off, std::abs(given.force(depth) - force));
+    const double given = tip.meets(position, force);
+    if (at > from) off = std::max(off, std::abs(given - force));
   }
   return off;
 }
@@ -146,11 +138,7 @@ TEST(ContactEstimatorTest, ASurfaceThatSinksIsFollowedBeforeABreathIsKnown) {
 
 /// Where it is known to stand still, what a resting tip misses is the tissue's, not a swing.
 TEST(ContactEstimatorTest, ATissueThatStandsStillIsToldWithoutASwing) {
-  ContactEstimatorConfig config;
-  config.sensor.step = 0;
-  ContactEstimator estimator{config};
-  LowPass pole{config.sensor.pole, config.period};
-  RelaxingContact given;
+  SensedTip tip;
   double past = 0;
   double off = 0;
   for (int tick = 0; tick < 12'000; ++tick) {
@@ -160,35 +148,29 @@ TEST(ContactEstimatorTest, ATissueThatStandsStillIsToldWithoutASwing) {
     // From 6 s on it comes up besides, as nothing does that is in the model.
     const double rises = at < 6 ? 1 : 1 + 0.03 * (at - 6);
     const double force = rises * std::max(0.0, 1.4 * hertz(position) - 0.4 * past);
-    estimator.step(position, pole.step(force));
-    const ModelPayload& model = estimator.model();
-    const double depth = position - model.surface;
-    given.age_into(contact_model(model), model.relaxing, depth, kPeriod);
+    const double given = tip.meets(position, force);
     if (at < 8) continue;
-    ASSERT_EQ(model.swing_rate, 0) << at;
-    off = std::max(off, std::abs(given.force(depth) / force - 1));
+    ASSERT_EQ(tip.told().swing_rate, 0) << at;
+    off = std::max(off, std::abs(given / force - 1));
   }
   EXPECT_LT(off, 0.06);
 }
 
 TEST(ContactEstimatorTest, NothingIsToldOfATissueWhereATipDeepInItFeelsNothing) {
-  ContactEstimatorConfig config;
-  config.sensor.step = 0;
-  ContactEstimator estimator{config};
-  LowPass pole{config.sensor.pole, config.period};
+  SensedTip tip;
   double position = -3e-3;
   const auto go = [&](double by, int ticks, bool there) {
     for (int tick = 0; tick < ticks; ++tick) {
       position += by;
-      estimator.step(position, pole.step(there ? hertz(position) : 0));
+      (void)tip.meets(position, there ? hertz(position) : 0);
     }
   };
   go(0, 1000, true);
   go(10e-6, 600, true);
   go(-10e-6, 600, true);
-  ASSERT_GT(contact_model(estimator.model()).force(3e-3), 0.2);
+  ASSERT_GT(contact_model(tip.told()).force(3e-3), 0.2);
   go(30e-6, 200, false);
-  EXPECT_EQ(contact_model(estimator.model()).force(8e-3), 0);
+  EXPECT_EQ(contact_model(tip.told()).force(8e-3), 0);
 }
 
 }  // namespace
