@@ -36,7 +36,7 @@ class LateDevice {
   /// since the last one.
   void look(double position, bool pressed, double tank, double passed) noexcept {
     if (!late_) return;
-    if (tank < 0) {
+    if (tank < -kNothing) {
       share_ *= std::exp(-passed / kFall);
     } else {
       share_ += (1 - share_) * -std::expm1(-passed / kRise);
@@ -45,6 +45,7 @@ class LateDevice {
   }
 
  private:
+  static constexpr double kNothing = 1e-9;       // [J], what rounding leaves of an empty tank
   static constexpr double kSofter = 0.6;         // [-], by a swing that does not die out
   static constexpr double kReadingsInSpeed = 6;  // [-]
   static constexpr double kMassLeast = 0.06;     // [kg], a handle and the lightest hand

@@ -46,6 +46,12 @@ TEST(LateDeviceTest, ASpringThatDrivesItsHandIsMadeSofterAndComesBackSlowly) {
   EXPECT_LT(device.share(), soft + 0.02);
 }
 
+TEST(LateDeviceTest, ATankThatIsEmptyIsNotOverdrawn) {
+  LateDevice device{hand(100, 0), kCutOff};
+  for (int tick = 0; tick < 300; ++tick) device.look(0, true, -1e-16, 1e-3);
+  EXPECT_EQ(device.share(), 1);
+}
+
 TEST(LateDeviceTest, ASpringThatSwingsItsHandIsMadeSofterBeforeTheTankIsEmpty) {
   constexpr double kTurn = 2 * std::numbers::pi;
   LateDevice late{hand(1000, 10e-3), kCutOff};
