@@ -122,7 +122,11 @@ double ContactModel::depth(double wanted) const noexcept {
     if (force(found + step) < wanted) found += step;
     step /= 2;
   }
-  return found;
+  for (int newton = 0; newton < 2; ++newton) {
+    const double rises = slope(found);
+    if (rises > 0) found += std::clamp((wanted - force(found)) / rises, -kDepthStep, kDepthStep);
+  }
+  return std::max(0.0, found);
 }
 
 void RelaxingContact::become(const ContactModel& elastic, const Shares& relaxing) noexcept {

@@ -32,7 +32,7 @@ struct ContactModel {
   [[nodiscard]] double force(double depth) const noexcept;   ///< [m] -> [N]
   [[nodiscard]] double energy(double depth) const noexcept;  ///< [m] -> [J], integral of force
   [[nodiscard]] double slope(double depth) const noexcept;   ///< [m] -> [N/m]
-  /// [N] -> [m], where the force is that; kModelDepthMax at most, to 1 um.
+  /// [N] -> [m], where the force is that; kModelDepthMax at most.
   [[nodiscard]] double depth(double force) const noexcept;
 };
 

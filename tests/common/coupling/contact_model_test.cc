@@ -36,6 +36,14 @@ RC_GTEST_PROP(ContactModelTest, EnergyIsTheIntegralOfTheForce, ()) {
   RC_ASSERT(std::abs(model.energy(depth) - integral) <= 1e-5 * integral + 1e-15);
 }
 
+RC_GTEST_PROP(ContactModelTest, ADepthIsFoundFromItsForce, ()) {
+  const ContactModel model = some_model();
+  const double depth = *rc::gen::inRange(100, 7900) * 1e-6;
+  const double force = model.force(depth);
+  RC_PRE(force > 1e-3);
+  RC_ASSERT(std::abs(model.force(model.depth(force)) - force) <= 1e-6);
+}
+
 RC_GTEST_PROP(ContactModelTest, ForceRisesFromZeroAtTheSurfaceWhateverTheStiffness, ()) {
   const ContactModel model = some_model();
   const double step = 10e-6;
