@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kEnergyTolerance = 1e-15;  // [J]
 constexpr double kForceTolerance = 1e-12;   // [N]
+constexpr double kOffWay = 0.03;            // [N], in all, so far a blend may stray
 constexpr int kHalvings = 30;
 
 constexpr bool may_render(SiteState state) noexcept {
@@ -25,6 +26,23 @@ ContactModel blended(ContactModel from, const ContactModel& to, double share) no
     from.stiffness[knot] += share * (to.stiffness[knot] - from.stiffness[knot]);
   }
   return from;
+}
+
+/// The force at `position` [m] goes the same share of its way. Of two tissues whose surfaces are
+/// far apart, what lies between by its numbers alone can be stiffer there than both.
+ContactModel blended_at(double position,
+                        const ContactModel& from,
+                        const ContactModel& to,
+                        double share) noexcept {
+  ContactModel between = blended(from, to, share);
+  const double before = from.force(position - from.surface);
+  const double after = to.force(position - to.surface);
+  const double wanted = before + share * (after - before);
+  const double by_numbers = between.force(position - between.surface);
+  if (before > 0 && after > 0 && std::abs(by_numbers - wanted) > kOffWay * share) {
+    between.surface = position - between.depth(wanted);
+  }
+  return between;
 }
 
 RelaxingContact::Shares blended(RelaxingContact::Shares from,
@@ -139,10 +157,12 @@ void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& 
   const RelaxingContact before = shown_;
   const double force = before.force(depth);
   const double fall_max = config_.fall * seconds(lapse.period);
-  const double blend = config_.blend * force_contradiction_.slower(config_.believed, config_.doubt);
+  const double slower =
+      std::min(config_.slowest, force_contradiction_.slower(config_.believed, config_.doubt));
+  const double blend = config_.blend * slower;
   double share = -std::expm1(-seconds(lapse.period) / blend);
   for (int attempt = 0; attempt < 8; ++attempt) {
-    const ContactModel between = blended(elastic, aim, share);
+    const ContactModel between = blended_at(position, elastic, aim, share);
     shown_ = before;
     shown_.age_into(between, blended(before.relaxing(), candidate_relaxing_, share), depth, passed);
     const double fall = force - shown_.force(std::min(depth, position - between.surface));

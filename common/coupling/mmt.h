@@ -39,6 +39,7 @@ struct MmtConfig {
   double blend{0.05};             ///< [s], time constant of changes of the model
   double believed{0.6};           ///< [N], so much may a peer take back as it learns
   double doubt{0.2};              ///< [N], beyond that, with which `blend` doubles
+  double slowest{40};             ///< [-], so many times `blend` at most: what lasts is shown
   double surface_speed{8e-3};     ///< [m/s], at most, of a shown surface that swings or drifts
   double surface_believed{8e-3};  ///< [m], so much of its way may a peer take back
   double surface_doubt{3e-3};     ///< [m], beyond that, with which `surface_speed` halves

@@ -115,6 +115,28 @@ TEST(MmtSurgeonTest, APeerThatTakesBackWhatItToldMovesNoHand) {
   }
 }
 
+TEST(MmtSurgeonTest, APeerThatWasDoubtedIsFollowedWhereItStaysWithWhatItTells) {
+  MmtSurgeon law{{}};
+  constexpr double kDepth = 2e-3;  // [m]
+  law.begin_epoch(kDepth);
+  double force = 0;
+  for (int tick = 0; tick < 20'000; ++tick) {
+    const double at = 1e-3 * tick;
+    Incoming incoming;
+    incoming.sample.payload = soft_or_stiff(at < 10 ? at : 0);
+    incoming.fresh = true;
+    const std::array arrived{incoming};
+    SurgeonInput in;
+    in.state = SiteState::Engaged;
+    in.position = kDepth;
+    in.force_applied = force;
+    in.arrived = arrived;
+    force = law.step(in, std::chrono::milliseconds{1}).force;
+  }
+  const double told = contact_model(soft_or_stiff(0)).force(kDepth);
+  EXPECT_NEAR(force / told, 1, 0.1) << "after 10 s";
+}
+
 /// Of a doubted peer the model goes slowly, but it goes: its surface, which is none any more, does
 /// not come up under the hand first.
 TEST(MmtSurgeonTest, OfNoTissueNothingComesUpUnderTheHand) {

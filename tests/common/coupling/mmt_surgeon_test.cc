@@ -69,6 +69,33 @@ TEST(MmtSurgeonTest, AHeldForceNeedsLessEnergyThanTheSpringBehindIt) {
   EXPECT_GT(discover({.version = 1, .c = {0, 0.6}, .depth_max = 4e-3}).missing, 0.1);
 }
 
+/// Two tissues that give a hand at rest the same force: a stiff one, and a soft one whose surface
+/// is far above. On the way from one to the other little happens at the hand.
+TEST(MmtSurgeonTest, BetweenTwoTissuesOfTheSameForceTheForceStays) {
+  const ModelPayload stiff{.version = 1, .c = {0, 0.04}, .depth_max = 3e-3};
+  ModelPayload soft{.version = 2, .c = {0, 0.04}, .surface = -4e-3, .depth_max = 7e-3};
+  const double wanted = contact_model(stiff).force(3e-3);
+  soft.c[1] *= wanted / contact_model(soft).force(7e-3);
+  MmtSurgeon law{MmtConfig{}};
+  law.begin_epoch(3e-3);
+  double force = 0;
+  for (int tick = 0; tick < 4000; ++tick) {
+    Incoming incoming;
+    incoming.sample.payload = tick < 2000 ? stiff : soft;
+    incoming.fresh = true;
+    const std::array arrived{incoming};
+    SurgeonInput in;
+    in.state = SiteState::Engaged;
+    in.position = 3e-3;
+    in.force_applied = force;
+    in.arrived = arrived;
+    force = law.step(in, std::chrono::milliseconds{1}).force;
+    if (tick < 1500) continue;
+    ASSERT_NEAR(force, wanted, 0.03) << tick;
+  }
+  EXPECT_LT(law.shown().elastic().surface, -3.9e-3) << "it is another tissue";
+}
+
 /// A hand that leaves unknown tissue at `speed` [m/s] while its model arrives: the force [N] after
 /// 20 ms.
 double discover_leaving(double speed) {
