@@ -62,7 +62,7 @@ struct MmtConfig {
   double unfelt_share{0.1};        ///< [-]
   double braked_beyond{0.2};       ///< [N], above that: from there on the gate brakes it
   double unfelt_drag{0.02};        ///< [N], as `unfelt`, of a tip that is dragged: it waits there
-  double unfelt_drag_share{0.05};  ///< [-]
+  double unfelt_drag_share{0.03};  ///< [-]
   double drag_memory{0.3};         ///< [s], for so long after it came to another place
   double yield{6e-3};              ///< [m/s per N], at which the tip gives way to more than that
   double yield_most{4e-3};         ///< [m]
