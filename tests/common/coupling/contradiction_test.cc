@@ -1,7 +1,6 @@
 #include "common/coupling/contradiction.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 
@@ -9,6 +8,7 @@
 
 #include "common/coupling/mmt.h"
 #include "tests/common/coupling/hand_loop.h"
+#include "tests/common/coupling/told_hand.h"
 
 namespace palp::coupling {
 namespace {
@@ -75,16 +75,7 @@ double moved(const Story& story, const MmtConfig& config) {
   for (std::uint64_t tick = 0; tick < 8000; ++tick) {
     const double at = 1e-3 * static_cast<double>(tick);
     hand.live(std::min(4e-3, -3e-3 + 10e-3 * at), force);
-    Incoming incoming;
-    incoming.sample.payload = story(at);
-    incoming.fresh = true;
-    const std::array arrived{incoming};
-    SurgeonInput in;
-    in.state = SiteState::Engaged;
-    in.position = hand.position;
-    in.force_applied = force;
-    in.arrived = arrived;
-    force = law.step(in, std::chrono::milliseconds{1}).force;
+    force = told_hand(law, story(at), hand.position, force);
     if (tick < 6000) continue;
     least = std::min(least, hand.position);
     most = std::max(most, hand.position);
@@ -122,16 +113,7 @@ TEST(MmtSurgeonTest, APeerThatWasDoubtedIsFollowedWhereItStaysWithWhatItTells) {
   double force = 0;
   for (int tick = 0; tick < 20'000; ++tick) {
     const double at = 1e-3 * tick;
-    Incoming incoming;
-    incoming.sample.payload = soft_or_stiff(at < 10 ? at : 0);
-    incoming.fresh = true;
-    const std::array arrived{incoming};
-    SurgeonInput in;
-    in.state = SiteState::Engaged;
-    in.position = kDepth;
-    in.force_applied = force;
-    in.arrived = arrived;
-    force = law.step(in, std::chrono::milliseconds{1}).force;
+    force = told_hand(law, soft_or_stiff(at < 10 ? at : 0), kDepth, force);
   }
   const double told = contact_model(soft_or_stiff(0)).force(kDepth);
   EXPECT_NEAR(force / told, 1, 0.1) << "after 10 s";
@@ -146,17 +128,10 @@ TEST(MmtSurgeonTest, OfNoTissueNothingComesUpUnderTheHand) {
   double at_last = 0;
   for (int tick = 0; tick < 12'000; ++tick) {
     const double at = 1e-3 * tick;
-    Incoming incoming;
-    incoming.sample.payload =
-        at < 8 ? soft_or_stiff(at) : ModelPayload{.version = 1, .surface = -15e-3};
-    incoming.fresh = true;
-    const std::array arrived{incoming};
-    SurgeonInput in;
-    in.state = SiteState::Engaged;
-    in.position = 2e-3;
-    in.force_applied = force;
-    in.arrived = arrived;
-    force = law.step(in, std::chrono::milliseconds{1}).force;
+    force = told_hand(law,
+                      at < 8 ? soft_or_stiff(at) : ModelPayload{.version = 1, .surface = -15e-3},
+                      2e-3,
+                      force);
     if (at > 8) {
       ASSERT_LE(force, at_last + 1e-9) << at;
     }

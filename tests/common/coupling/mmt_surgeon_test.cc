@@ -8,6 +8,7 @@
 
 #include "common/coupling/mmt.h"
 #include "tests/common/coupling/hand_loop.h"
+#include "tests/common/coupling/told_hand.h"
 
 namespace palp::coupling {
 namespace {
@@ -80,16 +81,7 @@ TEST(MmtSurgeonTest, BetweenTwoTissuesOfTheSameForceTheForceStays) {
   law.begin_epoch(3e-3);
   double force = 0;
   for (int tick = 0; tick < 4000; ++tick) {
-    Incoming incoming;
-    incoming.sample.payload = tick < 2000 ? stiff : soft;
-    incoming.fresh = true;
-    const std::array arrived{incoming};
-    SurgeonInput in;
-    in.state = SiteState::Engaged;
-    in.position = 3e-3;
-    in.force_applied = force;
-    in.arrived = arrived;
-    force = law.step(in, std::chrono::milliseconds{1}).force;
+    force = told_hand(law, tick < 2000 ? stiff : soft, 3e-3, force);
     if (tick < 1500) continue;
     ASSERT_NEAR(force, wanted, 0.03) << tick;
   }
