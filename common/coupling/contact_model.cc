@@ -230,6 +230,8 @@ ContactModel no_steeper(const ContactModel& model, double slope_max) noexcept {
   ContactModel smooth = model;
   smooth.stiffness = {};
   ContactModel limited = model;
+  // A first term that is too steep is so from the surface on.
+  limited.c[0] = std::min(limited.c[0], slope_max * kModelDepthScale);
   // The smooth shapes become steeper all the way.
   if (smooth.slope(smooth.reach) > slope_max) {
     double low = 0;
@@ -238,8 +240,6 @@ ContactModel no_steeper(const ContactModel& model, double slope_max) noexcept {
       const double middle = 0.5 * (low + high);
       (smooth.slope(middle) <= slope_max ? low : high) = middle;
     }
-    // A first term that is too steep is so from the surface on.
-    limited.c[0] = std::min(limited.c[0], slope_max * kModelDepthScale);
     smooth.reach = limited.reach = low;
   }
   KnotStiffness most{};  // [N/m]

@@ -121,6 +121,11 @@ TEST(ContactModelTest, SaysTheStiffnessAtAKnotAndStraightLinesBetween) {
   EXPECT_NEAR(knot_ramp(1, 1e-3), 0.5e-3, 1e-15);
 }
 
+TEST(ContactModelTest, NoMoreIsShownOfASurfaceThatWasHardlyTouched) {
+  const ContactModel shown = no_steeper({.c = {0.1}, .reach = 0}, 50);
+  EXPECT_LE(shown.slope(1e-3), 50 * (1 + 1e-9));
+}
+
 RC_GTEST_PROP(ContactModelTest, NoMoreIsShownThanADeviceMayShow, ()) {
   const ContactModel model = some_model();
   const double most = *rc::gen::inRange(50, 3000);
