@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 
-#include "common/core/small_solver.h"
+#include "common/core/place.h"
+#include "common/coupling/breath_fit.h"
 #include "common/message/port_sample.h"
 
 namespace palp::coupling {
@@ -21,17 +23,13 @@ struct Swing {
 
 /// The breathing of a surface, found together with the tissue under it: where one is guessed first
 /// and the other afterwards, a wrong breath and a wrong tissue confirm each other. Keeps what the
-/// tip met in the last half minute of contact and fits to it, for each of several paces, surface,
-/// swing, pace, stiffness and what relaxes at once, a few samples a tick (Gauss and Newton, damped
-/// as by Marquardt). Says nothing until a swing explains most of what a surface at rest leaves.
+/// tip met in the last half minute of contact and fits to it a tissue and the way of its surface,
+/// for each of several paces, a few samples a tick. Says nothing until such a way explains most of
+/// what a surface at rest leaves. What was found at a place is expected there again.
 /// Thread: rt; constant memory, bounded work. A value.
 class BreathingEstimator {
  public:
-  /// Of model_shapes(): the second to the fourth.
-  static constexpr std::size_t kShapes = 3;
-  static constexpr std::size_t kPaces = 16;
-  static constexpr std::size_t kTimes = kModelTimes.size();
-  using Shares = std::array<double, kTimes>;
+  using Shares = std::array<double, kModelTimes.size()>;
 
   explicit BreathingEstimator(double period) noexcept;       ///< [s], between calls of step()
   void step() noexcept;                                      ///< time goes on
@@ -45,14 +43,14 @@ class BreathingEstimator {
     rests_ = explains;
   }
   /// Another place, and with it another surface and tissue; it breathes with the same breath.
-  void new_place() noexcept;
+  void new_place(const Place& place) noexcept;
 
   [[nodiscard]] Swing swing() const noexcept;
   /// A swing is believed, and with it:
   [[nodiscard]] bool believed() const noexcept { return believed_; }
-  [[nodiscard]] double surface() const noexcept;                      ///< [m], mean
-  [[nodiscard]] std::array<double, kShapes> shapes() const noexcept;  ///< [N]
-  [[nodiscard]] const Shares& relaxing() const noexcept;              ///< [-]
+  [[nodiscard]] double surface() const noexcept;                            ///< [m], mean
+  [[nodiscard]] std::array<double, kBreathShapes> shapes() const noexcept;  ///< [N]
+  [[nodiscard]] Shares relaxing() const noexcept;                           ///< [-]
   /// Seen for long enough to say whether it breathes.
   [[nodiscard]] bool settled() const noexcept;
   /// Seen for long enough to say that it does not breathe.
@@ -60,66 +58,69 @@ class BreathingEstimator {
 
  private:
   static constexpr std::size_t kSamples = 384;
-  /// And surface, what relaxes, cosine, sine, rate.
-  static constexpr std::size_t kUnknowns = kShapes + kTimes + 4;
+  static constexpr std::size_t kPaces = 6;
+  static constexpr std::size_t kPlaces = 16;
 
-  struct Sample {
-    double at{};        ///< [s]
-    double position{};  ///< [m]
-    double force{};     ///< [N]
-    Shares past{};      ///< [N], the force on exponential averages
-    std::uint32_t place{};
+  struct Kept {
+    BreathSample sample;
+    std::uint32_t visit{};  ///< of a place
   };
-  struct Tissue {
-    double surface{};                     ///< [m]
-    std::array<double, kShapes> shape{};  ///< [N], each >= 0, to a quick tip
-    Shares relaxing{};                    ///< [-], each >= 0
+  /// The newest of all that were felt.
+  struct Samples {
+    std::array<Kept, kSamples> kept{};
+    std::uint64_t count{};  ///< that were ever kept
+
+    [[nodiscard]] const Kept& number(std::uint64_t n) const noexcept { return kept[n % kSamples]; }
+    [[nodiscard]] std::uint64_t oldest() const noexcept {
+      return count - std::min<std::uint64_t>(count, kSamples);
+    }
+    void add(const Kept& one) noexcept { kept[count++ % kSamples] = one; }
   };
-  /// What is supposed at one pace; the first supposes a surface at rest.
-  struct Guess {
-    Tissue here;
-    Tissue before;    ///< at the last place, as it was found there
-    double cosine{};  ///< [m]
-    double sine{};    ///< [m]
-    double rate{};    ///< [rad/s]
-    double origin{};  ///< [s], of the phase
-    double square{};  ///< [N^2], of what is left, weighted mean
-    double cost{};    ///< [-]
+  /// What was found at places, one after the other.
+  struct Places {
+    struct Known {
+      Place place;
+      std::uint32_t visit{};  ///< the last; 0: none
+      BreathPrior found;
+    };
+    std::array<Known, kPlaces> known{};
+
+    [[nodiscard]] const BreathPrior* at(const Place& place) const noexcept;
+    void remember(const Known& one) noexcept;
   };
-  struct Equations {
-    SmallSystem<kUnknowns> system;  ///< [N^2], by unknowns
-    double square{};                ///< [N^2], weighted
-    double time{};                  ///< [s], sum
-    double count{};                 ///< [-]
+  /// This place.
+  struct Here {
+    Place place;
+    std::uint32_t visit{1};
+    std::size_t samples{};
+    bool touched{};
+    bool known{};  ///< from a visit before
+    BreathPrior expected = first_breath_prior();
+  };
+  /// Where the fits are: one after the other through all samples.
+  struct Turn {
+    std::uint32_t rounds{};  ///< still to go
+    std::size_t fit{};
+    std::uint64_t sample{};  ///< number
   };
 
+  void touch(double position, double force) noexcept;
   void fit_some() noexcept;
-  void add(const Guess& guess, const Sample& sample) noexcept;
-  [[nodiscard]] std::array<double, kUnknowns> solved(
-      const std::array<bool, kUnknowns>& open) const noexcept;
-  static void count_from(double origin, Guess& guess) noexcept;
-  void improve(Guess& guess, std::size_t pace) noexcept;
   void judge() noexcept;
+  void follow(const BreathSample& sample) noexcept;
 
   double period_;  ///< [s]
   double time_{};  ///< [s]
-  std::array<Sample, kSamples> samples_{};
-  std::size_t count_{};
-  std::size_t next_{};
-  std::size_t here_{};  ///< samples at this place
-  std::uint32_t place_{};
-  bool touched_{};         ///< this place
-  Shares past_{};          ///< [N], the force on exponential averages
-  double contact_at_{-1};  ///< [s], last
-  double first_seen_{-1};  ///< [s]
-  std::array<Guess, kPaces + 1> guesses_{};
-  std::uint32_t rounds_{};  ///< still to go
-  std::size_t at_guess_{};
-  std::size_t at_sample_{};
-  Equations equations_;
-  std::size_t best_{};
-  Swing last_;         ///< as judged last
-  double judged_{};    ///< [s]
+  Samples samples_;
+  Places places_;
+  Here here_;
+  Shares past_{};                           ///< [N], the force on exponential averages
+  double contact_at_{-1};                   ///< [s], last
+  double first_seen_{-1};                   ///< [s]
+  std::array<BreathFit, kPaces + 1> fits_;  ///< the first of a surface at rest
+  Turn turn_;
+  std::size_t best_{1};
+  BreathFit told_;     ///< as judged last; its path goes on with every sample
   double presence_{};  ///< [-], fades in and out
   bool believed_{};
   bool still_{};

@@ -57,7 +57,7 @@ void ContactEstimator::remember() noexcept {
 void ContactEstimator::new_place(const Place& place) noexcept {
   if (placed_ && (here_.contact || places_.visits == 0)) remember();
   places_.here = place;
-  swing_.new_place();
+  swing_.new_place(place);
   told_.held.forget();
   told_.drift.forget();
   here_.contact = false;

@@ -74,7 +74,7 @@ TEST(BreathingEstimatorTest, AnotherPlaceBreathesWithTheSameBreath) {
   BreathingEstimator swing{kPeriod};
   palpate(swing, 0, 16, breath);
   ASSERT_TRUE(swing.believed());
-  swing.new_place();
+  swing.new_place(kSiteB);
   palpate(swing, 16, 9, [&](double t) { return 2e-3 + breath(t); });
   EXPECT_NEAR(swing.surface() + swing.swing().now, 2e-3 + breath(25), 0.1e-3);
 }
@@ -86,7 +86,7 @@ TEST(BreathingEstimatorTest, ADragOverManyPlacesDoesNotEndABreath) {
   ASSERT_TRUE(swing.believed());
   double t = 16;
   for (int place = 0; place < 40; ++place) {
-    swing.new_place();
+    swing.new_place(kSiteB);
     const double stiffer = 1 + 0.5 * std::sin(1.3 * place);
     for (int tick = 0; tick < 500; ++tick, t += kPeriod) {
       const double tip = 3e-3 + 0.5e-3 * std::sin(2.1 * place + 2e-3 * tick);
@@ -96,7 +96,7 @@ TEST(BreathingEstimatorTest, ADragOverManyPlacesDoesNotEndABreath) {
     ASSERT_TRUE(swing.believed()) << place;
     EXPECT_NEAR(swing.swing().now, breath(t), 0.2e-3) << place;
   }
-  swing.new_place();
+  swing.new_place(kSiteB);
   palpate(swing, t, 1.4, breath);
   ASSERT_TRUE(swing.believed());
   EXPECT_NEAR(swing.swing().now, breath(t + 1.4), 0.1e-3);
@@ -108,7 +108,7 @@ TEST(BreathingEstimatorTest, AReadingBelowZeroWhereAnotherPlaceBeginsDoesNotEndA
   palpate(swing, 0, 16, breath);
   swing.step();
   swing.see(3e-3, 0.2);
-  swing.new_place();
+  swing.new_place(kSiteB);
   swing.step();
   swing.see(-3e-3, -0.02);
   palpate(swing, 16, 9, breath);
