@@ -21,14 +21,19 @@ constexpr double kJudgeShare = 0.05;  // [-], the same
 constexpr double kTouches = 0.03;     // [N], of less force nothing says what relaxes
 constexpr double kSlopeLeast = 5e-3;  // [N/mm], of a less steep tissue a force says no height
 constexpr double kDepthFirst = 0.3;   // [mm], at least, where a depth is sought from
+constexpr double kDepthMost = 4;      // [mm], at the first touch
 constexpr int kLooks = 8;             // for a depth
 constexpr double kNear = 1e-3;        // [mm], then it is found
 constexpr double kDamped = 0.5;       // [-], of Marquardt
 constexpr double kStepMost = 0.5;     // [mm], of the surface: the equations hold no farther
 constexpr double kAbove = 100;        // [mm], so that any surface is above 0
-constexpr double kLikeLast = 0.5;     // [-], so closely are places alike
-constexpr BreathTissue kFirst{0.06, 0, 0, 0, 0, 0};
-constexpr BreathTissue kSpread{0.1, 0.05, 0.02, 3, 0.1, 0.1};
+constexpr double kRateKnown = 100;   // [s^2/rad^2], inverse covariance of a pace
+// So closely are places alike: by this share of what tissues differ by, and all of it far away.
+constexpr double kLikeLast = 0.5;  // [-], of the last one's shapes, or by kSpread
+constexpr double kAlike = 0.1;     // [-]
+constexpr double kUnlike = 10e-3;  // [m]
+constexpr BreathTissue kFirst{0.06, 0, 0, 0, 0, 0, 0};
+constexpr BreathTissue kSpread{0.1, 0.05, 0.02, 3, 0.1, 0.1, 1};
 
 /// Force [N] and slope [N/mm] of the shapes at a depth, and the shapes themselves [-].
 struct Elastic {
@@ -52,17 +57,64 @@ Elastic elastic(const BreathTissue& tissue, double depth) noexcept {
 
 constexpr double squared(double x) noexcept { return x * x; }
 
+using Square = std::array<BreathTissue, kBreathUnknowns>;
+/// Of what concerns the tissue; 0 where that is not regular, and in the row of the pace.
+Square inverse(const Square& square) noexcept {
+  Square inverted{};
+  std::array<bool, kBreathUnknowns> open{};
+  std::fill_n(open.begin(), kBreathRate, true);
+  for (std::size_t i = 0; i < kBreathRate; ++i) {
+    SmallSystem<kBreathUnknowns> column{square, {}};
+    column.right[i] = 1;
+    inverted[i] = solve(column, open).x;
+  }
+  return inverted;
+}
+
 }  // namespace
 
-BreathPrior first_breath_prior() noexcept { return prior_like(kFirst); }
-
-BreathPrior prior_like(const BreathTissue& last) noexcept {
-  BreathPrior prior{last, {}};
-  for (std::size_t i = 0; i < kBreathUnknowns; ++i) {
-    const double spread = std::max(kSpread[i], i < kBreathShapes ? kLikeLast * last[i] : 0);
-    prior.closely[i][i] = 1 / squared(spread);
-  }
+BreathPrior first_breath_prior() noexcept {
+  BreathPrior prior{kFirst, {}};
+  for (std::size_t i = 0; i < kBreathRate; ++i) prior.closely[i][i] = 1 / squared(kSpread[i]);
   return prior;
+}
+
+BreathPrior prior_beside(const BreathPrior& found, double distance) noexcept {
+  const double nearness = std::min(1.0, kAlike + distance / kUnlike);
+  BreathPrior prior{found.tissue, inverse(found.closely)};
+  for (std::size_t i = 0; i < kBreathRate; ++i) {
+    const double like = i < kBreathShapes ? kLikeLast * found.tissue[i] : 0;
+    prior.closely[i][i] += squared(nearness * std::max(kSpread[i], like));
+  }
+  prior.closely = inverse(prior.closely);
+  return prior;
+}
+
+BreathFit::BreathFit(double rate, double band) noexcept : path_{rate}, rate_{rate}, band_{band} {
+  here_[kBreathRate] = rate;
+}
+
+void BreathFit::suppose(const BreathTissue& tissue) noexcept {
+  const double rate = here_[kBreathRate];
+  here_ = tissue;
+  here_[kBreathRate] = rate;
+}
+
+void BreathFit::seek(double position, double force, double displacement) noexcept {
+  double depth = kDepthFirst;
+  for (int look = 0; look < kLooks; ++look) {
+    const Elastic there = elastic(here_, depth);
+    depth += (std::max(0.0, force) - there.force) / std::max(kSlopeLeast, there.slope);
+    depth = std::clamp(depth, 0.0, kDepthMost);
+  }
+  here_[kBreathSurface] = (position - displacement) / kModelDepthScale - depth;
+}
+
+BreathPrior BreathFit::found() const noexcept {
+  BreathPrior found{here_, known_};
+  found.closely[kBreathRate] = {};
+  for (BreathTissue& row : found.closely) row[kBreathRate] = 0;
+  return found;
 }
 
 /// In first order about where the surface must be by the path and by the force, with the tissue as
@@ -104,8 +156,8 @@ std::optional<BreathFit::Sight> BreathFit::sight(const BreathTissue& tissue,
 
 void BreathFit::add(const BreathSample& sample, bool here) noexcept {
   if (!pass_.path) {
-    pass_.path = breathes_ ? Path{path_.rate()} : Path{};
-  } else if (breathes_) {
+    pass_.path = rate_ > 0 ? Path{here_[kBreathRate]} : Path{};
+  } else if (rate_ > 0) {
     pass_.path->pass(sample.at - pass_.at);
   }
   pass_.at = sample.at;
@@ -140,7 +192,8 @@ void BreathFit::expect(const BreathPrior& prior) noexcept {
       pass_.cost += off_i * pull;
     }
   }
-  if (breathes_) pass_.cost += kUnusual * squared(std::log2(path_.rate() / kUsual));
+  pass_.system.matrix[kBreathRate][kBreathRate] += kRateKnown;
+  if (rate_ > 0) pass_.cost += kUnusual * squared(std::log2(here_[kBreathRate] / kUsual));
 }
 
 /// The best change of the tissue by which none of it becomes negative.
@@ -165,7 +218,9 @@ BreathTissue BreathFit::step() const noexcept {
 void BreathFit::improve(const BreathPrior& prior) noexcept {
   if (!pass_.path) return;
   expect(prior);
-  const BreathTissue change = step();
+  BreathTissue change = step();
+  const double rate = here_[kBreathRate] + change[kBreathRate];
+  change[kBreathRate] = std::clamp(rate, rate_ / (1 + band_), rate_ * (1 + band_)) - here_[kBreathRate];
   for (std::size_t i = 0; i < kBreathUnknowns; ++i) here_[i] += change[i];
   path_ = *pass_.path;
   path_.change(change);

@@ -15,10 +15,11 @@ namespace palp::coupling {
 inline constexpr std::size_t kBreathShapes = 3;
 inline constexpr std::size_t kBreathSurface = kBreathShapes;
 inline constexpr std::size_t kBreathRelaxes = kBreathSurface + 1;
-inline constexpr std::size_t kBreathUnknowns = kBreathRelaxes + kModelTimes.size();
+inline constexpr std::size_t kBreathRate = kBreathRelaxes + kModelTimes.size();
+inline constexpr std::size_t kBreathUnknowns = kBreathRate + 1;
 
 /// The shapes [N], each >= 0, to a quick tip; the mean surface [mm]; the shares [-] that relax,
-/// each >= 0.
+/// each >= 0; the pace of the breath [rad/s].
 using BreathTissue = std::array<double, kBreathUnknowns>;
 
 /// What is expected of a tissue, and how closely.
@@ -43,8 +44,9 @@ class BreathFit {
  public:
   using Path = BreathPath<kBreathUnknowns>;
 
-  BreathFit() = default;                                                      ///< surface at rest
-  explicit BreathFit(double rate) noexcept : path_{rate}, breathes_{true} {}  ///< [rad/s]
+  BreathFit() = default;  ///< surface at rest
+  /// A pace of `rate` [rad/s], or by a share of `band` more or less.
+  BreathFit(double rate, double band) noexcept;
 
   void begin() noexcept { pass_ = {}; }
   /// `here`: at this place, else at the last one, whose tissue is taken as it was found.
@@ -54,7 +56,11 @@ class BreathFit {
   void follow(const BreathSample& sample) noexcept;
 
   [[nodiscard]] const BreathTissue& tissue() const noexcept { return here_; }
-  void suppose(const BreathTissue& tissue) noexcept { here_ = tissue; }
+  /// Its pace stays.
+  void suppose(const BreathTissue& tissue) noexcept;
+  /// The surface is supposed where this force [N] at `position` [m] would have it, if it is now
+  /// displaced by so much [m].
+  void seek(double position, double force, double displacement) noexcept;
   /// Another place.
   void leave() noexcept { before_ = here_; }
 
@@ -65,7 +71,8 @@ class BreathFit {
   [[nodiscard]] double cost() const noexcept { return cost_; }            ///< [-]
   [[nodiscard]] double amplitude() const noexcept { return amplitude_; }  ///< [m]
   /// The tissue as it will be expected, and how closely it is known.
-  [[nodiscard]] BreathPrior found() const noexcept { return {here_, known_}; }
+  /// Its pace is not expected of a tissue.
+  [[nodiscard]] BreathPrior found() const noexcept;
 
  private:
   /// One time through the samples.
@@ -93,7 +100,8 @@ class BreathFit {
   [[nodiscard]] BreathTissue step() const noexcept;
 
   Path path_;  ///< through all samples, with the tissue here
-  bool breathes_{};
+  double rate_{};  ///< [rad/s], in the middle of its paces; 0: at rest
+  double band_{};  ///< [-]
   BreathTissue here_{};
   BreathTissue before_{};
   Pass pass_;
@@ -106,7 +114,7 @@ class BreathFit {
 
 /// Before anything was felt anywhere.
 [[nodiscard]] BreathPrior first_breath_prior() noexcept;
-/// Of a place that is new, where the last tissue was `last`.
-[[nodiscard]] BreathPrior prior_like(const BreathTissue& last) noexcept;
+/// Of a new place, `distance` [m] from one of which so much is known.
+[[nodiscard]] BreathPrior prior_beside(const BreathPrior& found, double distance) noexcept;
 
 }  // namespace palp::coupling

@@ -12,7 +12,7 @@ namespace palp::coupling {
 /// middle that wanders,
 ///   s' = v,  v' = -w^2 (s - m) - 2 z w v,  m' = -m/T + white noise,
 /// as a Kalman filter of s, v and m [mm, mm/s, mm] in the mean, with the share that each of `N`
-/// unknowns has in it, in first order (de Jong 1991): so the unknowns are found by least squares of
+/// unknowns has in it, the last of them w [rad/s], in first order (de Jong 1991): so the unknowns are found by least squares of
 /// what each sight differs from what was foreseen. Steady before the first sight. Noise moves m
 /// alone, so that s is smoother than any tap. Thread: any; allocates nothing. A value.
 template <std::size_t N>
@@ -40,7 +40,8 @@ class BreathPath {
     if (!(span > 0)) return;
     const double steps = std::min(std::ceil(span / kStepMost), kStepsMost);
     const Way way{rate_, span / steps};
-    for (int i = 0; i < static_cast<int>(steps); ++i) go(way);
+    const Way quicker{rate_ + kQuicker, span / steps};
+    for (int i = 0; i < static_cast<int>(steps); ++i) go(way, quicker);
   }
 
   /// The surface is seen at `displacement` [mm], with a `variance` [mm^2], and by so much farther
@@ -64,6 +65,7 @@ class BreathPath {
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < N; ++j) mean_[i] += shares_[i][j] * change[j];
     }
+    rate_ += change[N - 1];
   }
 
   [[nodiscard]] double displacement() const noexcept { return mean_[0]; }       ///< [mm]
@@ -78,6 +80,7 @@ class BreathPath {
   static constexpr double kDamping = 0.05;   ///< [-], z
   static constexpr double kStepMost = 0.15;  ///< [s]
   static constexpr double kStepsMost = 40;
+  static constexpr double kQuicker = 1e-4;   ///< [rad/s], for how all this grows with w
 
   /// The motion in a step in which m stands still.
   struct Way {
@@ -98,13 +101,14 @@ class BreathPath {
     double noise{};  ///< [mm^2]
   };
 
-  void go(const Way& way) noexcept {
+  void go(const Way& way, const Way& quicker) noexcept {
     std::array<double, 3> mean{};
     std::array<Shares, 3> shares{};
     std::array<std::array<double, 3>, 3> half{};
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
         mean[i] += way.by[i][k] * mean_[k];
+        shares[i][N - 1] += (quicker.by[i][k] - way.by[i][k]) / kQuicker * mean_[k];
         for (std::size_t j = 0; j < N; ++j) shares[i][j] += way.by[i][k] * shares_[k][j];
         for (std::size_t j = 0; j < 3; ++j) half[i][j] += way.by[i][k] * covariance_[k][j];
       }

@@ -32,8 +32,6 @@ constexpr int kSamplesATick = 6;
 constexpr int kSamplesATickStill = 2;  // once the surface is known to stand still
 constexpr std::uint32_t kRounds = 12;  // through all samples, after the newest of them
 constexpr double kKnownAgain = 0.1;    // [-], of what is known: a tissue is not as it was fitted
-constexpr double kSoftest = 0.01;      // [N], and
-constexpr double kDepthMost = 2;       // [mm], for where a surface is sought from
 
 }  // namespace
 
@@ -59,7 +57,8 @@ void BreathingEstimator::Places::remember(const Known& one) noexcept {
 BreathingEstimator::BreathingEstimator(double period) noexcept : period_{period} {
   for (std::size_t i = 0; i < fits_.size(); ++i) {
     const double pace = (static_cast<double>(i) - 0.5) / static_cast<double>(kPaces);
-    if (i > 0) fits_[i] = BreathFit{kSlowest * std::pow(kFastest / kSlowest, pace)};
+    const double band = std::pow(kFastest / kSlowest, 0.5 / static_cast<double>(kPaces)) - 1;
+    if (i > 0) fits_[i] = BreathFit{kSlowest * std::pow(kFastest / kSlowest, pace), band};
     fits_[i].suppose(here_.expected.tissue);
   }
 }
@@ -75,19 +74,23 @@ void BreathingEstimator::step() noexcept {
 /// place that is known what was found there is expected, little trusted beside what comes; else a
 /// tissue such as the last one.
 void BreathingEstimator::new_place(const Place& place) noexcept {
-  BreathPrior found = fits_[best_].found();
-  Here there{.place = place, .visit = here_.visit, .expected = prior_like(found.tissue)};
+  const BreathPrior found = fits_[best_].found();
+  Here there{.place = place, .visit = here_.visit, .expected = here_.expected};
   if (here_.touched) {
-    for (BreathTissue& row : found.closely) {
-      for (double& one : row) one *= kKnownAgain;
+    if (here_.samples >= kSamplesMin) {
+      BreathPrior again = found;
+      for (BreathTissue& row : again.closely) {
+        for (double& one : row) one *= kKnownAgain;
+      }
+      places_.remember({here_.place, here_.visit, again});
     }
-    if (here_.samples >= kSamplesMin) places_.remember({here_.place, here_.visit, found});
     ++there.visit;
     contact_at_ = -1;
     for (BreathFit& fit : fits_) fit.leave();
+    there.expected = prior_beside(found, distance(place, here_.place));
   }
   if (const BreathPrior* known = places_.at(place)) {
-    there.known = true;
+    there.known = there.told = true;
     there.expected = *known;
     for (BreathFit& fit : fits_) fit.suppose(known->tissue);
     told_.suppose(known->tissue);
@@ -98,19 +101,12 @@ void BreathingEstimator::new_place(const Place& place) noexcept {
   fits_[0].begin();
 }
 
-/// Where nothing is known the surface is sought from here on.
+/// At the first place of all the surface is anywhere.
 void BreathingEstimator::touch(double position, double force) noexcept {
   here_.touched = true;
-  if (here_.known) return;
-  const double displacement = believed_ ? swing().now : 0;
-  for (BreathFit& fit : fits_) {
-    BreathTissue tissue = fit.tissue();
-    const double depth = std::pow(std::max(0.0, force) / std::max(kSoftest, tissue[0]), 2.0 / 3);
-    tissue[kBreathSurface] =
-        (position - displacement) / kModelDepthScale - std::min(depth, kDepthMost);
-    fit.suppose(tissue);
-    here_.expected.tissue[kBreathSurface] = tissue[kBreathSurface];
-  }
+  if (here_.visit > 1) return;
+  for (BreathFit& fit : fits_) fit.seek(position, force, 0);
+  here_.expected.tissue[kBreathSurface] = fits_[best_].tissue()[kBreathSurface];
 }
 
 void BreathingEstimator::see(double position, double force) noexcept {
@@ -157,14 +153,14 @@ void BreathingEstimator::fit_some() noexcept {
 }
 
 void BreathingEstimator::follow(const BreathSample& sample) noexcept {
-  if (believed_ && here_.samples >= kSamplesMin) told_.follow(sample);
+  if (believed_ && here_.told) told_.follow(sample);
 }
 
 void BreathingEstimator::judge() noexcept {
   const double seen_for = time_ - first_seen_;
   if (seen_for < kSeenFor || samples_.count < kSamplesMin) return;
   // A place that is hardly known ends no belief: with few samples any pace fits any tissue.
-  if (believed_ && here_.samples < kSamplesMin) return;
+  if (believed_ && here_.samples < kSamplesMin) return tell();
   best_ = 1;
   for (std::size_t i = 2; i < fits_.size(); ++i) {
     if (fits_[i].cost() < fits_[best_].cost()) best_ = i;
@@ -178,10 +174,14 @@ void BreathingEstimator::judge() noexcept {
   const bool early = seen_for < kSeenForLong;
   still_ = !believed_ &&
            (still_ || amplitude < (early ? kStillBelowSoon : kStillBelow) || (!early && rests_));
-  if (!believed_) return;
-  told_ = best;
+  if (believed_) tell();
+}
+
+void BreathingEstimator::tell() noexcept {
+  told_ = fits_[best_];
+  here_.told = true;
   for (std::uint64_t n = samples_.oldest(); n < samples_.count; ++n) {
-    if (samples_.number(n).sample.at > best.seen_at()) follow(samples_.number(n).sample);
+    if (samples_.number(n).sample.at > told_.seen_at()) follow(samples_.number(n).sample);
   }
 }
 

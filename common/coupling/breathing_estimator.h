@@ -95,6 +95,7 @@ class BreathingEstimator {
     std::size_t samples{};
     bool touched{};
     bool known{};  ///< from a visit before
+    bool told{};   ///< what is told is of here
     BreathPrior expected = first_breath_prior();
   };
   /// Where the fits are: one after the other through all samples.
@@ -107,6 +108,7 @@ class BreathingEstimator {
   void touch(double position, double force) noexcept;
   void fit_some() noexcept;
   void judge() noexcept;
+  void tell() noexcept;
   void follow(const BreathSample& sample) noexcept;
 
   double period_;  ///< [s]

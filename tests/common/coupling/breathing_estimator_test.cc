@@ -86,7 +86,7 @@ TEST(BreathingEstimatorTest, ADragOverManyPlacesDoesNotEndABreath) {
   ASSERT_TRUE(swing.believed());
   double t = 16;
   for (int place = 0; place < 40; ++place) {
-    swing.new_place(kSiteB);
+    swing.new_place({1.1e-3 * (place + 1), 0});
     const double stiffer = 1 + 0.5 * std::sin(1.3 * place);
     for (int tick = 0; tick < 500; ++tick, t += kPeriod) {
       const double tip = 3e-3 + 0.5e-3 * std::sin(2.1 * place + 2e-3 * tick);
