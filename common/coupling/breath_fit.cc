@@ -33,7 +33,7 @@ constexpr double kLikeLast = 0.5;  // [-], of the last one's shapes, or by kSpre
 constexpr double kAlike = 0.1;     // [-]
 constexpr double kUnlike = 10e-3;  // [m]
 constexpr BreathTissue kFirst{0.06, 0, 0, 0, 0, 0, 0};
-constexpr BreathTissue kSpread{0.1, 0.05, 0.02, 3, 0.1, 0.1, 1};
+constexpr BreathTissue kSpread{0.1, 0.05, 0.02, 3, 0.2, 0.2, 1};
 
 /// Force [N] and slope [N/mm] of the shapes at a depth, and the shapes themselves [-].
 struct Elastic {

@@ -189,8 +189,10 @@ bool BreathingEstimator::settled() const noexcept {
   return still_ || (first_seen_ >= 0 && time_ - first_seen_ >= kSeenForLong);
 }
 
+/// While the swing fades in, what it lacks is the surface's.
 double BreathingEstimator::surface() const noexcept {
-  return kModelDepthScale * told_.tissue()[kBreathSurface];
+  const double lacking = (1 - presence_) * told_.at(time_).displacement();
+  return kModelDepthScale * (told_.tissue()[kBreathSurface] + lacking);
 }
 
 /// Of a tissue that has let go of nothing yet the force is larger by what relaxes.

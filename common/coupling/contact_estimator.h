@@ -168,6 +168,7 @@ class ContactEstimator {
   struct Told {
     HeldForce held;
     SurfaceDrift drift;
+    bool breathes{};  ///< a breath is believed
   };
 
   ContactEstimatorConfig config_;
