@@ -27,7 +27,7 @@ constexpr double kNear = 1e-3;        // [mm], then it is found
 constexpr double kDamped = 0.5;       // [-], of Marquardt
 constexpr double kStepMost = 0.5;     // [mm], of the surface: the equations hold no farther
 constexpr double kAbove = 100;        // [mm], so that any surface is above 0
-constexpr double kRateKnown = 100;   // [s^2/rad^2], inverse covariance of a pace
+constexpr double kRateKnown = 100;    // [s^2/rad^2], inverse covariance of a pace
 // So closely are places alike: by this share of what tissues differ by, and all of it far away.
 constexpr double kLikeLast = 0.5;  // [-], of the last one's shapes, or by kSpread
 constexpr double kAlike = 0.1;     // [-]
@@ -220,7 +220,8 @@ void BreathFit::improve(const BreathPrior& prior) noexcept {
   expect(prior);
   BreathTissue change = step();
   const double rate = here_[kBreathRate] + change[kBreathRate];
-  change[kBreathRate] = std::clamp(rate, rate_ / (1 + band_), rate_ * (1 + band_)) - here_[kBreathRate];
+  change[kBreathRate] =
+      std::clamp(rate, rate_ / (1 + band_), rate_ * (1 + band_)) - here_[kBreathRate];
   for (std::size_t i = 0; i < kBreathUnknowns; ++i) here_[i] += change[i];
   path_ = *pass_.path;
   path_.change(change);

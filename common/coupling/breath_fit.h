@@ -99,7 +99,7 @@ class BreathFit {
   void expect(const BreathPrior& prior) noexcept;
   [[nodiscard]] BreathTissue step() const noexcept;
 
-  Path path_;  ///< through all samples, with the tissue here
+  Path path_;      ///< through all samples, with the tissue here
   double rate_{};  ///< [rad/s], in the middle of its paces; 0: at rest
   double band_{};  ///< [-]
   BreathTissue here_{};

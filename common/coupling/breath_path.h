@@ -12,9 +12,10 @@ namespace palp::coupling {
 /// middle that wanders,
 ///   s' = v,  v' = -w^2 (s - m) - 2 z w v,  m' = -m/T + white noise,
 /// as a Kalman filter of s, v and m [mm, mm/s, mm] in the mean, with the share that each of `N`
-/// unknowns has in it, the last of them w [rad/s], in first order (de Jong 1991): so the unknowns are found by least squares of
-/// what each sight differs from what was foreseen. Steady before the first sight. Noise moves m
-/// alone, so that s is smoother than any tap. Thread: any; allocates nothing. A value.
+/// unknowns has in it, the last of them w [rad/s], in first order (de Jong 1991): so the unknowns
+/// are found by least squares of what each sight differs from what was foreseen. Steady before the
+/// first sight. Noise moves m alone, so that s is smoother than any tap. Thread: any; allocates
+/// nothing. A value.
 template <std::size_t N>
 class BreathPath {
  public:
@@ -80,7 +81,7 @@ class BreathPath {
   static constexpr double kDamping = 0.05;   ///< [-], z
   static constexpr double kStepMost = 0.15;  ///< [s]
   static constexpr double kStepsMost = 40;
-  static constexpr double kQuicker = 1e-4;   ///< [rad/s], for how all this grows with w
+  static constexpr double kQuicker = 1e-4;  ///< [rad/s], for how all this grows with w
 
   /// The motion in a step in which m stands still.
   struct Way {

@@ -63,7 +63,8 @@ TEST(BreathingEstimatorTest, FindsABreathOfAnyPaceAndSizeWithTheTissueUnderItAnd
       const Swing found = swing.swing();
       EXPECT_NEAR(found.rate / rate, 1, 0.02) << pace << ' ' << size;
       for (const double ahead : {0.0, 0.1, 0.25}) {
-        EXPECT_NEAR(swing.surface() + found.after(ahead), breath(16 + ahead), 0.09e-3 + 0.025 * size)
+        EXPECT_NEAR(
+            swing.surface() + found.after(ahead), breath(16 + ahead), 0.09e-3 + 0.025 * size)
             << pace << " Hz, " << size << " m, " << ahead << " s ahead";
       }
       EXPECT_NEAR(told_at_three(swing) / hertz(3e-3), 1, 0.05) << pace << ' ' << size;
