@@ -29,11 +29,11 @@ constexpr double kStepMost = 0.5;     // [mm], of the surface: the equations hol
 constexpr double kAbove = 100;        // [mm], so that any surface is above 0
 constexpr double kRateKnown = 100;    // [s^2/rad^2], inverse covariance of a pace
 // So closely are places alike: by this share of what tissues differ by, and all of it far away.
-constexpr double kLikeLast = 0.5;  // [-], of the last one's shapes, or by kSpread
+constexpr double kLikeLast = 0.5;  // [-], of the last one's shapes, or by kSpreadFirst
 constexpr double kAlike = 0.1;     // [-]
 constexpr double kUnlike = 10e-3;  // [m]
 constexpr BreathTissue kFirst{0.06, 0, 0, 0, 0, 0, 0};
-constexpr BreathTissue kSpread{0.1, 0.05, 0.02, 3, 0.2, 0.2, 1};
+constexpr BreathTissue kSpreadFirst{0.1, 0.05, 0.02, 3, 0.2, 0.2, 1};
 
 /// Force [N] and slope [N/mm] of the shapes at a depth, and the shapes themselves [-].
 struct Elastic {
@@ -75,7 +75,7 @@ Square inverse(const Square& square) noexcept {
 
 BreathPrior first_breath_prior() noexcept {
   BreathPrior prior{kFirst, {}};
-  for (std::size_t i = 0; i < kBreathRate; ++i) prior.closely[i][i] = 1 / squared(kSpread[i]);
+  for (std::size_t i = 0; i < kBreathRate; ++i) prior.closely[i][i] = 1 / squared(kSpreadFirst[i]);
   return prior;
 }
 
@@ -84,7 +84,7 @@ BreathPrior prior_beside(const BreathPrior& found, double distance) noexcept {
   BreathPrior prior{found.tissue, inverse(found.closely)};
   for (std::size_t i = 0; i < kBreathRate; ++i) {
     const double like = i < kBreathShapes ? kLikeLast * found.tissue[i] : 0;
-    prior.closely[i][i] += squared(nearness * std::max(kSpread[i], like));
+    prior.closely[i][i] += squared(nearness * std::max(kSpreadFirst[i], like));
   }
   prior.closely = inverse(prior.closely);
   return prior;
@@ -208,7 +208,7 @@ BreathTissue BreathFit::step() const noexcept {
     }
   }
   BreathTissue to = from;
-  Nonnegative<kBreathUnknowns>{system, kSpread}.improve(to);
+  Nonnegative<kBreathUnknowns>{system, kSpreadFirst}.improve(to);
   const double most = std::abs(to[kBreathSurface] - kAbove);
   const double share = most > kStepMost ? kStepMost / most : 1;
   for (std::size_t i = 0; i < kBreathUnknowns; ++i) to[i] = share * (to[i] - from[i]);

@@ -83,7 +83,7 @@ class BreathFit {
     double square{};                        ///< [N^2], sum, weighted
     double cost{};                          ///< [-]
     double away{};                          ///< [mm^2], sum
-    double count{};                         ///< of samples
+    double count{};                         ///< [-], of samples
   };
   /// The surface, as a sample shows it.
   struct Sight {

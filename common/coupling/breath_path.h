@@ -80,8 +80,8 @@ class BreathPath {
   static constexpr double kMemory = 1;       ///< [s], T
   static constexpr double kDamping = 0.05;   ///< [-], z
   static constexpr double kStepMost = 0.15;  ///< [s]
-  static constexpr double kStepsMost = 40;
-  static constexpr double kQuicker = 1e-4;  ///< [rad/s], for how all this grows with w
+  static constexpr double kStepsMost = 40;   ///< [-]
+  static constexpr double kQuicker = 1e-4;   ///< [rad/s], for how all this grows with w
 
   /// The motion in a step in which m stands still.
   struct Way {
@@ -97,7 +97,7 @@ class BreathPath {
              {0, 0, keep}}};
       noise = kWander * kWander * (1 - keep * keep);
     }
-    double keep{};
+    double keep{};  ///< [-]
     std::array<std::array<double, 3>, 3> by{};
     double noise{};  ///< [mm^2]
   };
@@ -125,8 +125,8 @@ class BreathPath {
     shares_ = shares;
   }
 
-  double rate_{1};  ///< [rad/s]
-  std::array<double, 3> mean_{};
+  double rate_{1};                ///< [rad/s]
+  std::array<double, 3> mean_{};  ///< [mm, mm/s, mm]
   std::array<std::array<double, 3>, 3> covariance_{};
   std::array<Shares, 3> shares_{};
 };

@@ -255,12 +255,7 @@ void ContactEstimator::publish(const Solution& solution) noexcept {
   model_.stiffness = spline_.stiffness();
   for (double& stiffness : model_.stiffness) stiffness *= spline_.share();
   model_.surface = surface_of(best_);
-  // What is found together with a breath says itself where the surface is.
-  if (swing_.believed() && !told_.breathes) {
-    told_.held.forget();
-    told_.drift.forget();
-  }
-  told_.breathes = swing_.believed();
+  told_.breathe(swing_.believed());
   if (told_.breathes) {
     // What was found together with the swing: the rest was learned before it was known.
     model_.c = {};

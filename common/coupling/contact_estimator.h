@@ -169,6 +169,15 @@ class ContactEstimator {
     HeldForce held;
     SurfaceDrift drift;
     bool breathes{};  ///< a breath is believed
+
+    /// What is found together with a breath says itself where the surface is.
+    void breathe(bool believed) noexcept {
+      if (believed && !breathes) {
+        held.forget();
+        drift.forget();
+      }
+      breathes = believed;
+    }
   };
 
   ContactEstimatorConfig config_;
