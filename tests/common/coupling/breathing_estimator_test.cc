@@ -108,7 +108,8 @@ TEST(BreathingEstimatorTest, FollowsABreathThatIsNeverLikeTheOneBefore) {
   const UnevenBreath breath{1e-3, 0.25, 0.3};
   BreathingEstimator swing{kPeriod};
   palpate(swing, 0, 6, breath);
-  for (double t = 6; t < 30; t += 3) {
+  for (int gesture = 2; gesture < 10; ++gesture) {
+    const double t = 3.0 * gesture;
     palpate(swing, t, 3, breath);
     ASSERT_TRUE(swing.believed()) << t;
     EXPECT_NEAR(swing.surface() + swing.swing().now, breath(t + 3), 0.35e-3) << t;
@@ -124,6 +125,13 @@ TEST(BreathingEstimatorTest, SaysNothingOfASurfaceThatStandsStillOrTrembles) {
     EXPECT_EQ(swing.swing().now, 0) << size;
     EXPECT_TRUE(swing.still()) << size;
   }
+}
+
+TEST(BreathingEstimatorTest, WhatLeavesNoLessThanATissueAtRestIsNoBreath) {
+  BreathingEstimator swing{kPeriod};
+  swing.rest(1e-8, false);
+  palpate(swing, 0, 16, [](double t) { return 1e-3 * std::sin(1.6 * t); });
+  EXPECT_FALSE(swing.believed());
 }
 
 TEST(BreathingEstimatorTest, AnotherPlaceBreathesWithTheSameBreath) {
