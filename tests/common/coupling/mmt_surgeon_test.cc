@@ -173,16 +173,8 @@ TEST(MmtSurgeonTest, AnotherBreathThanForeseenComesInSlowly) {
       model.swing = 2e-3;
       model.swing_rate = 1.5;
     }
-    Incoming incoming;
-    incoming.sample.payload = model;
-    incoming.fresh = true;
-    const std::array arrived{incoming};
-    SurgeonInput in;
-    in.state = SiteState::Engaged;
-    in.position = std::min(3e-3, -1e-3 + 20e-6 * static_cast<double>(tick));
-    in.force_applied = tick > 0 ? forces[tick - 1] : 0;
-    in.arrived = arrived;
-    forces[tick] = law.step(in, std::chrono::milliseconds{1}).force;
+    const double position = std::min(3e-3, -1e-3 + 20e-6 * static_cast<double>(tick));
+    forces[tick] = told_hand(law, model, position, tick > 0 ? forces[tick - 1] : 0);
   }
   ASSERT_GT(forces[999], 0.25);
   EXPECT_LT(forces[1199], 0.1) << "it does come in";
@@ -194,21 +186,13 @@ TEST(MmtSurgeonTest, AnotherBreathThanForeseenComesInSlowly) {
 TEST(MmtSurgeonTest, PressingFurtherIntoAKnownTissueIsNotSlewed) {
   MmtSurgeon law{MmtConfig{}};
   law.begin_epoch(-1e-3);
-  Incoming incoming;
-  incoming.sample.payload = ModelPayload{.version = 1, .c = {0, 0.06}, .depth_max = 5e-3};
-  incoming.fresh = true;
-  const std::array arrived{incoming};
+  const ModelPayload model{.version = 1, .c = {0, 0.06}, .depth_max = 5e-3};
   double force = 0;
   for (int tick = 0; tick <= 50; ++tick) {
-    SurgeonInput in;
-    in.state = SiteState::Engaged;
-    in.position = -1e-3 + 0.1e-3 * tick;  // 0.1 m/s, four times a tap
-    in.force_applied = force;
-    in.arrived = arrived;
-    force = law.step(in, std::chrono::milliseconds{1}).force;
+    // 0.1 m/s, four times a tap.
+    force = told_hand(law, model, -1e-3 + 0.1e-3 * tick, force);
   }
-  EXPECT_NEAR(
-      force, contact_model(std::get<ModelPayload>(incoming.sample.payload)).force(4e-3), 1e-9);
+  EXPECT_NEAR(force, contact_model(model).force(4e-3), 1e-9);
 }
 
 /// A hand at rest in a tissue that it knows; then it is told of another one.
