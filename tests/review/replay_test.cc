@@ -168,6 +168,9 @@ TEST(ReplayTest, WhatTheSurgeonIsToldOfItsForceIsToldAgain) {
   auto document = load_scenario("standard").value();
   ASSERT_TRUE(document.set("patient.simulated_phantom.breathing_mm=1.5"));
   ASSERT_TRUE(document.set("patient.simulated_phantom.breathing_hz=0.3"));
+  for (const char* way : {"up", "down"}) {
+    ASSERT_TRUE(document.set(std::string{way} + ".delay_ms=300"));
+  }
   Scenario scenario = make_scenario("standard", document).value();
   scenario.script =
       surgeon::parse_script("hold 1\npress 3 1 8\nlift 1 1\n", scenario.hand.plant.grip.stiffness)
