@@ -92,6 +92,13 @@ double MmtSurgeon::told_force(double position) const noexcept {
          candidate_->force(position - candidate_->surface - swing_.after(swing_age_));
 }
 
+/// [m], where the hand would be with the force that is shown. In a tissue that was just met a light
+/// hand is deeper than the tip ever was: what is told of there, and otherwise with each reading, is
+/// a guess, and is not felt.
+double MmtSurgeon::place_shown(double position) const noexcept {
+  return position - std::max(0.0, depth_at(position) - depth_);
+}
+
 /// [N], at rest, what the told tissue has more than is shown of it at most.
 double MmtSurgeon::too_stiff(double position) const noexcept {
   const double depth = position - told_.surface - swing_.after(swing_age_);
@@ -113,11 +120,12 @@ void MmtSurgeon::hear(const SurgeonInput& in) noexcept {
   swing_ = {model->swing, model->swing_quadrature, model->swing_rate};
   swing_age_ = 0.5 * seconds(in.round_trip);
   surface_contradiction_.tell(swing_.after(swing_age_) - foreseen);
-  const double told = told_force(in.position);
+  const double felt_at = place_shown(in.position);
+  const double told = told_force(felt_at);
   told_ = contact_model(*model);
   candidate_ = no_steeper(told_, config_.slope_max / quick_gain(model->relaxing));
   candidate_relaxing_ = model->relaxing;
-  force_contradiction_.tell(told_force(in.position) - told);
+  force_contradiction_.tell(told_force(felt_at) - told);
 }
 
 /// The surface moves as its swing does, as fast as one that breathes may. A peer that tells of

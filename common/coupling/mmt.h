@@ -37,7 +37,7 @@ struct MmtConfig {
   Duration round_trip_short{std::chrono::milliseconds{8}};
   ReleaseLineConfig release;      ///< of a force that the tank cannot pay the spring of
   double blend{0.05};             ///< [s], time constant of changes of the model
-  double believed{0.6};           ///< [N], so much may a peer take back as it learns
+  double believed{0.4};           ///< [N], so much may a peer take back as it learns
   double doubt{0.2};              ///< [N], beyond that, with which `blend` doubles
   double slowest{40};             ///< [-], so many times `blend` at most: what lasts is shown
   double surface_speed{8e-3};     ///< [m/s], at most, of a shown surface that swings or drifts
@@ -89,6 +89,7 @@ class MmtSurgeon {
  private:
   void hear(const SurgeonInput& in) noexcept;
   [[nodiscard]] double told_force(double position) const noexcept;
+  [[nodiscard]] double place_shown(double position) const noexcept;
   [[nodiscard]] double too_stiff(double position) const noexcept;
   void drop_model() noexcept;
   [[nodiscard]] SurgeonOutput let_go(const SurgeonInput& in, double work) noexcept;

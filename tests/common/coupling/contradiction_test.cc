@@ -151,5 +151,25 @@ TEST(MmtSurgeonTest, APeerThatLearnsIsFollowedAtOnce) {
   EXPECT_EQ(moved(learned, {}), moved(learned, all_believed));
 }
 
+/// A light hand is deep in a tissue that was just met, and what is told of there is a guess.
+TEST(MmtSurgeonTest, APeerThatGuessesOfWhatIsNotFeltYetIsFollowedAllTheSame) {
+  constexpr double kDepth = 6e-3;  // [m]
+  MmtSurgeon law{{}};
+  law.begin_epoch(kDepth);
+  double force = 0;
+  const auto told = [](double soft, double stiff) {
+    return ModelPayload{.version = 1, .c = {soft, 0, 0, 0, stiff}, .depth_max = 5e-3};
+  };
+  // As far as it is felt, all these tissues are one.
+  for (int tick = 0; tick < 300; ++tick) {
+    force = told_hand(law, told(0.3, tick % 10 < 5 ? 1e-4 : 2e-4), kDepth, force);
+  }
+  const double felt = force;
+  EXPECT_GT(felt, 0.1);
+  EXPECT_LT(felt, 0.3);
+  for (int tick = 0; tick < 300; ++tick) force = told_hand(law, told(0.001, 0), kDepth, force);
+  EXPECT_LT(force, 0.2 * felt);
+}
+
 }  // namespace
 }  // namespace palp::coupling
