@@ -13,11 +13,12 @@ constexpr double kGridStep = 0.05e-3;  // [m]
 constexpr std::size_t kMiddle = 32;
 constexpr std::uint32_t kBox = 5;            // ticks per equation: what the pole lets through
 constexpr double kMisplaced = 2e-3;          // [m], below the surface as believed, and nothing felt
+constexpr double kMisfit = 3e-3;          // [N], of an equation: no tissue is of these shapes
 constexpr std::uint32_t kForgetShapes = 60;  // ticks until the filtered shapes are zero again
 constexpr double kFullSpeed = 2e-3;          // [m/s], of the tip: below it data repeat themselves
 constexpr double kBreathSpeed = 10e-3;       // [m/s], the same where the surface breathes
 constexpr double kBreathWeightMin = 0.4;     // [-], and what is too slow to say anything there
-constexpr double kStillWeight = 0.2;         // [-], of an equation that repeats the last one
+constexpr double kStillWeight = 0.05;        // [-], of an equation that repeats the last one
 constexpr double kOutwardWeight = 0.5;       // [-], of one on the way out: the way in is judged
 constexpr std::uint32_t kDoubtTicks = 60;    // after the first contact
 constexpr double kDoubtShare = 0.25;         // [-], of the force that counts as contact
@@ -72,7 +73,7 @@ void ContactEstimator::place_grid(double centre) noexcept {
 /// forgotten. Where no breath is believed yet, one may be why it walks.
 void ContactEstimator::begin_again() noexcept {
   if (model_.swing_rate > 0) swing_ = BreathingEstimator{config_.period};
-  expected_.c = here_.expected;
+  expected_ = {.c = here_.expected};
   sensed_.tip.reset(sensed_.raw_tip);
   sensed_.tip_mean = sensed_.raw_tip_mean;
   ContactModel believed{0, {}, kModelDepthMax};
@@ -84,7 +85,7 @@ void ContactEstimator::begin_again() noexcept {
 void ContactEstimator::withdraw() noexcept {
   placed_ = here_.contact = false;
   doubt_.ticks = 0;
-  expected_.c = here_.expected;
+  expected_ = {.c = here_.expected};
   ++model_.version;
   model_.c = {};
   model_.stiffness = {};
@@ -171,7 +172,8 @@ void ContactEstimator::collect(double force) noexcept {
 
 /// [N^2], of the mean over a box.
 double ContactEstimator::equation_noise() const noexcept {
-  return std::max(noise_.mean_square(), config_.sensor.step * config_.sensor.step / 12) / kBox;
+  const double step = config_.sensor.step;
+  return std::max(std::max(noise_.mean_square(), step * step / 12) / kBox, kMisfit * kMisfit);
 }
 
 void ContactEstimator::absorb() noexcept {

@@ -154,6 +154,7 @@ class ContactEstimator {
   struct Expected {
     Terms c{};         ///< [N]
     double surface{};  ///< [m]
+    double doubt{1};   ///< [-], of the spread of a tissue of which nothing is known
   };
   /// What was felt at this place.
   struct Here {

@@ -26,7 +26,6 @@ constexpr std::size_t pair(std::size_t terms, std::size_t row, std::size_t colum
   return row * terms - row * (row + 1) / 2 + column;
 }
 
-constexpr double kSplineNoise = 3e-3;  // [N], of an equation at least
 constexpr double kRestWeight = 40;     // [-], of equations: fewer fit any tissue
 constexpr double kRestNoise = 1.6;     // [-], of their noise, and
 constexpr double kRestShare = 0.04;    // [-], of the force: what a tissue may leave
@@ -45,7 +44,7 @@ ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate, bool r
     // What relaxes and what swings with a breath look alike: until the surface is known to stand
     // still nothing relaxes.
     const bool closed = !relaxes && row >= kModelTerms && row + 1 < kTerms;
-    const double spread = closed ? kClosed * kSpread[row] : kSpread[row];
+    const double spread = expected_.doubt * kSpread[row] * (closed ? kClosed : 1);
     const double prior = noise / (spread * spread);
     a[row][row] += prior;
     b[row] = right_[row][candidate] + (closed ? 0 : prior * expected_.c[row]);
@@ -58,9 +57,11 @@ ContactEstimator::Solution ContactEstimator::solve(std::size_t candidate, bool r
     double product = 0;
     for (std::size_t column = 0; column < kTerms; ++column) product += a[row][column] * c[column];
     cost += c[row] * (product - 2 * b[row]);
-    cost += noise * (expected_.c[row] / kSpread[row]) * (expected_.c[row] / kSpread[row]);
+    const double expected = expected_.c[row] / (expected_.doubt * kSpread[row]);
+    cost += noise * expected * expected;
   }
-  const double off = (surface_of(candidate) - expected_.surface) / config_.surface_spread;
+  const double spread = config_.surface_spread * std::sqrt(expected_.doubt);
+  const double off = (surface_of(candidate) - expected_.surface) / spread;
   return {c, cost + noise * off * off};
 }
 
@@ -77,7 +78,7 @@ double ContactEstimator::fit_spline_beside(const Solution& solution) noexcept {
   smooth.reach = std::max(0.0, here_.deepest - smooth.surface) + kModelReachBeyond;
   SplineEstimator::Factors beside{};
   std::copy(solution.c.begin() + kModelTerms, solution.c.end(), beside.begin());
-  const double noise = std::max(equation_noise(), kSplineNoise * kSplineNoise);
+  const double noise = equation_noise();
   return solution.cost - spline_.fit(smooth, beside, noise);
 }
 

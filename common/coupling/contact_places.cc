@@ -8,6 +8,8 @@
 namespace palp::coupling {
 namespace {
 
+constexpr double kKnownDoubt = 0.3;   // [-], where the tip was before, and
+constexpr double kBesideDoubt = 0.5;  // [-], beside it: of what is expected of any tissue
 constexpr double kStay = 0.3;  // [s] of contact: a place that a drag only passed is forgotten first
 
 }  // namespace
@@ -68,6 +70,7 @@ void ContactEstimator::new_place(const Place& place) noexcept {
   if (!placed_ && there == nullptr) return;
   const Known& expected = there != nullptr ? *there : last_known();
   expected_.c = here_.expected = expected.c;
+  expected_.doubt = there != nullptr && there->touched > kStay ? kKnownDoubt : kBesideDoubt;
   place_grid(expected.surface);
   spline_.expect(expected.stiffness, expected.spline_share);
   if (there == nullptr) return;

@@ -42,22 +42,26 @@ TEST(GestureSetTest, ACaseHasTheScriptOfItsGesture) {
   EXPECT_TRUE(make_case(plan, plan.cases.back())->finger.bump > 0.1) << "an inclusion is met";
 }
 
-/// Over an inclusion 5 mm deep, at 20 mm/s, a round trip of 200 ms away.
-TEST(GestureSetTest, WithMmtADragFeelsTheBumpThatTheTipTouches) {
+/// Over an inclusion 5 mm deep, at 20 mm/s, a round trip of 200 ms away. The tip may press harder
+/// than the hand is given, by 0.02 N and 3 %: of what a light hand feels that is more than 5 %.
+TEST(GestureSetTest, WithMmtADragFeelsTheBumpThatAFingerTouches) {
   const Plan plan = make_set("gestures", {.seed = 2}).value();
-  const auto drag = std::ranges::find_if(plan.cases, [](const Case& one) {
-    return one.script == kDragOver && one.labels[0] == "200" &&
-           std::ranges::find(one.labels, "mid") != one.labels.end();
-  });
-  ASSERT_NE(drag, plan.cases.end());
-  const RunResult result = simulate(*make_case(plan, *drag));
-  EXPECT_FALSE(result.metrics.unstable) << result.metrics.unstable_reason;
-  const judge::ContactMetrics& felt = result.metrics.contact;
-  EXPECT_NEAR(felt.drag_error, 0, 0.05);
-  EXPECT_NEAR(felt.drag_felt / felt.drag_direct, 1, 0.05) << "of the same hand's finger";
-  EXPECT_LE(felt.drag_shift, 0.3) << "a round trip and 0.1 s";
-  EXPECT_LE(result.metrics.energy_operator, 1e-3);
-  EXPECT_NE(trace_csv(result).find(",drag,"), std::string::npos);
+  std::size_t drags = 0;
+  for (const Case& one : plan.cases) {
+    if (one.script != kDragOver || one.labels[0] != "200") continue;
+    SCOPED_TRACE(one.labels[1]);
+    ++drags;
+    const bool light = std::ranges::find(one.labels, "light") != one.labels.end();
+    const RunResult result = simulate(*make_case(plan, one));
+    EXPECT_FALSE(result.metrics.unstable) << result.metrics.unstable_reason;
+    const judge::ContactMetrics& felt = result.metrics.contact;
+    EXPECT_NEAR(felt.drag_felt / felt.drag_direct, 1, 0.05) << "of the same hand's finger";
+    EXPECT_NEAR(felt.drag_error, 0, light ? 0.09 : 0.05) << "of the tip";
+    EXPECT_LE(felt.drag_shift, 0.3) << "a round trip and 0.1 s";
+    EXPECT_LE(result.metrics.energy_operator, 1e-3);
+    EXPECT_NE(trace_csv(result).find(",drag,"), std::string::npos);
+  }
+  EXPECT_EQ(drags, 4U) << "one of each grip";
 }
 
 TEST(GestureSetTest, AScriptThatIsNoneIsASentence) {
