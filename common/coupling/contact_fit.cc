@@ -26,9 +26,9 @@ constexpr std::size_t pair(std::size_t terms, std::size_t row, std::size_t colum
   return row * terms - row * (row + 1) / 2 + column;
 }
 
-constexpr double kRestWeight = 40;     // [-], of equations: fewer fit any tissue
-constexpr double kRestNoise = 1.6;     // [-], of their noise, and
-constexpr double kRestShare = 0.04;    // [-], of the force: what a tissue may leave
+constexpr double kRestWeight = 40;   // [-], of equations: fewer fit any tissue
+constexpr double kRestNoise = 1.6;   // [-], of their noise, and
+constexpr double kRestShare = 0.04;  // [-], of the force: what a tissue may leave
 
 }  // namespace
 

@@ -1,5 +1,3 @@
-#include "common/coupling/contact_estimator.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +5,7 @@
 
 #include "common/core/filters.h"
 #include "common/core/place.h"
+#include "common/coupling/contact_estimator.h"
 #include "common/coupling/contact_model.h"
 
 namespace palp::coupling {

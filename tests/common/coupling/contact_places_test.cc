@@ -1,11 +1,10 @@
-#include "common/coupling/contact_estimator.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "common/core/place.h"
+#include "common/coupling/contact_estimator.h"
 #include "common/coupling/contact_model.h"
 
 namespace palp::coupling {
