@@ -32,8 +32,8 @@ using std::chrono_literals::operator""s;
 /// The first touches over a path that jitters, loses and falls silent, with one fault.
 Scenario rough(const std::string& coupling, FaultKind fault) {
   auto document = load_scenario("metro").value();
-  for (const std::string path : {"surgeon.coupling.name", "patient.coupling.name"}) {
-    EXPECT_TRUE(document.set(path + "=" + coupling));
+  for (const char* site : {"surgeon", "patient"}) {
+    EXPECT_TRUE(document.set(std::string{site} + ".coupling.name=" + coupling));
   }
   EXPECT_TRUE(document.set("surgeon.engagement.forced=true"));
   for (const char* way : {"up", "down"}) {
