@@ -3,17 +3,16 @@
 
 #include <gtest/gtest.h>
 
-#include "common/core/filters.h"
 #include "common/core/place.h"
-#include "common/coupling/contact_estimator.h"
 #include "common/coupling/contact_model.h"
+#include "tests/common/coupling/sensed_tip.h"
 
 namespace palp::coupling {
 namespace {
 
 /// A tip that goes where it is told, in a tissue with a kink that lets go on the way out: none of
 /// the estimator's shapes has either, and its transducer has neither noise nor steps.
-class FineTransducer {
+class TipInKinkedTissue {
  public:
   void go(double to, double speed) {
     const double step = std::copysign(1e-3 * speed, to - position_);
@@ -24,12 +23,12 @@ class FineTransducer {
     for (int tick = 0; tick < ticks; ++tick) meet(position_);
   }
   void new_place(const Place& place, double stiffer) {
-    estimator_.new_place(place);
+    tip_.new_place(place);
     stiffer_ = stiffer;
   }
   /// Told, over true: of the way from 1.2 to 3.2 mm.
   [[nodiscard]] double stiffness() const {
-    const ContactModel told = contact_model(estimator_.model());
+    const ContactModel told = contact_model(tip_.told());
     return (told.force(3.2e-3 - told.surface) - told.force(1.2e-3 - told.surface)) /
            (elastic(3.2e-3) - elastic(1.2e-3));
   }
@@ -41,23 +40,16 @@ class FineTransducer {
   void meet(double position) {
     const bool out = position < position_;
     position_ = position;
-    estimator_.step(position, pole_.step((out ? 0.85 : 1) * elastic(position)));
+    tip_.meets(position, (out ? 0.85 : 1) * elastic(position));
   }
 
-  static ContactEstimatorConfig config() {
-    ContactEstimatorConfig config;
-    config.sensor.step = 0;
-    return config;
-  }
-
-  ContactEstimator estimator_{config()};
-  LowPass pole_{config().sensor.pole, config().period};  ///< [N]
+  SensedTip tip_;
   double position_{-3e-3};
   double stiffer_{1};
 };
 
 TEST(ContactEstimatorTest, WithoutNoiseNoFewReadingsSayWhatATissueIsLikeBelowThem) {
-  FineTransducer tip;
+  TipInKinkedTissue tip;
   tip.stay(1000);
   for (int tap = 0; tap < 3; ++tap) {
     tip.go(3.5e-3, 15e-3);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/core/filters.h"
+#include "common/core/place.h"
 #include "common/coupling/contact_estimator.h"
 #include "common/coupling/contact_model.h"
 
@@ -19,6 +20,7 @@ class SensedTip {
     given_.age_into(contact_model(told), told.relaxing, depth, config().period);
     return given_.force(depth);
   }
+  void new_place(const Place& place) { estimator_.new_place(place); }
   [[nodiscard]] const ModelPayload& told() const { return estimator_.model(); }
 
  private:
