@@ -295,6 +295,7 @@ class Surgeon(Site):
         self.peer = peer
         self.pedal = False
         self._shook = 0.0
+        self._heard_before = 0  # Hellos, before the newest handshake
         self._engaged = 0.0
 
     def handshake(self, now: float) -> None:
@@ -302,10 +303,14 @@ class Surgeon(Site):
         for record in handshake.take():
             self.send(record)
         self._shook = now
+        self._heard_before = self.counts["hellos"]
 
     def supervise(self, now: float) -> None:
         if self.session is None:
             self._ask(now)
+            return
+        if self.session.telegrams == 0:
+            self._ask_within(now)
             return
         if self.session.telegrams < 20:
             return
@@ -331,10 +336,19 @@ class Surgeon(Site):
             for record in handshake.take():
                 self.send(record)
         elif now - self._last_hello > HELLO_EVERY_S:
-            if self.counts["hellos"] == 0 and now - self._shook > HANDSHAKE_AGAIN_S:
+            unanswered = self.counts["hellos"] == self._heard_before
+            if unanswered and now - self._shook > HANDSHAKE_AGAIN_S:
                 self.handshake(now)
             else:
                 self.send_hello(handshake.keys, self.peer)
+
+    def _ask_within(self, now: float) -> None:
+        """A peer that says nothing did not hear our last Hello, or took another surgeon's."""
+        if now - self.session.began > HANDSHAKE_AGAIN_S:
+            self.end_session()
+            self.handshake(now)
+        elif now - self._last_hello > HELLO_EVERY_S:
+            self.send_hello(self.session.keys, self.peer)
 
     def on_hello(self, hello: dict, keys: wire.Keys, source: Address) -> None:
         if self.session is None and hello.get("peer_session_id") == self.own_id:
