@@ -192,8 +192,8 @@ void RunJudge::look_at_stability(const RunTick& tick) {
     hand_swing_.restart();
     tip_swing_.restart();
   } else {
-    hand_swing_.look(tick.at, tick.hand);
-    tip_swing_.look(tick.at, tick.tip);
+    hand_swing_.look({tick.at, tick.hand, -tick.energy_operator});
+    tip_swing_.look({tick.at, tick.tip});
   }
   if (!tick.counted) return;
   if (std::abs(tick.hand_force) >= config_.force_cap * (1 - 1e-9)) at_cap_ += config_.period;

@@ -39,7 +39,8 @@ std::vector<TouchTick> direct_touch(const Scenario& scenario) {
 
 OwnFinger own_finger(const Scenario& scenario) {
   OwnFinger finger{.force = 0};
-  judge::SwingFinder swing;
+  // A little slower than what is looked for: what the finger does, hand and tip may do quicker.
+  judge::SwingFinder swing{0.7 * judge::SwingFinder::kSlowest};
   judge::DragBump drag;
   review::PhaseFinder phases{scenario.script};
   for (const TouchTick& tick : direct_touch(scenario)) {
@@ -47,7 +48,7 @@ OwnFinger own_finger(const Scenario& scenario) {
     const judge::PhaseKind kind = phases.at(tick.at, tick.place).kind;
     if (kind == judge::PhaseKind::FreeAir) swing.restart();
     drag.look(seconds(tick.at), kind == judge::PhaseKind::Drag, tick.force, tick.force);
-    swing.look(seconds(tick.at), tick.position);
+    swing.look({seconds(tick.at), tick.position});
   }
   finger.swing = swing.largest();
   finger.bump = drag.felt();

@@ -79,6 +79,7 @@ TEST(RunJudgeTest, WhatIsUnstableIsToldOfTheHandAndOfTheTip) {
       const double swing = 1e-3 * std::sin(0.06 * ms);  // about 10 Hz
       tick.tip = 1e-3 + (hand ? 0 : swing);
       tick.hand = 1e-3 + (hand ? swing : 0);
+      tick.energy_operator = -1e-7 * ms;
       judge.look(tick);
     }
     const RunMetrics metrics = judge.metrics();
@@ -132,7 +133,10 @@ TEST(RunJudgeTest, ABlackoutMayBeToldAsItBegins) {
   EXPECT_EQ(judge.metrics().stage_speed_max, 2);
 }
 
-/// 2 s of one phase: hand and tip [m] over time [s].
+/// [J], at [s]: the work of a hand that the law feeds.
+double fed(double t) { return -1e-4 * t; }
+
+/// 2 s of one phase: hand and tip [m] over time [s]. The hand is fed.
 RunMetrics judged(PhaseKind kind, double (*hand)(double), double (*tip)(double)) {
   RunJudge judge{{}};
   for (int i = 0; i < 2000; ++i) {
@@ -141,6 +145,7 @@ RunMetrics judged(PhaseKind kind, double (*hand)(double), double (*tip)(double))
     tick.phase.duration = 2;
     tick.hand = hand(1e-3 * i);
     tick.tip = tip(1e-3 * i);
+    tick.energy_operator = fed(1e-3 * i);
     judge.look(tick);
   }
   return judge.metrics();
@@ -178,6 +183,17 @@ TEST(RunJudgeTest, AHandThatSwingsWhileItMovesIsUnstable) {
   EXPECT_STREQ(metrics.unstable_reason, "the hand swings by itself");
 }
 
+TEST(RunJudgeTest, AHandThatPaysForItsSwingsIsStable) {
+  RunJudge judge{{}};
+  for (int i = 0; i < 2000; ++i) {
+    RunTick tick = tick_at(i, PhaseKind::Tap, 1);
+    tick.hand = hammering(1e-3 * i);
+    tick.energy_operator = -fed(1e-3 * i);
+    judge.look(tick);
+  }
+  EXPECT_FALSE(judge.metrics().unstable);
+}
+
 TEST(RunJudgeTest, HandAndTipThatSwingNoMoreThanTheHandsOwnFingerAreStable) {
   for (const double own_swing : {0.4e-3, 0.2e-3}) {
     MetricsConfig config;
@@ -186,6 +202,7 @@ TEST(RunJudgeTest, HandAndTipThatSwingNoMoreThanTheHandsOwnFingerAreStable) {
     for (int i = 0; i < 2000; ++i) {
       RunTick tick = tick_at(i, PhaseKind::Tap, 1);
       tick.hand = tick.tip = hammering(1e-3 * i);
+      tick.energy_operator = fed(1e-3 * i);
       judge.look(tick);
     }
     const RunMetrics metrics = judge.metrics();

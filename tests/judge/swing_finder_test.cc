@@ -1,5 +1,6 @@
 #include "judge/swing_finder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -13,7 +14,7 @@ namespace {
 /// [m], of 3 s of a motion over time [s].
 double largest_of(const std::function<double(double)>& position) {
   SwingFinder finder;
-  for (int i = 0; i < 3000; ++i) finder.look(1e-3 * i, position(1e-3 * i));
+  for (int i = 0; i < 3000; ++i) finder.look({1e-3 * i, position(1e-3 * i)});
   return finder.largest();
 }
 
@@ -49,11 +50,56 @@ TEST(SwingFinderTest, FivePeriodsOnEndAreAsked) {
   EXPECT_EQ(largest_of(bursts), 0);
 }
 
+/// [m], of 3 s of a hand that swings by 2 mm at 12 Hz against a spring, which gives back what it
+/// took, and besides `power` [W].
+double largest_against_a_spring(double power) {
+  SwingFinder finder;
+  for (int i = 0; i < 3000; ++i) {
+    const double at = 1e-3 * i;
+    const double x = sine(1e-3, 12, at);
+    const double pressed = std::max(0.0, x);
+    finder.look({at, x, power * at - 0.5 * 400 * pressed * pressed});
+  }
+  return finder.largest();
+}
+
+TEST(SwingFinderTest, WhatPaysForItsSwingsDoesNotSwingByItself) {
+  EXPECT_EQ(largest_against_a_spring(-1e-4), 0);
+  EXPECT_EQ(largest_against_a_spring(0), 0);
+  EXPECT_NEAR(largest_against_a_spring(1e-4), 2e-3, 0.05e-3);
+}
+
+/// A hand that bounces once in each tap of 5 Hz turns 20 times a second, and presses a spring.
+TEST(SwingFinderTest, AQuickTapThatBouncesDoesNotSwingByItselfThoughItEndsInTheAir) {
+  SwingFinder finder;
+  const auto depth = [](double t) {
+    if (t > 2) return -3e-3 + 2e-3 * std::min(1.0, 20 * (t - 2));
+    return 1e-3 + sine(2e-3, 5, t) + sine(1.5e-3, 10, t);
+  };
+  double given = 0;
+  for (int i = 1; i < 3000; ++i) {
+    const double x = depth(1e-3 * i);
+    const double before = depth(1e-3 * (i - 1));
+    given -= (std::max(0.0, 400 * before) + 0.5 * (x - before) / 1e-3) * (x - before);
+    finder.look({1e-3 * i, x, given});
+  }
+  EXPECT_EQ(finder.largest(), 0);
+  SwingFinder blind;
+  for (int i = 0; i < 3000; ++i) blind.look({1e-3 * i, depth(1e-3 * i)});
+  EXPECT_GT(blind.largest(), 0.5e-3) << "by its turns alone";
+}
+
+TEST(SwingFinderTest, ASlowerFinderFindsWhatAPersonMeans) {
+  SwingFinder finder{4};
+  for (int i = 0; i < 3000; ++i) finder.look({1e-3 * i, sine(1e-3, 5, 1e-3 * i)});
+  EXPECT_NEAR(finder.largest(), 2e-3, 0.05e-3);
+}
+
 TEST(SwingFinderTest, ABreakOfTheMotionEndsARow) {
   SwingFinder finder;
   for (int i = 0; i < 3000; ++i) {
     if (i % 300 == 0) finder.restart();
-    finder.look(1e-3 * i, sine(1e-3, 12, 1e-3 * i));
+    finder.look({1e-3 * i, sine(1e-3, 12, 1e-3 * i)});
   }
   EXPECT_EQ(finder.largest(), 0);
 }

@@ -77,6 +77,8 @@ TEST(DirectTouchTest, ALightHandThatTapsQuicklyOnSomethingStiffBounces) {
     return own_finger(scenario).swing;
   };
   EXPECT_GT(swing_at("hold 1\nmove -3 0.5\ntaps 5 4 0.24 0\nlift 1 1\n"), 0.3e-3);
+  EXPECT_GT(swing_at("hold 1\nmove -3 0.5\ntaps 5 4 0.22 0\nlift 1 1\n"), 0.3e-3)
+      << "though some of its turns are a little slower than those of a limit cycle";
   EXPECT_EQ(swing_at("hold 1\nmove -3 0.5\npress 4 1 3\nlift 1 1\n"), 0);
 }
 
