@@ -29,8 +29,14 @@ double FirstPress::share() const noexcept {
   return settled_ ? held_.felt / held_.truth : std::numeric_limits<double>::quiet_NaN();
 }
 
-double FirstPress::permitted() const noexcept {
-  if (!settled_) return std::numeric_limits<double>::quiet_NaN();
+double FirstPress::given() const noexcept {
+  const PermittedPress::Permitted permitted = most();
+  const bool all = permitted.share >= PermittedPress::kAll;
+  return all ? std::numeric_limits<double>::quiet_NaN() : held_.felt / looks_ / permitted.force;
+}
+
+PermittedPress::Permitted FirstPress::most() const noexcept {
+  if (!settled_) return {};
   return press_.permitted({.at = began_at_ + settled_after_,
                            .felt = held_.felt / looks_,
                            .truth = held_.truth / looks_,

@@ -24,9 +24,13 @@ class FirstPress {
   /// [-], felt over true; NaN: it was let go of before, or there was none.
   [[nodiscard]] double share() const noexcept;
   /// [-], most that the same could be; see PermittedPress. NaN as share(), or without a bound.
-  [[nodiscard]] double permitted() const noexcept;
+  [[nodiscard]] double permitted() const noexcept { return most().share; }
+  /// [-], felt over the force that the bound permits. NaN as permitted(), and where it permits all.
+  [[nodiscard]] double given() const noexcept;
 
  private:
+  [[nodiscard]] PermittedPress::Permitted most() const noexcept;
+
   double settled_after_;  ///< [s], the first contact
   PermittedPress press_;
   bool begun_{};

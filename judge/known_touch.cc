@@ -46,7 +46,7 @@ void KnownTouch::hold(const Hold& hold) noexcept {
   if (hold.truth > config_.stiffest * hold.position) return;
   const PermittedPress::Look held{
       .at = hold.until, .felt = hold.felt, .truth = hold.truth, .position = hold.position};
-  if (press_.permitted(held) < PermittedPress::kAll) return;
+  if (press_.permitted(held).share < PermittedPress::kAll) return;
   held_off_ += std::abs(hold.felt - hold.truth);
   held_truth_ += hold.truth;
 }

@@ -97,6 +97,10 @@ constexpr std::array kTable{
            100,
            [](const M& m) { return m.contact.share_permitted; }},
     Metric{"share_missing", "of what the energy permits, not felt [%]", 100, missing_share},
+    Metric{"share_given",
+           "of the force that the energy permits, felt in a first press [%]",
+           100,
+           [](const M& m) { return m.contact.share_given; }},
     Metric{
         "share_error", "error of a first press where the energy permits all [%]", 100, share_error},
     Metric{"announced",

@@ -99,6 +99,8 @@ struct ContactMetrics {
   double share_2s{kUndefined};
   /// [-], most that it could be by the energy that the hand may be given; see FirstPress.
   double share_permitted{kUndefined};
+  /// [-], felt over permitted force there, where not all is permitted; see FirstPress.
+  double share_given{kUndefined};
   double guard_excess{};         ///< [N], most beyond the gate's limit of the tip's force
   double guard_excess_time{};    ///< [s], longest on end; see TipGuard
   double energy_contact{};       ///< [J], most that the hand got in one contact; see ContactEnergy

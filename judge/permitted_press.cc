@@ -35,10 +35,10 @@ double PermittedPress::taken(double force, double way, double span) const noexce
   return stored + friction * way + bound_.damping * way * way / span;
 }
 
-double PermittedPress::permitted(const Look& held) const noexcept {
+PermittedPress::Permitted PermittedPress::permitted(const Look& held) const noexcept {
   constexpr int kHalvings = 40;
   if (depths_.empty() || !(bound_.grip > 0) || !(bound_.energy >= 0)) {
-    return std::numeric_limits<double>::quiet_NaN();
+    return {};
   }
   const double budget = bound_.energy + most_.work - work_before_;  // [J]
   const double span = std::max(kOutLeast, held.at - most_.at);      // [s]
@@ -54,7 +54,7 @@ double PermittedPress::permitted(const Look& held) const noexcept {
   }
   // As far as the tissue has relaxed.
   const double relaxed = std::min(1.0, held.truth / truth_kept(held.position));
-  return std::min(1.0, low / (relaxed * truth_kept(there(low))));
+  return {low, std::min(1.0, low / (relaxed * truth_kept(there(low))))};
 }
 
 }  // namespace palp::judge

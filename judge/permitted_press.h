@@ -37,13 +37,18 @@ class PermittedPress {
   /// In order of time, in contact.
   void look(const Look& now);
 
-  /// [-], most of the true force that may be felt by a hand that holds as in `held`: it is pushed
+  struct Permitted {
+    double force{std::numeric_limits<double>::quiet_NaN()};  ///< [N]
+    double share{std::numeric_limits<double>::quiet_NaN()};  ///< [-], of the true force there
+  };
+
+  /// Most of the true force that may be felt by a hand that holds as in `held`: it is pushed
   /// out from where it had given most to where it rests, at an even speed and by nothing but the
   /// force, until force and tissue agree or the energy is used up: that of the bound, and what the
   /// hand gave in this contact. That takes (F^2 - F0^2)/2k, F0 being the force where it had given
   /// most, and what friction and damping take on the way. What a force must still hold to let go of
   /// is not reckoned with. NaN without a contact or a bound.
-  [[nodiscard]] double permitted(const Look& held) const noexcept;
+  [[nodiscard]] Permitted permitted(const Look& held) const noexcept;
 
  private:
   struct Depth {

@@ -338,6 +338,7 @@ void RunJudge::sum_up_first_presses() {
     most = missing;
     metrics_.contact.share_2s = share;
     metrics_.contact.share_permitted = permitted;
+    metrics_.contact.share_given = press.given();
   }
 }
 

@@ -106,6 +106,19 @@ TEST(FirstPressTest, WhereEnergyPermitsAllNoMoreThanTheTissueCounts) {
   EXPECT_NEAR(permitted({.grip = 900, .energy = 3e-3}, 0), 1, 1e-6);
 }
 
+TEST(FirstPressTest, WhereEnergyPermitsAllNoneOfItIsAShareOfTheForce) {
+  FirstPress whole{{.grip = 900, .energy = 9e-3}};
+  FirstPress part{{.grip = 80, .energy = 1e-3}};
+  for (int i = 0; i < 3000; ++i) {
+    const FirstPress::Look now{
+        .at = 1e-3 * i, .felt = 0.2, .truth = kTissue * 6e-3, .position = 6e-3};
+    whole.look(now);
+    part.look(now);
+  }
+  EXPECT_TRUE(std::isnan(whole.given()));
+  EXPECT_NEAR(part.given(), 0.2 / std::sqrt(2 * 80 * 1e-3 + 0.2 * 0.2), 1e-3);
+}
+
 TEST(FirstPressTest, WithoutABoundNothingIsPermittedOrForbidden) {
   EXPECT_TRUE(std::isnan(permitted({}, 0)));
 }
@@ -123,6 +136,7 @@ TEST(FirstPressTest, WhatTheHandWasGivenInVainWasPermittedAllTheSame) {
                 .work = -1.8e-3 * out});
   }
   EXPECT_LT(press.share(), 0.2);
+  EXPECT_NEAR(press.given(), 0.5, 1e-3);
   EXPECT_NEAR(press.permitted(), force / (kTissue * (6e-3 - force / 80)), 1e-3);
 }
 

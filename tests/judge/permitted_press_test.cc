@@ -16,7 +16,7 @@ TEST(PermittedPressTest, AContactKnowsNothingOfTheOneBefore) {
       const double position = 5e-5 * i;
       press.look({.at = 1e-3 * i, .truth = stiffness * position, .position = position});
     }
-    return press.permitted({.at = 2, .truth = stiffness * 99 * 5e-5, .position = 99 * 5e-5});
+    return press.permitted({.at = 2, .truth = stiffness * 99 * 5e-5, .position = 99 * 5e-5}).share;
   };
   const EnergyBound bound{.grip = 80, .energy = 0.5e-3};
   PermittedPress fresh{bound};
@@ -39,7 +39,8 @@ TEST(PermittedPressTest, TissueThatRelaxedIsGivenWholeWhereTheEnergyPermitsIt) {
                 .position = position});
   }
   const double force = 300 * 2e-3 * (0.6 + 0.4 * std::exp(-2.999));
-  EXPECT_NEAR(press.permitted({.at = 3, .felt = force, .truth = force, .position = 2e-3}), 1, 1e-9);
+  EXPECT_NEAR(
+      press.permitted({.at = 3, .felt = force, .truth = force, .position = 2e-3}).share, 1, 1e-9);
 }
 
 /// A hand that goes on inwards while the force comes in is pushed out along another line.
@@ -52,14 +53,14 @@ TEST(PermittedPressTest, WhatAHandGoesOnInwardsAsksForMore) {
       press.look({.at = 1e-3 * i, .truth = 300 * position, .position = position});
     }
     const double position = 99 * 5e-5 + later;
-    return press.permitted({.at = 2, .truth = 300 * position, .position = position});
+    return press.permitted({.at = 2, .truth = 300 * position, .position = position}).share;
   };
   EXPECT_LT(permitted(0), 1);
   EXPECT_LT(permitted(1e-3), permitted(0));
 }
 
 TEST(PermittedPressTest, WithoutAContactItSaysNothing) {
-  EXPECT_TRUE(std::isnan(PermittedPress{{.grip = 80, .energy = 1e-3}}.permitted({.at = 2})));
+  EXPECT_TRUE(std::isnan(PermittedPress{{.grip = 80, .energy = 1e-3}}.permitted({.at = 2}).share));
 }
 
 }  // namespace
