@@ -177,10 +177,13 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
   now_.position = given.position;
   now_.place = hand_.place;
   judge_force(wanted, lapse);
+  // What the hand is given, not what the law would have given: the tip presses by that.
+  PortSample told = wanted.to_patient;
+  told.force = answer_.force;
   return {.force = answer_.force,
           .hold_in_plane = config_.hold_in_plane && answer_.force >= pressing_force(),
           .to_peer = {{now_.state, now_.epoch, hand_.place, {}},
-                      account_.within_limits(wanted.to_patient)},
+                      account_.within_limits(told)},
           .view = {.state = now_.state,
                    .peer_state = now_.peer_state,
                    .link = now_.link.state,

@@ -84,7 +84,7 @@ struct PressBench {
       in.now += 1ms;
       in.hand.sampled_at = in.now;
       in.arrived.samples = {&sample, 1};
-      (void)control.step(in);
+      out = control.step(in);
     }
     in.arrived.samples = {};
   }
@@ -104,11 +104,21 @@ struct PressBench {
   test::KeepingRecorder recorder;
   SurgeonControl control{{}, {}, {law, recorder}};
   SurgeonInputs in;
+  SurgeonOutputs out;
 };
 
 /// [N], 1 N but for a spring to a tip that stands 1 mm deeper.
 coupling::DirectConfig with_spring(double spring) {
   return {.spring = spring, .change = {.slew = 1e9, .at_once = 1e9}};
+}
+
+TEST(SurgeonControlTest, ThePeerIsToldTheForceThatTheHandIsGivenNotWhatTheLawWouldGive) {
+  PressBench bench{with_spring(1000)};
+  bench.engage();
+  bench.hear(-2e-3, 120'000);  // motors that are hot stand less
+  EXPECT_LT(bench.out.force, 1.5);
+  EXPECT_GT(bench.out.force, 1.3);
+  EXPECT_EQ(bench.out.to_peer.port.force, bench.out.force);
 }
 
 TEST(SurgeonControlTest, AHandThatIsGivenLessThanTheTipMeasuresIsToldAndItIsWrittenDown) {
