@@ -11,6 +11,7 @@ constexpr double kSwingRateMax = 10;   // [rad/s]
 constexpr double kOnsetMax = 20e-3;    // [m], deeper than any model was pressed
 constexpr double kDepthStep = 0.5e-6;  // [m]
 constexpr int kOnsetHalvings = 24;     // to 1.2 nm
+constexpr double kSteepFrom = 0.25;    // [-], xi: no shape is too steep before
 
 double sum(const std::array<double, kModelTerms>& c,
            const std::array<double, kModelTerms>& shapes) noexcept {
@@ -227,11 +228,17 @@ void make_good(const ContactModel& model, const KnotStiffness& most, ContactMode
 }  // namespace
 
 ContactModel no_steeper(const ContactModel& model, double slope_max) noexcept {
-  ContactModel smooth = model;
-  smooth.stiffness = {};
   ContactModel limited = model;
-  // A first term that is too steep is so from the surface on.
-  limited.c[0] = std::min(limited.c[0], slope_max * kModelDepthScale);
+  // A first term that is too steep is so from the surface on. The others by themselves only later:
+  // cut off by the reach alone, what is huge would come back as two models are blended.
+  for (std::size_t term = 0; term < kModelTerms; ++term) {
+    std::array<double, kModelTerms> alone{};
+    alone[term] = 1;
+    const double most = slope_max * kModelDepthScale / rise(alone, kSteepFrom);  // [N]
+    limited.c[term] = std::min(limited.c[term], most);
+  }
+  ContactModel smooth = limited;
+  smooth.stiffness = {};
   // The smooth shapes become steeper all the way.
   if (smooth.slope(smooth.reach) > slope_max) {
     double low = 0;

@@ -135,6 +135,19 @@ RC_GTEST_PROP(ContactModelTest, NoMoreIsShownThanADeviceMayShow, ()) {
   RC_ASSERT(shown.force(depth) <= model.force(depth) + 1e-12);
 }
 
+/// Or a little of it would make a wall of another model that reaches deeper.
+TEST(ContactModelTest, NoTermOfWhatIsShownIsHugeThoughItReachesNoDepth) {
+  for (std::size_t term = 0; term < kModelTerms; ++term) {
+    ContactModel model{.reach = 5e-3};
+    model.c[term] = 1e5;
+    ContactModel alone;
+    alone.c[term] = no_steeper(model, 1500).c[term];
+    alone.reach = 0.25e-3;
+    EXPECT_LE(alone.slope(alone.reach), 1500 * (1 + 1e-9)) << term;
+    EXPECT_GE(alone.slope(alone.reach), 1500 * (1 - 1e-9)) << term;
+  }
+}
+
 TEST(ContactModelTest, WhatIsNotTooSteepIsShownAsItIs) {
   ContactModel model{0, {0.02, 0.06, 0.01, 0.005, 1e-4}, 4e-3};
   model.stiffness[3] = 50;
