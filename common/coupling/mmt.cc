@@ -9,6 +9,8 @@ namespace {
 constexpr double kEnergyTolerance = 1e-15;  // [J]
 constexpr double kForceTolerance = 1e-12;   // [N]
 constexpr double kOffWay = 0.03;            // [N], in all, so far a blend may stray
+constexpr double kDeepest = 0.15;           // [m], a hand below a surface: twice what travels
+constexpr int kAttempts = 8;                // to let a force fall no faster than it may
 constexpr int kHalvings = 30;
 
 constexpr bool may_render(SiteState state) noexcept {
@@ -28,19 +30,29 @@ ContactModel blended(ContactModel from, const ContactModel& to, double share) no
   return from;
 }
 
+/// [m], where the force [N] is `wanted`; deeper than any tissue is told, along the tangent.
+double depth_of(const ContactModel& model, double wanted) noexcept {
+  const double beyond = wanted - model.force(kModelDepthMax);
+  if (beyond <= 0) return model.depth(wanted);
+  return kModelDepthMax + beyond / model.slope(kModelDepthMax);
+}
+
 /// The force at `position` [m] goes the same share of its way. Of two tissues whose surfaces are
-/// far apart, what lies between by its numbers alone can be stiffer there than both.
+/// far apart, what lies between by its numbers alone can be stiffer there than both; and of two
+/// that reach differently deep, anywhere: nowhere is it steeper than `slope_max` [N/m].
 ContactModel blended_at(double position,
                         const ContactModel& from,
                         const ContactModel& to,
-                        double share) noexcept {
-  ContactModel between = blended(from, to, share);
+                        double share,
+                        double slope_max) noexcept {
+  ContactModel between = no_steeper(blended(from, to, share), slope_max);
   const double before = from.force(position - from.surface);
   const double after = to.force(position - to.surface);
   const double wanted = before + share * (after - before);
   const double by_numbers = between.force(position - between.surface);
   if (before > 0 && after > 0 && std::abs(by_numbers - wanted) > kOffWay * share) {
-    between.surface = position - between.depth(wanted);
+    const double depth = depth_of(between, wanted);
+    if (depth <= kDeepest) between.surface = position - depth;
   }
   return between;
 }
@@ -58,6 +70,7 @@ MmtSurgeon::MmtSurgeon(const MmtConfig& config, const HandFacts& hand) noexcept
     : config_{config},
       device_{hand, config.velocity_cut_off},
       velocity_{device_.velocity_cut_off(), config.period},
+      told_velocity_{config.lead_cut_off, config.period},
       tank_{config.tank},
       release_{at_device(config.release, hand)} {}
 
@@ -66,6 +79,7 @@ void MmtSurgeon::begin_epoch(double position) noexcept {
   drop_model();
   position_before_ = position;
   velocity_.reset();
+  told_velocity_.reset(0);
   version_ = 0;
   presence_.set(1);
 }
@@ -169,14 +183,20 @@ void MmtSurgeon::approach_candidate(double position, double depth, const Lapse& 
       std::min(config_.slowest, force_contradiction_.slower(config_.believed, config_.doubt));
   const double blend = config_.blend * slower;
   double share = -std::expm1(-seconds(lapse.period) / blend);
-  for (int attempt = 0; attempt < 8; ++attempt) {
-    const ContactModel between = blended_at(position, elastic, aim, share);
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const auto relaxing = blended(before.relaxing(), candidate_relaxing_, share);
+    const double slope_max = config_.slope_max / quick_gain(relaxing);
+    const ContactModel between = blended_at(position, elastic, aim, share, slope_max);
     shown_ = before;
-    shown_.age_into(between, blended(before.relaxing(), candidate_relaxing_, share), depth, passed);
+    shown_.age_into(between, relaxing, depth, passed);
     const double fall = force - shown_.force(std::min(depth, position - between.surface));
     if (fall <= fall_max) return;
-    share *= 0.95 * fall_max / fall;
+    // A surface that goes far lets go of all at once, however little of its way is gone.
+    share *= std::min(0.95 * fall_max / fall, attempt < kAttempts / 2 ? 1 : 0.1);
   }
+  // But for its swing it stays as it was.
+  shown_ = before;
+  shown_.age_into(elastic, before.relaxing(), depth, passed);
 }
 
 /// The hand moved, the model did not.
@@ -269,7 +289,7 @@ SurgeonOutput MmtSurgeon::let_go(const SurgeonInput& in, double work) noexcept {
   const double left = std::max(0.0, stored_ + tank_);
   if (energy_now() > left) choose_depth(in.position, left, force_now());
   shown_force_ = force_now();
-  return {0, {in.position, in.velocity, 0, std::monostate{}}, shown_force_};
+  return {0, {in.position, told_velocity_.value(), 0, std::monostate{}}, shown_force_};
 }
 
 SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexcept {
@@ -279,6 +299,8 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexc
   surface_contradiction_.age(seconds(lapse.passed()));
   hear(in);
   const double speed = velocity_.step(in.position, lapse.periods);
+  // The tip runs ahead by it. Steps of an encoder cancel in it before some of them are lost.
+  told_velocity_.step(in.velocity, lapse.periods);
   const double work = in.force_applied * (in.position - position_before_);
   give_way(in.position - position_before_);
   position_before_ = in.position;
@@ -307,7 +329,7 @@ SurgeonOutput MmtSurgeon::step(const SurgeonInput& in, const Lapse& lapse) noexc
   brake(shown_.force(depth_at(in.position)) - shown_force_, speed, std::max(0.0, rise_max - risen));
   const double force = damp(shown_force_, depth_, speed) + brake_;
   return {force,
-          {in.position, in.velocity, force, std::monostate{}},
+          {in.position, told_velocity_.value(), force, std::monostate{}},
           shown_force_,
           std::max(0.0, shown_.force(depth_at(in.position)) - shown_force_),
           std::max(0.0, too_stiff(in.position))};

@@ -55,7 +55,7 @@ struct MmtConfig {
   double fade{1};                 ///< [s], of the model in Retract
   double period{1e-3};            ///< [s]
   double lead_max{25e-3};         ///< [s], most that the target runs ahead of the hand's position
-  double lead_cut_off{15};        ///< [Hz], of the velocity it runs ahead with
+  double lead_cut_off{15};        ///< [Hz], of the velocity that is told for it
   /// [N], so much harder than the hand is told, and by `unfelt_share` of what it is told, the tip
   /// presses before it gives way.
   double unfelt{0.35};
@@ -110,6 +110,7 @@ class MmtSurgeon {
   MmtConfig config_;
   LateDevice device_;
   VelocityEstimate velocity_;
+  LowPass told_velocity_;     ///< [m/s]
   double position_before_{};  ///< [m]
   double tank_;               ///< [J]
   double stored_{};           ///< [J]
@@ -153,12 +154,11 @@ class MmtPatient {
   PairedReadings paired_;
   ContactEstimator estimator_;
   double hand_{};           ///< [m], newest
-  double hand_velocity_{};  ///< [m/s], newest
+  double hand_velocity_{};  ///< [m/s], newest, as smooth as it was told
   double hand_force_{};     ///< [N], newest
   double yielded_{};        ///< [m]
   double since_drag_;       ///< [s]
   TimePoint heard_at_{};
-  LowPass lead_velocity_;  ///< [m/s]
   Place place_;
   bool began_{};
 };

@@ -8,7 +8,8 @@
 namespace palp::coupling {
 namespace {
 
-constexpr Duration kStale = std::chrono::milliseconds{20};  // older speed is no speed
+constexpr Duration kStale = std::chrono::milliseconds{20};  // older speed is soon no speed
+constexpr double kStops = 10e-3;                            // [s], that it takes
 constexpr double kDragged = 0.1;  // [N], of a tip that is in the tissue as it goes along
 
 ContactEstimatorConfig with_sensor(ContactEstimatorConfig config,
@@ -25,15 +26,13 @@ MmtPatient::MmtPatient(const MmtConfig& config, const PatientDevices& devices) n
       stage_lead_{std::floor(devices.stage.lag / config.period) * config.period},
       paired_{devices, config.period},
       estimator_{with_sensor(config.estimator, devices.sensor)},
-      since_drag_{config.drag_memory},
-      lead_velocity_{config.lead_cut_off, config.period} {}
+      since_drag_{config.drag_memory} {}
 
 void MmtPatient::begin_epoch(double position) noexcept {
   hand_ = position;
   hand_velocity_ = 0;
   hand_force_ = 0;
   yielded_ = 0;
-  lead_velocity_.reset(0);
 }
 
 /// A hand that is not heard of is taken to stand still.
@@ -41,14 +40,13 @@ double MmtPatient::target(const PatientInput& in, const Lapse& lapse) noexcept {
   const Incoming* last = newest(in.arrived);
   if (last != nullptr) {
     hand_ = last->sample.position;
-    hand_velocity_ = last->sample.velocity;
+    hand_velocity_ = finite_or(last->sample.velocity, 0);
     hand_force_ = finite_or(last->sample.force, 0);
     heard_at_ = in.now;
   }
-  if (in.now - heard_at_ > kStale) hand_velocity_ = 0;
+  if (in.now - heard_at_ > kStale) hand_velocity_ *= std::exp(-seconds(lapse.passed()) / kStops);
   const double lead = std::min(config_.lead_max, stage_lead_ + 0.5 * seconds(in.round_trip));
-  const double led =
-      hand_ + lead * lead_velocity_.step(finite_or(hand_velocity_, 0), lapse.periods);
+  const double led = hand_ + lead * hand_velocity_;
   return led - std::max(yielded_, behind_in_drag(led));
 }
 
