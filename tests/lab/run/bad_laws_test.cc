@@ -91,7 +91,7 @@ Scenario case_of(const char* set, std::size_t index) {
 /// The tissue of `mmt`'s prior at A, an inclusion at B.
 Scenario rehearsed() { return case_of("mc", 0); }
 /// A tissue and gestures that nobody chose.
-Scenario wild() { return case_of("wild", 6); }
+Scenario wild() { return case_of("wild", 12); }
 
 judge::RunMetrics judged(Scenario scenario, const coupling::OutsideLaw& outside) {
   scenario.outside = outside;
