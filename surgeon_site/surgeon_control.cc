@@ -177,9 +177,10 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
   now_.position = given.position;
   now_.place = hand_.place;
   judge_force(wanted, lapse);
-  // What the hand is given, not what the law would have given: the tip presses by that.
+  // What the hand is given, not what the law would have given: the tip presses by that. A hand that
+  // is meant to be given none has the force before its eyes.
   PortSample told = wanted.to_patient;
-  told.force = answer_.force;
+  if (config_.gate.force_max > 0) told.force = answer_.force;
   return {.force = answer_.force,
           .hold_in_plane = config_.hold_in_plane && answer_.force >= pressing_force(),
           .to_peer = {{now_.state, now_.epoch, hand_.place, {}},

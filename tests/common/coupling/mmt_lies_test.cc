@@ -67,11 +67,12 @@ TEST(MmtLiesTest, NothingBetweenTwoModelsIsSteeperThanADeviceMayShow) {
 /// A tissue that is hardly touched, and a peer that tells it was none.
 TEST(MmtLiesTest, ATissueThatIsToldAwayIsGoneSoon) {
   Told told{-1e-3};
-  const ModelPayload tissue{.c = {0.4}, .depth_max = 3e-3};
-  const ModelPayload elsewhere{.c = {0.4}, .surface = 59e-3, .depth_max = 3e-3};
-  for (int tick = 0; tick < 200; ++tick) told.step(-1e-3 + 5.5e-6 * tick, tissue);
+  const ModelPayload tissue{.c = {1.45}, .depth_max = 3e-3};
+  const ModelPayload elsewhere{.c = {1.45}, .surface = 59e-3, .depth_max = 3e-3};
+  for (int tick = 0; tick < 1200; ++tick)
+    told.step(std::min(0.0, -1e-3 + 1e-6 * tick) + 25e-6, tissue);
   EXPECT_GT(told.force(), 0.025);
-  for (int tick = 0; tick < 500; ++tick) told.step(0.1e-3, elsewhere);
+  for (int tick = 0; tick < 500; ++tick) told.step(25e-6, elsewhere);
   EXPECT_LT(told.force(), 1e-3);
 }
 

@@ -46,6 +46,29 @@ Discovery discover(const ModelPayload& model) {
   return found;
 }
 
+/// A count of 30 um to and fro: what is told of its speed stands until the next telegram comes.
+TEST(MmtSurgeonTest, TheToldSpeedOfAHandThatTremblesByACountIsSmallAndThatOfAnEvenHandIsTrue) {
+  MmtSurgeon law{MmtConfig{}};
+  law.begin_epoch(0);
+  SurgeonInput in;
+  in.state = SiteState::Engaged;
+  for (int tick = 0; tick < 400; ++tick) {
+    in.velocity = tick % 2 == 0 ? 30e-3 : -30e-3;
+    const SurgeonOutput out = law.step(in, std::chrono::milliseconds{1});
+    if (tick > 200) {
+      EXPECT_LT(std::abs(out.to_patient.velocity), 3e-3) << tick;
+    }
+  }
+  for (int tick = 0; tick < 200; ++tick) {
+    in.velocity = 20e-3;
+    in.position += 20e-6;
+    const SurgeonOutput out = law.step(in, std::chrono::milliseconds{1});
+    if (tick > 100) {
+      EXPECT_NEAR(out.to_patient.velocity, 20e-3, 0.1e-3) << tick;
+    }
+  }
+}
+
 TEST(MmtSurgeonTest, ASurfaceFoundWhilePressingIsLetInAsFarAsTheTankPays) {
   const ModelPayload soft{.version = 1, .c = {0, 0.03}, .depth_max = 4e-3};
   const ModelPayload hard{.version = 1, .c = {0, 0.3}, .depth_max = 4e-3};
