@@ -183,8 +183,7 @@ SurgeonOutputs SurgeonControl::decide(const SurgeonInputs& in) noexcept {
   if (config_.gate.force_max > 0) told.force = answer_.force;
   return {.force = answer_.force,
           .hold_in_plane = config_.hold_in_plane && answer_.force >= pressing_force(),
-          .to_peer = {{now_.state, now_.epoch, hand_.place, {}},
-                      account_.within_limits(told)},
+          .to_peer = {{now_.state, now_.epoch, hand_.place, {}}, account_.within_limits(told)},
           .view = {.state = now_.state,
                    .peer_state = now_.peer_state,
                    .link = now_.link.state,
