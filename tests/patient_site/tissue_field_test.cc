@@ -186,6 +186,18 @@ TEST(SurveyFieldTest, PlacesInALineSayNothingAcrossIt) {
   expect_stiffness_is_the_derivative(field, {8e-3, 1e-3});
 }
 
+TEST(SurveyFieldTest, WhereASlopeWouldLeadBeyondTheStiffestOrSoftestPlaceItIsThatPlaces) {
+  const std::vector<PlacedCurve> curves{
+      {{0, 0}, scaled(1)}, {{10e-3, 0}, scaled(2)}, {{20e-3, 0}, scaled(4)}};
+  const SurveyField field{curves, 0};
+  for (int i = 1; i <= 8; ++i) {
+    EXPECT_LE(field.elastic_force({20e-3 + 0.5e-3 * i, 0}, kDeep), curves[2].table.force(kDeep));
+    EXPECT_GE(field.elastic_force({-0.5e-3 * i, 0}, kDeep), curves[0].table.force(kDeep));
+  }
+  EXPECT_EQ(field.elastic_force({22e-3, 0}, kDeep), curves[2].table.force(kDeep));
+  EXPECT_EQ(field.elastic_force({-2e-3, 0}, kDeep), curves[0].table.force(kDeep));
+}
+
 TEST(SurveyFieldTest, AnyPlacesGiveAForceBetweenTheLeastAndTheMostOfTheirs) {
   rc::check([] {
     std::vector<PlacedCurve> curves;
