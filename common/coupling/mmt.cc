@@ -9,7 +9,7 @@ namespace {
 constexpr double kEnergyTolerance = 1e-15;  // [J]
 constexpr double kForceTolerance = 1e-12;   // [N]
 constexpr double kOffWay = 0.03;            // [N], in all, so far a blend may stray
-constexpr double kDeepest = 0.15;           // [m], a hand below a surface: twice what travels
+constexpr double kDeepest = 0.15;           // [m], a hand below a surface: both travel 60 mm
 constexpr int kAttempts = 8;                // to let a force fall no faster than it may
 constexpr int kHalvings = 30;
 
